@@ -1,10 +1,10 @@
-// What a drawn frame costs the drawing thread: `under_xvfb.sh viewer_frame_bench`.
+// The processor time of the drawing thread per frame: `under_xvfb.sh viewer_frame_bench`.
 //
-// Where OpenGL is done in software, most of it is that. With driver:0 the calls that hand over shapes and draw them are
-// left out; the program is linked so that they come here first. Those of Dear ImGui are not, so what is left is the
-// viewer's own and a little more.
+// With OpenGL in software, the driver takes most of the time. With driver:0 the calls that upload and draw shapes do
+// nothing: the linker redirects them to this file. Calls of Dear ImGui are not redirected, so the rest is the viewer's own
+// time and a little more.
+#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/screen.h"
-#include "client/viewer/stage/stage.h"
 
 #include <GL/gl.h>
 #include <GL/glext.h>
@@ -19,7 +19,7 @@
 namespace {
 bool driver_works = true;
 }
-// What the linker's --wrap makes of the viewer's calls, and of what they called.
+// The viewer's calls as redirected by the linker's --wrap, and the wrapped functions.
 extern "C" {
 void __real_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage);
 void __real_glClear(GLbitfield mask);
@@ -45,7 +45,7 @@ namespace evod::viewer {
 namespace {
 
 constexpr double px2_per_organism = 46'080; // and 2.5 food and 1.5 poison each: the benchmark world
-constexpr std::chrono::milliseconds picture_interval{33};
+constexpr std::chrono::milliseconds snapshot_interval{33};
 
 codec::DecodedItems items(std::size_t count, double width, double step) {
     codec::DecodedItems all;
@@ -57,7 +57,7 @@ codec::DecodedItems items(std::size_t count, double width, double step) {
     return all;
 }
 
-std::shared_ptr<codec::DecodedSnapshot> picture(std::size_t organism_count, std::uint64_t tick) {
+std::shared_ptr<codec::DecodedSnapshot> snapshot_at(std::size_t organism_count, std::uint64_t tick) {
     auto made = std::make_shared<codec::DecodedSnapshot>();
     const double width = std::sqrt(static_cast<double>(organism_count) * px2_per_organism);
     made->about.set_width_px(width);
@@ -73,53 +73,53 @@ std::shared_ptr<codec::DecodedSnapshot> picture(std::size_t organism_count, std:
     return made;
 }
 
-/// Where no server is.
-core::Options nobody() {
+/// An address without a server.
+core::Options no_server() {
     core::Options options;
     options.server = {.host = "127.0.0.1", .port = 1};
     return options;
 }
 
-/// Range 0: organisms; range 1: how many times larger than fitted; range 2: whether each frame shows a new picture, as
-/// every second one does at 60 frames and 30 pictures a second, or the way from one to the next; range 3: with the
-/// driver.
+/// Range 0: organisms; range 1: zoom relative to the fitted island; range 2: whether each frame shows a new snapshot (at 60
+/// frames and 30 snapshots per second every second one does) or interpolates between two; range 3: whether the driver's
+/// calls are made.
 void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
-    const bool anew = state.range(2) != 0;
+    const bool new_snapshot = state.range(2) != 0;
     const sf::Context context{context_settings(), 1280, 720};
-    Stage stage;
+    WindowRenderer renderer;
     Options options;
-    options.connection = nobody();
+    options.connection = no_server();
     Panes panes{wanted_of(options)};
     Pane& pane = panes.focused();
     auto now = core::WorldView::Clock::now();
     std::uint64_t tick = 2;
-    const std::array pictures{picture(organism_count, 0), picture(organism_count, tick)};
-    pane.watch.view().add(pictures[0], now);
-    pane.watch.view().add(pictures[1], now += picture_interval);
+    const std::array snapshots{snapshot_at(organism_count, 0), snapshot_at(organism_count, tick)};
+    pane.world.feed.view().add(snapshots[0], now);
+    pane.world.feed.view().add(snapshots[1], now += snapshot_interval);
     const auto arrived = now;
-    Stage::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = now, .glide = true};
-    stage.draw(panes, frame);
+    WindowRenderer::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = now, .interpolate = true};
+    renderer.draw(panes, frame);
     pane.camera().zoom_at(pane.camera().viewport().centre(), static_cast<double>(state.range(1)));
     frame.pointed_at = Point{640, 360};
-    stage.draw(panes, frame);
+    renderer.draw(panes, frame);
     driver_works = state.range(3) != 0;
     for (auto _ : state) {
-        if (anew) { // the older of the two comes back as the next one
-            const auto& next = pictures[tick / 2 % 2 == 0 ? 1 : 0];
+        if (new_snapshot) { // the older of the two is reused as the next one
+            const auto& next = snapshots[tick / 2 % 2 == 0 ? 1 : 0];
             next->about.set_tick(tick += 2);
             next->about.set_simulated_s(static_cast<double>(tick) / 60);
-            pane.watch.view().add(next, frame.now += picture_interval);
+            pane.world.feed.view().add(next, frame.now += snapshot_interval);
         } else {
-            frame.now += std::chrono::milliseconds{3}; // from one picture to the next, again and again
-            frame.now = frame.now > arrived + picture_interval ? arrived : frame.now;
+            frame.now += std::chrono::milliseconds{3}; // interpolates from one snapshot to the next, repeatedly
+            frame.now = frame.now > arrived + snapshot_interval ? arrived : frame.now;
         }
-        stage.draw(panes, frame);
+        renderer.draw(panes, frame);
     }
     driver_works = true;
 }
 BENCHMARK(draw_frame)
-    ->ArgNames({"organisms", "zoom", "anew", "driver"})
+    ->ArgNames({"organisms", "zoom", "new_snapshot", "driver"})
     ->ArgsProduct({{50, 10'000, 100'000}, {1, 16}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 

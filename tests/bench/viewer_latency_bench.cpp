@@ -1,17 +1,17 @@
-// How long a viewer takes, on a real evod and in a real window: `under_xvfb.sh viewer_latency_bench [ORGANISMS…]`.
+// Latencies of evoview with a real evod and a real window: `under_xvfb.sh viewer_latency_bench [ORGANISMS…]`.
 //
-// step       from a client's command to a world at rest until the picture of that one tick is on the screen
-// running    from a tick of a world at 1 or 10 times real time until its picture is on the screen; and until everyone
-//            stands where it says, for organisms glide from one picture to the next
-// slider     from a slider's release until the server tells everyone that the parameter holds, at real time; and what
-//            there and back again takes
+// step       from a client's command to a paused world until the frame of that one tick is on the screen
+// running    from a tick of a world at 1 or 10 times real time until the first frame with its snapshot is on the screen;
+//            and until the interpolated organisms have reached the snapshot's positions
+// slider     from a slider's release until the server's event that the parameter is set, at real time; and the round trip
+//            of a request
 //
-// When tick n was, is known from the clock of the world: n / rate after a moment which the answers to many questions
-// of which tick it is close in on, each from above. A picture is on the screen when the window was told to show it.
+// The time of tick n is n / rate after the time of tick 0. Each answer to a query of the tick gives an upper bound for the
+// time of tick 0; the benchmark uses the least of many. A frame is on the screen when display() has returned.
 #include "client/core/connection.h"
 #include "client/viewer/panels/parameters_panel.h"
+#include "client/viewer/panes/pane.h"
 #include "client/viewer/shell/screen.h"
-#include "client/viewer/stage/pane.h"
 #include "tests/system/viewer/support/processes.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ namespace {
 using Clock = core::WorldView::Clock;
 using Ms = std::chrono::duration<double, std::milli>;
 
-constexpr std::chrono::milliseconds frame_min{15}; // as Screen waits
+constexpr std::chrono::milliseconds frame_min{15}; // as in Screen
 constexpr double ticks_per_s = 60;                 // at real time
 constexpr const char* turned = "mutation_chance";
 
@@ -67,17 +67,17 @@ class Viewer {
         panes_.emplace(wanted_of(options_));
     }
 
-    /// One turn of the window's loop; `meanwhile` happens at some moment of it, and all of them are as likely.
+    /// One iteration of the window's loop. `meanwhile` is called at a uniformly random time in it.
     ///
-    /// returns  when what was drawn was on the screen
+    /// returns  when the frame was on the screen
     Clock::time_point frame(const std::function<void()>& meanwhile = {}) {
         const auto now = Clock::now();
         for (sf::Event event; screen_->poll(event);) {
         }
         panes_->update(now);
-        Stage::Frame next = screen_->frame(now);
-        next.glide = true;
-        screen_->stage().draw(*panes_, next);
+        WindowRenderer::Frame next = screen_->frame(now);
+        next.interpolate = true;
+        screen_->renderer().draw(*panes_, next);
         screen_->window().display();
         const auto shown = Clock::now();
         if (meanwhile) {
@@ -88,7 +88,7 @@ class Viewer {
         std::this_thread::sleep_until(now + frame_min);
         return shown;
     }
-    /// Frames until the condition holds; when the first was on the screen for which it did.
+    /// Draws frames until the condition holds. Returns when the first such frame was on the screen.
     template <class Condition>
     Clock::time_point frames_until(Condition condition) {
         const auto end = Clock::now() + std::chrono::seconds{60};
@@ -100,9 +100,9 @@ class Viewer {
         throw std::runtime_error{"it never came to that"};
     }
 
-    Watch& watch() { return panes_->focused().watch; }
-    std::uint64_t tick() { return watch().picture() != nullptr ? watch().picture()->about.tick() : 0; }
-    Stage& stage() { return screen_->stage(); }
+    ViewedWorld& world() { return panes_->focused().world; }
+    std::uint64_t tick() { return world().feed.snapshot() != nullptr ? world().feed.snapshot()->about.tick() : 0; }
+    WindowRenderer& renderer() { return screen_->renderer(); }
 
     void mouse(sf::Event::EventType type, Point at) {
         sf::Event event{};
@@ -112,11 +112,11 @@ class Viewer {
         } else {
             event.mouseButton = {sf::Mouse::Left, static_cast<int>(at.x), static_cast<int>(at.y)};
         }
-        stage().gui().handle(event);
+        renderer().gui().handle(event);
     }
     Point find(const std::string& widget) {
-        frames_until([&] { return stage().gui().spots().find(widget).has_value(); });
-        return *stage().gui().spots().find(widget);
+        frames_until([&] { return renderer().gui().spots().find(widget).has_value(); });
+        return *renderer().gui().spots().find(widget);
     }
     void click(const std::string& widget) {
         const Point at = find(widget);
@@ -157,7 +157,7 @@ void measure_steps(RealServer& server, Viewer& viewer, const std::string& world)
     print(world + ", step", ms);
 }
 
-/// When ticks of a world that runs on were, by what it answers.
+/// The times of the ticks of a running world, estimated from its answers.
 class TickClock {
   public:
     TickClock(RealServer& server, const std::string& world, double rate_hz) : server_{server}, rate_hz_{rate_hz} {
@@ -172,7 +172,7 @@ class TickClock {
             }
         });
     }
-    /// By answers of half a second before and after, for a world may be held up.
+    /// Uses the answers within half a second, because a world may be delayed.
     Clock::time_point when(std::uint64_t tick, Clock::time_point shown) {
         const std::lock_guard lock{mutex_};
         auto begin = Clock::time_point::max();
@@ -193,7 +193,7 @@ class TickClock {
     double rate_hz_;
     evod::v1::Request question_;
     std::mutex mutex_;
-    std::vector<std::pair<Clock::time_point, Clock::time_point>> begins_; // an answer's arrival, tick 0 at the latest
+    std::vector<std::pair<Clock::time_point, Clock::time_point>> begins_; // an answer's arrival, and its upper bound for tick 0
 };
 
 void measure_running(RealServer& server, Viewer& viewer, const std::string& world, double factor) {
@@ -214,16 +214,16 @@ void measure_running(RealServer& server, Viewer& viewer, const std::string& worl
         const auto shown = viewer.frame([&] { clock.ask(); });
         const bool newer = all.empty() || viewer.tick() != all.back().tick;
         if (!all.empty() && all.back().reached == Clock::time_point{} &&
-            (newer || viewer.watch().view().blend_at(shown) >= 1)) {
+            (newer || viewer.world().feed.view().blend_at(shown) >= 1)) {
             all.back().reached = shown;
         }
         if (newer) {
             all.push_back({viewer.tick(), shown, {}});
         }
-        slowed = slowed || viewer.watch().control().told().slowed();
+        slowed = slowed || viewer.world().feed.control().info().slowed();
     }
     server.ask(pause);
-    viewer.frames_until([&] { return viewer.watch().control().state() == evod::v1::RUN_STATE_PAUSED; });
+    viewer.frames_until([&] { return viewer.world().feed.control().state() == evod::v1::RUN_STATE_PAUSED; });
     std::vector<double> first, reached;
     for (const Shown& shown : all) {
         if (shown.first > begin + std::chrono::seconds{2} && shown.reached != Clock::time_point{}) {
@@ -233,31 +233,31 @@ void measure_running(RealServer& server, Viewer& viewer, const std::string& worl
         }
     }
     const std::string name = world + ", " + std::to_string(static_cast<int>(factor)) + " × real time";
-    print(name + (slowed ? ", slowed: picture" : ": picture"), first);
-    print(name + ": everyone where it says", reached);
+    print(name + (slowed ? ", slowed: first frame" : ": first frame"), first);
+    print(name + ": all organisms at their positions", reached);
 }
 
 void measure_slider(RealServer& server, Viewer& viewer, const std::string& world) {
     server.ask(at_speed(world, 1));
-    evod::v1::Request run, pause, look;
+    evod::v1::Request run, pause, style;
     run.mutable_run()->set_world(world);
     pause.mutable_pause()->set_world(world);
-    look.mutable_get_parameters()->set_world(world);
+    style.mutable_get_parameters()->set_world(world);
     server.ask(run);
     std::vector<double> there_and_back;
     for (int i = 0; i < 200; ++i) {
         const auto sent = Clock::now();
-        server.ask(look);
+        server.ask(style);
         there_and_back.push_back(Ms{Clock::now() - sent}.count());
     }
-    viewer.stage().panels().show("Parameters");
+    viewer.renderer().panels().show("Parameters");
     viewer.click("apply on release");
     viewer.click("Search");
     for (const char sign : std::string{turned}) {
         sf::Event event{};
         event.type = sf::Event::TextEntered;
         event.text.unicode = static_cast<sf::Uint32>(sign);
-        viewer.stage().gui().handle(event);
+        viewer.renderer().gui().handle(event);
         viewer.frame();
     }
     evod::v1::SubscribeEvents subscription;
@@ -271,7 +271,7 @@ void measure_slider(RealServer& server, Viewer& viewer, const std::string& world
         viewer.frame();
         viewer.mouse(sf::Event::MouseButtonPressed, at);
         viewer.frame();
-        at.x += i % 2 == 0 ? 30 : -30; // never where it is
+        at.x += i % 2 == 0 ? 30 : -30; // always another value
         viewer.mouse(sf::Event::MouseMoved, at);
         viewer.frame();
         server.connection->take_events();
@@ -307,7 +307,7 @@ void measure(std::uint32_t organism_count) {
     const std::string world = std::to_string(organism_count);
     make_benchmark_world(server, world, organism_count);
     Viewer viewer{server.address(), world};
-    viewer.frames_until([&] { return viewer.watch().picture() != nullptr; });
+    viewer.frames_until([&] { return viewer.world().feed.snapshot() != nullptr; });
     measure_steps(server, viewer, world);
     measure_running(server, viewer, world, 1);
     measure_running(server, viewer, world, 10);

@@ -1,8 +1,8 @@
-// What one drawn frame costs the processor outside the graphics driver: making the shapes of everything that moves, by
-// what is switched on. No screen is needed. In each frame everybody is seen.
-#include "client/viewer/scene/marks.h"
+// The processor time per frame outside the graphics driver, by view option: making the shapes of everything that moves.
+// Needs no display. All organisms are visible in each frame.
+#include "client/viewer/island/marks.h"
 
-#include "tests/unit/viewer/watch/population_pages.h"
+#include "tests/unit/viewer/world/population_pages.h"
 
 #include <benchmark/benchmark.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double px2_per_organism = 46'080;
 
-std::shared_ptr<const codec::DecodedSnapshot> picture(std::size_t count, std::uint64_t tick) {
+std::shared_ptr<const codec::DecodedSnapshot> snapshot(std::size_t count, std::uint64_t tick) {
     auto made = std::make_shared<codec::DecodedSnapshot>();
     const double width = std::sqrt(static_cast<double>(count) * px2_per_organism);
     made->about.set_width_px(width);
@@ -35,7 +35,7 @@ std::shared_ptr<const codec::DecodedSnapshot> picture(std::size_t count, std::ui
 }
 
 struct Setting {
-    explicit Setting(std::size_t count) : before{picture(count, 0)}, latest{picture(count, 15)} {
+    explicit Setting(std::size_t count) : before{snapshot(count, 0)}, latest{snapshot(count, 15)} {
         const auto start = core::WorldView::Clock::now();
         view.add(before, start);
         view.add(latest, start + std::chrono::milliseconds{33});
@@ -64,12 +64,12 @@ void plain(benchmark::State& state) {
     std::vector<Shape> shapes;
     frames(state, [&](Setting& setting, const Positions& at) {
         shapes.clear();
-        put_discs(at, setting.latest->organisms.radius_px, shapes);
+        add_discs(at, setting.latest->organisms.radius_px, shapes);
         benchmark::DoNotOptimize(shapes.data());
     });
 }
 
-/// Coloured by a gene, with radii, forces and trails: all that can be switched on together.
+/// All options together: coloured by a gene, with radii, forces and trails.
 void everything(benchmark::State& state) {
     std::vector<Shape> shapes, rings;
     std::vector<Colour> colours;
@@ -79,13 +79,13 @@ void everything(benchmark::State& state) {
         const auto& organisms = setting.latest->organisms;
         const Rectangle seen = setting.camera.visible();
         shapes.clear(), rings.clear(), colours.clear(), ways.clear(), arrows.clear(), targets.clear();
-        put_discs(at, organisms.radius_px, shapes);
-        put_gene_colours(organisms, setting.population, 3, gene_scale(setting.population, 3, palette::Ramp::Viridis),
+        add_discs(at, organisms.radius_px, shapes);
+        add_gene_colours(organisms, setting.population, 3, gene_scale(setting.population, 3, palette::Ramp::Viridis),
                          colours);
-        put_radii(organisms, at, setting.population, 4, seen, rings);
-        put_radii(organisms, at, setting.population, 5, seen, rings);
-        put_forces(organisms, at, setting.population, seen, arrows, targets);
-        put_ways(setting.before->organisms, organisms, at.x_px, at.y_px, ways);
+        add_radii(organisms, at, setting.population, 4, seen, rings);
+        add_radii(organisms, at, setting.population, 5, seen, rings);
+        add_forces(organisms, at, setting.population, seen, arrows, targets);
+        add_paths(setting.before->organisms, organisms, at.x_px, at.y_px, ways);
         benchmark::DoNotOptimize(shapes.data());
         benchmark::DoNotOptimize(targets.lines.data());
     });
@@ -97,7 +97,7 @@ void density(benchmark::State& state) {
     frames(state, [&](Setting& setting, const Positions& at) {
         shapes.clear(), colours.clear();
         const DensityGrid grid = density_of(at, setting.camera.visible(), density_cell_px(setting.camera, 5));
-        put_density(grid, {1e9, 1e9}, density_scale(std::span{&grid, 1}, palette::Ramp::Viridis), shapes, colours);
+        add_density(grid, {1e9, 1e9}, density_scale(std::span{&grid, 1}, palette::Ramp::Viridis), shapes, colours);
         benchmark::DoNotOptimize(shapes.data());
     });
 }

@@ -1,4 +1,4 @@
-"""Whether the memory of evoview stays what it is: it watches a world for some minutes, on the screen DISPLAY.
+"""Measures whether the memory of evoview grows while it shows a world for some minutes, on the display DISPLAY.
 
     under_xvfb.sh viewer_memory.py EVOD EVOVIEW MESSAGES [--organisms N] [--speed N] [--minutes N] [--keys "F5 T"] [--json]
 """
@@ -12,11 +12,11 @@ import time
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("evod", help="the program")
 parser.add_argument("evoview", help="the program")
-parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("messages", help="folder of the Python message classes: build/release/tests/system")
 parser.add_argument("--organisms", type=int, default=10_000)
 parser.add_argument("--speed", type=float, default=10, help="times real time")
 parser.add_argument("--minutes", type=float, default=10)
-parser.add_argument("--keys", default="", help="pressed in evoview at the beginning, as in its scripts")
+parser.add_argument("--keys", default="", help="keys to press in evoview at the start, as in its scripts")
 parser.add_argument("--json", action="store_true", help="print the figures as JSON")
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
@@ -37,10 +37,10 @@ def processor_s(process):
     return (int(fields[11]) + int(fields[12])) / 100
 
 
-def watch(server):
-    """Memory in MB, every sample_s from settle_s on; processor seconds of the viewer a second."""
+def sample_viewer(server):
+    """Memory in MB, every sample_s from settle_s on, and processor seconds of the viewer per second."""
     script = tempfile.NamedTemporaryFile("w", suffix=".script")
-    script.write("wait picture\n" + "".join(f"key {key}\n" for key in options.keys.split()))
+    script.write("wait snapshot\n" + "".join(f"key {key}\n" for key in options.keys.split()))
     script.flush()
     viewer = subprocess.Popen([options.evoview, "--server", f"localhost:{server.port}", "--world", "w",
                                "--script", script.name])
@@ -60,7 +60,7 @@ def watch(server):
 
 
 def rise_mb_per_min(samples):
-    """The slope of the straight line nearest to them."""
+    """The slope of the regression line through the samples."""
     middle, mean = (len(samples) - 1) / 2, sum(samples) / len(samples)
     above = sum((i - middle) * (sample - mean) for i, sample in enumerate(samples))
     return above / sum((i - middle) ** 2 for i in range(len(samples))) * 60 / sample_s
@@ -73,7 +73,7 @@ def measure():
             benchmark_world(options.organisms))))
         control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(real_time_factor=options.speed)))
         control.call(run=c.Run(world="w"))
-        samples, load = watch(server)
+        samples, load = sample_viewer(server)
         world = next(x for x in control.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == "w")
         return {"organisms": options.organisms, "speed": options.speed, "minutes": options.minutes,
                 "ticks": world.tick, "generation": world.generation, "samples": len(samples),

@@ -4,7 +4,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -37,10 +37,10 @@ void build_gene(const std::string& name, float value, const Population::Range& r
                            double{range.mean}));
 }
 
-void build_health(const std::vector<OrganismStory::Health>& points) {
+void build_health(const std::vector<OrganismHistory::Health>& points) {
     std::vector<double> s, health;
     double most = 1;
-    for (const OrganismStory::Health& point : points) {
+    for (const OrganismHistory::Health& point : points) {
         s.push_back(point.s);
         health.push_back(point.health);
         most = std::max(most, health.back());
@@ -67,7 +67,7 @@ std::string told_parents(const evod::v1::OrganismInfo& info) {
     return print("Parents: %u and %u (generation %s)", info.parents(0), info.parents(1), generation.c_str());
 }
 
-std::string shown_fate(const OrganismStory& story) {
+std::string shown_fate(const OrganismHistory& story) {
     if (!story.info()) {
         return "";
     }
@@ -94,11 +94,11 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
     }
 }
 
-std::string shown_children(const std::vector<OrganismStory::Child>& children) {
+std::string shown_children(const std::vector<OrganismHistory::Child>& children) {
     constexpr std::size_t shown_max = 40;
     std::string text;
     for (std::size_t i = 0; i < std::min(children.size(), shown_max); ++i) {
-        const OrganismStory::Child& child = children[i];
+        const OrganismHistory::Child& child = children[i];
         text += (i == 0 ? "" : ", ") + std::to_string(child.id) +
                 (child.other_parent ? " (with " + std::to_string(*child.other_parent) + ")"
                  : child.same_genes ? " (as it was)"
@@ -111,7 +111,7 @@ std::string shown_children(const std::vector<OrganismStory::Child>& children) {
 }
 
 void OrganismPanel::build(Context& context) {
-    const OrganismStory* story = context.sight.story();
+    const OrganismHistory* story = context.island_view.organism_history();
     if (story == nullptr) {
         widgets::say("A click on an organism selects it.", palette::text);
         return;
@@ -125,9 +125,9 @@ void OrganismPanel::build(Context& context) {
     widgets::say(shown_fate(*story), palette::text);
     if (!story->dead() && !story->ended()) {
         widgets::say(shown_choice(info), palette::text);
-        bool following = context.sight.following();
+        bool following = context.island_view.following();
         if (widgets::checkbox("keep it in the middle (L)", following)) {
-            context.sight.toggle_following(context.watch);
+            context.island_view.toggle_following(context.world);
         }
     }
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
@@ -135,7 +135,7 @@ void OrganismPanel::build(Context& context) {
     ImGui::Separator();
     build_health(story->health());
     ImGui::Separator();
-    const auto& names = context.sight.gene_names();
+    const auto& names = context.island_view.gene_names();
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
         const float value = info.genes(static_cast<int>(gene));
         if (gene < story->ranges().size()) {
@@ -144,8 +144,8 @@ void OrganismPanel::build(Context& context) {
             ImGui::Text("%s %.1f", names[gene].c_str(), double{value});
         }
     }
-    if (story->ranges().empty() && !context.sight.trouble().empty()) {
-        widgets::say(context.sight.trouble() + ".", palette::text);
+    if (story->ranges().empty() && !context.island_view.problem().empty()) {
+        widgets::say(context.island_view.problem() + ".", palette::text);
     }
     ImGui::Separator();
     widgets::say(told_parents(info), palette::text);

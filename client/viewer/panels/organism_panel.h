@@ -14,12 +14,12 @@ class OrganismPanel : public Panel {
 };
 
 /// "dead of hunger after 12.3 s", "alive at the end of its generation, after 40.0 s", "alive for 12.3 s".
-std::string shown_fate(const OrganismStory& story);
+std::string shown_fate(const OrganismHistory& story);
 /// "about to seek food at (120, 40)".
 std::string shown_choice(const evod::v1::OrganismInfo& info);
 /// "Parents: 12 and 45 (generation 35)"; a survivor has one.
 std::string told_parents(const evod::v1::OrganismInfo& info);
 /// "3 (as it was), 7 (with 12), 9 (alone)"; "nobody" of none.
-std::string shown_children(const std::vector<OrganismStory::Child>& children);
+std::string shown_children(const std::vector<OrganismHistory::Child>& children);
 
 } // namespace evod::viewer

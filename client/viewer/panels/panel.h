@@ -1,12 +1,12 @@
-// Panel: a window of widgets over the island, which can be hidden. It asks and commands through the Watch alone, so
+// Panel: a window of widgets over the island, which can be hidden. It asks and commands through the ViewedWorld alone, so
 // everything it does goes over the public protocol.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
 
 #include "client/viewer/drawing/gui.h"
-#include "client/viewer/scene/sight.h"
-#include "client/viewer/watch/watch.h"
+#include "client/viewer/island/island_view.h"
+#include "client/viewer/world/viewed_world.h"
 
 #include <SFML/Window/Keyboard.hpp>
 
@@ -18,10 +18,10 @@ namespace evod::viewer {
 class Panel {
   public:
     struct Context {
-        Watch& watch;
+        ViewedWorld& world;
         const Gui& gui;
         core::WorldView::Clock::time_point now;
-        Sight& sight;
+        IslandView& island_view;
         /// The first time since it was hidden: the events of meanwhile were not heard.
         bool shown_anew = false;
     };

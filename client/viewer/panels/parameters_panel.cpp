@@ -2,7 +2,7 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <SFML/Window/Keyboard.hpp>
 #include <imgui.h>
@@ -68,16 +68,16 @@ std::span<const Panel::Key> ParametersPanel::keys() const {
 }
 
 void ParametersPanel::build(Context& context) {
-    Watch& watch = context.watch;
+    ViewedWorld& world = context.world;
     follow(context);
-    std::string_view why = watch.why_only_watching();
-    if (watch.replay() != nullptr) {
+    std::string_view why = world.commands.read_only_reason();
+    if (world.replay.info() != nullptr) {
         why = "This world shows the past, which stays as it was.";
     }
     const bool may = why.empty();
-    for (const Inquiry* inquiry : {&registry_inquiry_, &values_inquiry_}) {
-        if (!inquiry->trouble().empty()) {
-            widgets::say(inquiry->trouble(), palette::warning);
+    for (const Poll* poll : {&registry_poll_, &values_poll_}) {
+        if (!poll->problem().empty()) {
+            widgets::say(poll->problem(), palette::warning);
         }
     }
     if (!edits_.known()) {
@@ -102,7 +102,7 @@ void ParametersPanel::build(Context& context) {
     apply_ = apply_ && may;
     if (apply_ && !edits_.busy()) { // in the frame in which it was let go
         apply_ = false;
-        send(context, edits_.apply(watch.name()));
+        send(context, edits_.apply(world.feed.name()));
     }
 }
 
@@ -110,34 +110,34 @@ void ParametersPanel::build(Context& context) {
 
 void ParametersPanel::follow(const Context& context) {
     using Kind = evod::v1::Event::KindCase;
-    const Watch& watch = context.watch;
-    if (watch.world() != world_ || watch.control().run_id() != run_id_) {
-        world_ = watch.world();
-        run_id_ = watch.control().run_id();
+    const ViewedWorld& world = context.world;
+    if (world.feed.world() != world_ || world.feed.control().run_id() != run_id_) {
+        world_ = world.feed.world();
+        run_id_ = world.feed.control().run_id();
         edits_.forget();
-        values_inquiry_.forget();
+        values_poll_.reset();
         ++transaction_;
         apply_ = false;
         stale_ = true;
     }
-    const std::uint64_t connected_count = watch.connection_status().connected_count;
+    const std::uint64_t connected_count = world.server.status().connected_count;
     // What has changed meanwhile nobody has told.
-    stale_ =
-        stale_ || context.shown_anew || watch.place_number() != place_number_ || connected_count != connected_count_;
-    place_number_ = watch.place_number();
+    stale_ = stale_ || context.shown_anew || world.feed.place_number() != place_number_ ||
+             connected_count != connected_count_;
+    place_number_ = world.feed.place_number();
     connected_count_ = connected_count;
-    for (const evod::v1::Event& event : watch.events()) {
+    for (const evod::v1::Event& event : world.feed.events()) {
         if (event.kind_case() == Kind::kEventsDropped) {
             stale_ = true;
-        } else if (event.world() != watch.name()) {
+        } else if (event.world() != world.feed.name()) {
             continue;
         } else if (event.kind_case() == Kind::kParametersChanged && edits_.known()) {
-            stale_ = !edits_.see(event.parameters_changed()) || stale_;
+            stale_ = !edits_.update(event.parameters_changed()) || stale_;
         } else if (event.kind_case() == Kind::kGenerationFinished) {
             stale_ = stale_ || edits_.has_pending(); // it holds now
         }
     }
-    if (edits_.busy() && context.now - sent_ > Inquiry::patience) { // no answer will come any more
+    if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // no answer will come any more
         ++transaction_;
         stale_ = edits_.answered(nullptr);
     }
@@ -145,27 +145,26 @@ void ParametersPanel::follow(const Context& context) {
 }
 
 void ParametersPanel::ask(const Context& context) {
-    if (registry_inquiry_.due(context.watch, context.now) && edits_.registry().empty()) {
+    if (registry_poll_.due(context.world, context.now) && edits_.registry().empty()) {
         evod::v1::Request request;
         request.mutable_describe();
-        registry_inquiry_.ask(context.watch, std::move(request), context.now,
-                              [this](const evod::v1::Response* response) {
-                                  if (response != nullptr) {
-                                      const auto& registry = response->description().parameters();
-                                      edits_.describe({registry.begin(), registry.end()});
-                                      groups_ = group(edits_.registry());
-                                      stale_ = true;
-                                  }
-                              });
+        registry_poll_.send(context.world, std::move(request), context.now, [this](const evod::v1::Response* response) {
+            if (response != nullptr) {
+                const auto& registry = response->description().parameters();
+                edits_.describe({registry.begin(), registry.end()});
+                groups_ = group(edits_.registry());
+                stale_ = true;
+            }
+        });
     }
-    const bool wanted = stale_ || values_inquiry_.under_way(); // for too long, if it is due
-    if (values_inquiry_.due(context.watch, context.now) && wanted && !edits_.registry().empty()) {
+    const bool wanted = stale_ || values_poll_.pending(); // for too long, if it is due
+    if (values_poll_.due(context.world, context.now) && wanted && !edits_.registry().empty()) {
         stale_ = false;
         evod::v1::Request request;
-        request.mutable_get_parameters()->set_world(context.watch.world());
-        values_inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+        request.mutable_get_parameters()->set_world(context.world.feed.world());
+        values_poll_.send(context.world, std::move(request), context.now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
-                edits_.see(response->parameters());
+                edits_.update(response->parameters());
             } else {
                 stale_ = true;
             }
@@ -176,7 +175,7 @@ void ParametersPanel::ask(const Context& context) {
 void ParametersPanel::send(const Context& context, std::optional<evod::v1::Request> request) {
     if (request) {
         sent_ = context.now;
-        context.watch.ask(*std::move(request), [this, transaction = ++transaction_](const auto& response) {
+        context.world.server.send(*std::move(request), [this, transaction = ++transaction_](const auto& response) {
             if (transaction == transaction_) {
                 stale_ = edits_.answered(response ? &*response : nullptr) || stale_;
             }
@@ -187,7 +186,7 @@ void ParametersPanel::send(const Context& context, std::optional<evod::v1::Reque
 // ---- what is drawn ---------------------------------------------------------------------------------------------
 
 void ParametersPanel::build_head(const Context& context, bool may) {
-    const Watch& watch = context.watch;
+    const ViewedWorld& world = context.world;
     const float scale = context.gui.scale();
     const ImGuiIO& io = ImGui::GetIO();
     const bool keys =
@@ -209,14 +208,14 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     ImGui::SameLine(0, 20 * scale);
     ImGui::BeginDisabled(!edits_.can_undo());
     if (widgets::button("Undo") || (undo_key && edits_.can_undo())) {
-        send(context, edits_.undo(watch.name()));
+        send(context, edits_.undo(world.feed.name()));
     }
     widgets::explain("Ctrl+Z: the values before your last change, but for what others have changed since.");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!edits_.can_redo());
     if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
-        send(context, edits_.redo(watch.name()));
+        send(context, edits_.redo(world.feed.name()));
     }
     widgets::explain("Ctrl+Shift+Z");
     ImGui::EndDisabled();

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "client/viewer/panels/panel.h"
-#include "client/viewer/watch/inquiry.h"
-#include "client/viewer/watch/parameter_edits.h"
+#include "client/viewer/world/parameter_edits.h"
+#include "client/viewer/world/poll.h"
 
 #include <array>
 #include <optional>
@@ -42,8 +42,8 @@ class ParametersPanel : public Panel {
     std::string world_;  // by the name that was asked for
     std::string run_id_; // that the undo stack is of
     std::uint64_t place_number_ = 0, connected_count_ = 0;
-    Inquiry registry_inquiry_;                  // until it is known
-    Inquiry values_inquiry_;                    // when they may have changed
+    Poll registry_poll_;                        // until it is known
+    Poll values_poll_;                          // when they may have changed
     bool stale_ = true;                         // the values
     std::uint64_t transaction_ = 0;             // number of the last: an answer to another is late
     core::WorldView::Clock::time_point sent_{}; // the last; it is never sent twice

@@ -1,7 +1,7 @@
 #include "client/viewer/panels/run_panel.h"
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -68,32 +68,32 @@ void tell(const std::string& problem, std::initializer_list<std::string_view> fi
 } // namespace
 
 void RunPanel::build(Context& context) {
-    Watch& watch = context.watch;
-    const RunControl& control = watch.control();
+    ViewedWorld& world = context.world;
+    const RunControl& control = world.feed.control();
     if (!control.known()) {
         widgets::say("No world is shown yet.");
         return;
     }
     const float scale = context.gui.scale();
-    build_state(watch);
-    const std::string_view why = watch.why_only_watching();
+    build_state(world);
+    const std::string_view why = world.commands.read_only_reason();
     if (!why.empty()) {
         widgets::say(why, palette::stopped);
     }
     ImGui::BeginDisabled(!why.empty());
     ImGui::Separator();
-    build_run(watch, scale);
+    build_run(world, scale);
     ImGui::Separator();
-    build_speed(watch);
+    build_speed(world);
     ImGui::Separator();
-    build_reset(watch, scale);
+    build_reset(world, scale);
     ImGui::EndDisabled();
 }
 
-void RunPanel::build_state(const Watch& watch) {
-    const RunControl& control = watch.control();
-    const evod::v1::WorldInfo& told = control.told();
-    std::string state = watch.at_the_end() ? watch.state_words() : state_word(control.state(), watch.storage());
+void RunPanel::build_state(const ViewedWorld& world) {
+    const RunControl& control = world.feed.control();
+    const evod::v1::WorldInfo& told = control.info();
+    std::string state = world.replay.at_end() ? world.state_text() : state_word(control.state(), world.feed.storage());
     if (control.state() == evod::v1::RUN_STATE_TERMINATED) {
         state += std::string{": "} + outcome_words(control.outcome());
     } else if (told.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
@@ -101,7 +101,7 @@ void RunPanel::build_state(const Watch& watch) {
     }
     widgets::say(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
-    if (const codec::DecodedSnapshot* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = world.feed.snapshot()) {
         where = "generation " + with_separators(picture->about.generation()) + ", " + where;
     }
     const std::string seed = "seed " + std::to_string(told.seed());
@@ -109,33 +109,33 @@ void RunPanel::build_state(const Watch& watch) {
     widgets::mark(seed);
 }
 
-void RunPanel::build_run(Watch& watch, float scale) {
-    const evod::v1::RunState state = watch.control().state();
-    const bool over = state == evod::v1::RUN_STATE_TERMINATED || watch.at_the_end();
+void RunPanel::build_run(ViewedWorld& world, float scale) {
+    const evod::v1::RunState state = world.feed.control().state();
+    const bool over = state == evod::v1::RUN_STATE_TERMINATED || world.replay.at_end();
     ImGui::BeginDisabled(over);
     const char* label = state == evod::v1::RUN_STATE_RUNNING  ? "Pause"
                         : state == evod::v1::RUN_STATE_PAUSED ? "Go on"
                                                               : "Run";
     if (ImGui::Button(label, {90 * scale, 0})) {
-        watch.pause_or_resume();
+        world.commands.pause_or_resume();
     }
     widgets::mark(label);
     ImGui::SameLine();
     if (widgets::button("One tick")) {
-        watch.step(1);
+        world.commands.step(1);
     }
     const float field = 110 * scale;
     number_field("ticks", ticks_, field);
     if (widgets::button("Step ticks")) {
         if (const auto ticks = number_in("ticks", ticks_.data(), {1, count_max}, problem_)) {
-            watch.step(*ticks);
+            world.commands.step(*ticks);
         }
     }
     widgets::explain("So many ticks, then it pauses.");
     number_field("generations", generations_, field);
     if (widgets::button("Run generations")) {
         if (const auto generations = number_in("generations", generations_.data(), {1, count_max}, problem_)) {
-            watch.run_generations(*generations);
+            world.commands.run_generations(*generations);
         }
     }
     widgets::explain("So many generations to their end, then it waits.");
@@ -143,11 +143,11 @@ void RunPanel::build_run(Watch& watch, float scale) {
     tell(problem_, {"ticks", "generations"});
 }
 
-void RunPanel::build_speed(Watch& watch) {
-    const evod::v1::Speed& speed = watch.control().speed();
+void RunPanel::build_speed(ViewedWorld& world) {
+    const evod::v1::Speed& speed = world.feed.control().speed();
     bool max = speed.max();
     if (ImGui::Checkbox("as fast as the server can", &max)) {
-        watch.max_speed();
+        world.commands.max_speed();
     }
     widgets::mark("as fast as the server can");
     ImGui::BeginDisabled(speed.max());
@@ -165,7 +165,7 @@ void RunPanel::build_speed(Watch& watch) {
                            : "speed: " + shown_number(*factor_) + " is not from " + shown_number(least) + " to " +
                                  shown_number(most) + " times real time";
         if (allowed) {
-            watch.at_factor(*factor_);
+            world.commands.at_factor(*factor_);
         }
     }
     if (!ImGui::IsItemActive()) {
@@ -174,16 +174,16 @@ void RunPanel::build_speed(Watch& watch) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (widgets::button("Real time")) {
-        watch.real_time();
+        world.commands.real_time();
     }
     tell(problem_, {"speed"});
-    if (watch.control().told().slowed()) {
+    if (world.feed.control().info().slowed()) {
         widgets::say("The server's machine cannot keep up: the clock goes slower, no tick is left out.");
     }
 }
 
-void RunPanel::build_reset(Watch& watch, float scale) {
-    if (watch.replay() != nullptr) {
+void RunPanel::build_reset(ViewedWorld& world, float scale) {
+    if (world.replay.info() != nullptr) {
         widgets::say("This world shows the past, which stays as it was.");
         return;
     }
@@ -197,15 +197,15 @@ void RunPanel::build_reset(Watch& watch, float scale) {
         return;
     }
     const std::string seed = seed_.data();
-    ImGui::Text("Begin %s again at generation 1, %s?", watch.control().world().c_str(),
+    ImGui::Text("Begin %s again at generation 1, %s?", world.feed.control().world().c_str(),
                 seed.empty() ? "with the same seed" : ("with the seed " + seed).c_str());
     if (widgets::button("Reset the world")) {
         constexpr Allowed any{0, std::numeric_limits<std::uint64_t>::max()};
         if (seed.empty()) {
             problem_.clear();
-            watch.reset(std::nullopt);
+            world.commands.reset(std::nullopt);
         } else if (const auto number = number_in("seed", seed, any, problem_)) {
-            watch.reset(*number);
+            world.commands.reset(*number);
         }
         ImGui::CloseCurrentPopup();
     }

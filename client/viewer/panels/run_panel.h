@@ -19,10 +19,10 @@ class RunPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    void build_state(const Watch& watch);
-    void build_run(Watch& watch, float scale);
-    void build_speed(Watch& watch);
-    void build_reset(Watch& watch, float scale);
+    void build_state(const ViewedWorld& world);
+    void build_run(ViewedWorld& world, float scale);
+    void build_speed(ViewedWorld& world);
+    void build_reset(ViewedWorld& world, float scale);
 
     using Field = std::array<char, 24>;
     Field ticks_{"60"}, generations_{"10"};

@@ -1,7 +1,7 @@
 #include "client/viewer/panels/view_panel.h"
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/scene/legend.h"
+#include "client/viewer/island/legend.h"
 
 #include <imgui.h>
 
@@ -11,9 +11,9 @@ namespace evod::viewer {
 
 namespace {
 
-void build_colouring(Sight& sight) {
-    Sight::Shown& shown = sight.shown;
-    const auto& genes = sight.gene_names();
+void build_colouring(IslandView& island_view) {
+    ViewOptions& shown = island_view.options;
+    const auto& genes = island_view.gene_names();
     const auto name = [&](ColourBy by, std::size_t gene) -> std::string {
         switch (by) {
         case ColourBy::Gene:
@@ -56,27 +56,27 @@ void build_colouring(Sight& sight) {
 } // namespace
 
 void ViewPanel::build(Context& context) {
-    Sight& sight = context.sight;
-    build_colouring(sight);
+    IslandView& island_view = context.island_view;
+    build_colouring(island_view);
     ImGui::Separator();
-    widgets::checkbox("perception radii of food and poison (V)", sight.shown.radii);
-    widgets::checkbox("forces, and what they act on (G)", sight.shown.forces);
-    widgets::checkbox("trails of the last 3 simulated seconds (T)", sight.shown.trails);
+    widgets::checkbox("perception radii of food and poison (V)", island_view.options.radii);
+    widgets::checkbox("forces, and what they act on (G)", island_view.options.forces);
+    widgets::checkbox("trails of the last 3 simulated seconds (T)", island_view.options.trails);
     ImGui::Separator();
-    widgets::checkbox("densities where organisms are too small", sight.shown.density);
-    widgets::checkbox("minimap where not all is seen", sight.shown.minimap);
+    widgets::checkbox("densities where organisms are too small", island_view.options.density);
+    widgets::checkbox("minimap where not all is seen", island_view.options.minimap);
     ImGui::Separator();
-    bool following = sight.following();
-    if (context.watch.selected() || following) {
+    bool following = island_view.following();
+    if (context.world.feed.selected() || following) {
         if (widgets::checkbox("keep the selected organism in the middle (L)", following)) {
-            sight.toggle_following(context.watch);
+            island_view.toggle_following(context.world);
         }
     } else {
         widgets::say("A click on an organism selects it.", palette::text);
     }
-    if (!sight.trouble().empty()) {
+    if (!island_view.problem().empty()) {
         ImGui::Separator();
-        widgets::say(sight.trouble() + ".", palette::text);
+        widgets::say(island_view.problem() + ".", palette::text);
     }
 }
 

@@ -1,7 +1,7 @@
 #include "client/viewer/panels/worlds_panel.h"
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -26,42 +26,42 @@ const Statistics* of_island(const google::protobuf::RepeatedPtrField<Statistics>
 } // namespace
 
 void WorldsPanel::build(Context& context) {
-    Watch& watch = context.watch;
-    if (watch.place_number() != place_number_) {
-        place_number_ = watch.place_number();
+    ViewedWorld& world = context.world;
+    if (world.feed.place_number() != place_number_) {
+        place_number_ = world.feed.place_number();
         statistics_.Clear();
     }
     if (context.shown_anew) {
-        look_again();
+        poll_interval();
     }
-    hear(watch);
-    ask(watch, context.now);
-    if (!list_inquiry_.trouble().empty()) {
-        widgets::say(list_inquiry_.trouble(), palette::warning);
+    hear(world);
+    ask(world, context.now);
+    if (!list_poll_.problem().empty()) {
+        widgets::say(list_poll_.problem(), palette::warning);
     }
-    build_worlds(watch);
-    build_islands(watch);
+    build_worlds(world);
+    build_islands(world);
 }
 
-void WorldsPanel::look_again() {
-    list_inquiry_.hurry();
-    statistics_inquiry_.hurry();
+void WorldsPanel::poll_interval() {
+    list_poll_.hurry();
+    statistics_poll_.hurry();
 }
 
-void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
-    if (list_inquiry_.due(watch, now)) {
+void WorldsPanel::ask(ViewedWorld& world, Clock::time_point now) {
+    if (list_poll_.due(world, now)) {
         evod::v1::Request request;
         request.mutable_list_worlds();
-        list_inquiry_.ask(watch, std::move(request), now, [this](const evod::v1::Response* response) {
+        list_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
             }
         });
     }
-    if (statistics_inquiry_.due(watch, now)) {
+    if (statistics_poll_.due(world, now)) {
         evod::v1::Request request;
-        request.mutable_get_statistics()->set_world(watch.world());
-        statistics_inquiry_.ask(watch, std::move(request), now, [this](const evod::v1::Response* response) {
+        request.mutable_get_statistics()->set_world(world.feed.world());
+        statistics_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 statistics_ = response->statistics();
             } // a world that is not there has no islands; that it is not, the list tells
@@ -69,9 +69,9 @@ void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
     }
 }
 
-void WorldsPanel::hear(const Watch& watch) {
+void WorldsPanel::hear(const ViewedWorld& world) {
     using Kind = evod::v1::Event::KindCase;
-    for (const evod::v1::Event& event : watch.events()) {
+    for (const evod::v1::Event& event : world.feed.events()) {
         switch (event.kind_case()) {
         case Kind::kRunControlChanged:
         case Kind::kRunTerminated:
@@ -79,7 +79,7 @@ void WorldsPanel::hear(const Watch& watch) {
         case Kind::kWorldReset:
         case Kind::kWorldDeleted:
         case Kind::kEventsDropped:
-            look_again();
+            poll_interval();
             break;
         default: // a world that runs is looked at anew all the time
             break;
@@ -87,7 +87,7 @@ void WorldsPanel::hear(const Watch& watch) {
     }
 }
 
-void WorldsPanel::build_worlds(Watch& watch) {
+void WorldsPanel::build_worlds(ViewedWorld& world) {
     constexpr ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                       ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
     const float line = ImGui::GetTextLineHeightWithSpacing();
@@ -102,26 +102,26 @@ void WorldsPanel::build_worlds(Watch& watch) {
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableHeadersRow();
     std::optional<std::string> chosen;
-    for (const evod::v1::WorldInfo& world : worlds_) {
+    for (const evod::v1::WorldInfo& listed : worlds_) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(world.name().c_str(), world.name() == watch.name(),
+        if (ImGui::Selectable(listed.name().c_str(), listed.name() == world.feed.name(),
                               ImGuiSelectableFlags_SpanAllColumns)) {
-            chosen = world.name();
+            chosen = listed.name();
         }
-        widgets::mark(world.name());
-        cell(state_word(world.state(), world.storage()));
-        cell(with_separators(world.generation()));
-        cell(with_separators(world.tick()));
-        cell(shown_speed(world.speed()) + (world.slowed() ? " (slower)" : ""));
+        widgets::mark(listed.name());
+        cell(state_word(listed.state(), listed.storage()));
+        cell(with_separators(listed.generation()));
+        cell(with_separators(listed.tick()));
+        cell(speed_text(listed.speed()) + (listed.slowed() ? " (slower)" : ""));
     }
     ImGui::EndTable();
-    if (chosen && *chosen != watch.name()) {
-        watch.look_at(*chosen, 0);
+    if (chosen && *chosen != world.feed.name()) {
+        world.show(*chosen, 0);
     }
 }
 
-void WorldsPanel::build_islands(Watch& watch) {
+void WorldsPanel::build_islands(ViewedWorld& world) {
     const auto count = static_cast<int>(statistics_.world().island_count());
     if (count == 0) {
         return;
@@ -145,7 +145,7 @@ void WorldsPanel::build_islands(Watch& watch) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
             const std::string name = "island " + std::to_string(i);
-            if (ImGui::Selectable(name.c_str(), static_cast<std::uint32_t>(i) == watch.island(),
+            if (ImGui::Selectable(name.c_str(), static_cast<std::uint32_t>(i) == world.feed.island(),
                                   ImGuiSelectableFlags_SpanAllColumns)) {
                 chosen = static_cast<std::uint32_t>(i);
             }
@@ -167,7 +167,7 @@ void WorldsPanel::build_islands(Watch& watch) {
     }
     ImGui::EndTable();
     if (chosen) {
-        watch.choose_island(*chosen);
+        world.feed.choose_island(*chosen);
     }
 }
 

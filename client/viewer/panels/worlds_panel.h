@@ -4,7 +4,7 @@
 #pragma once
 
 #include "client/viewer/panels/panel.h"
-#include "client/viewer/watch/inquiry.h"
+#include "client/viewer/world/poll.h"
 
 #include <chrono>
 #include <cstdint>
@@ -24,17 +24,17 @@ class WorldsPanel : public Panel {
     // Ticks rise all the time; nobody reads them faster.
     static constexpr std::chrono::seconds ask_again{1};
 
-    void ask(Watch& watch, Clock::time_point now);
-    void hear(const Watch& watch);
-    void look_again();
-    void build_worlds(Watch& watch);
-    void build_islands(Watch& watch);
+    void ask(ViewedWorld& world, Clock::time_point now);
+    void hear(const ViewedWorld& world);
+    void poll_interval();
+    void build_worlds(ViewedWorld& world);
+    void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
     evod::v1::Statistics statistics_; // of the place that is looked at
     std::uint64_t place_number_ = 0;  // that they are of
-    Inquiry list_inquiry_{ask_again};
-    Inquiry statistics_inquiry_{ask_again};
+    Poll list_poll_{ask_again};
+    Poll statistics_poll_{ask_again};
 };
 
 } // namespace evod::viewer

@@ -12,9 +12,9 @@ namespace evod::viewer {
 
 namespace {
 
-/// Null: there is no server, or it takes no more clients.
+/// Null: there is no X server, or it accepts no more clients.
 Display* connection() {
-    static Display* const opened = XOpenDisplay(nullptr); // and never closed
+    static Display* const opened = XOpenDisplay(nullptr); // never closed
     return opened;
 }
 
@@ -36,7 +36,7 @@ double display_scale() {
         return 1;
     }
     double dots_per_inch = 0;
-    if (const char* set = XGetDefault(display, "Xft", "dpi")) { // what desktops tell programs
+    if (const char* set = XGetDefault(display, "Xft", "dpi")) { // the desktop's setting
         dots_per_inch = std::atof(set);
     } else if (const int screen = DefaultScreen(display); DisplayWidthMM(display, screen) > 0) {
         dots_per_inch = DisplayWidth(display, screen) * 25.4 / DisplayWidthMM(display, screen);
@@ -50,7 +50,7 @@ std::optional<Desktop> desktop() {
         return std::nullopt;
     }
     const int screen = DefaultScreen(display);
-    // A window manager is the one client that is asked before windows are put anywhere.
+    // Only a window manager selects SubstructureRedirect on the root window.
     XWindowAttributes root{};
     const bool known = XGetWindowAttributes(display, RootWindow(display, screen), &root) != 0;
     return Desktop{.width = static_cast<unsigned>(DisplayWidth(display, screen)),

@@ -1,27 +1,27 @@
-// Display: whether there is a screen to draw on, and how fine it is. SFML aborts where there is none.
+// Display: whether there is a display to draw on, and its resolution. SFML aborts without a display.
 //
-// The connection to the X server that is made to find out stays open until the program ends: a server may end, or begin
-// anew, when its last client leaves.
+// The connection to the X server stays open until the program ends: an X server may exit or reset when its last client
+// disconnects.
 //
-// Threads      used by the one that draws.
+// Threads      used by the thread that draws.
 #pragma once
 
 #include <optional>
 
 namespace evod::viewer {
 
-/// Throws std::runtime_error, with what to do, if no window could be opened.
+/// Throws std::runtime_error, which says what to do, if no window can be opened.
 void check_display();
 
-/// How much larger than at 96 dots per inch things have to be on this screen: the desktop's setting, or else what the
-/// screen says of itself; 1 where neither is known. In quarters, within 0.5 and 4.
+/// The scale of text and widgets for this display, relative to 96 dots per inch: from the desktop's setting, else from
+/// the size that the display reports; 1 if neither is known. A multiple of 1/4, from 0.5 to 4.
 double display_scale();
 
 struct Desktop {
     unsigned width, height; // in pixels
-    bool managed;           // by a window manager, which puts windows where they belong
+    bool managed;           // by a window manager, which places windows
 };
-/// Nullopt where it is not known.
+/// Nullopt without a connection to the X server.
 std::optional<Desktop> desktop();
 
 } // namespace evod::viewer

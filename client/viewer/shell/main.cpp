@@ -1,4 +1,4 @@
-// evoview: options → a window with the start screen and worlds in turn, or a screenshot, or a recording → exit status.
+// evoview: opens a window with the start screen or worlds, or saves a screenshot or a recording.
 #include "client/viewer/shell/display.h"
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/recorder.h"
@@ -15,15 +15,15 @@ namespace {
 void run(Options options) {
     Screen screen{options};
     StartScreen start{screen, options.connection};
-    bool ask = options.start, must_connect = !options.server_given, connected = false;
+    bool show_start = options.start, must_connect = !options.server_given, connected = false;
     while (screen.window().isOpen()) {
-        if (ask) {
+        if (show_start) {
             const auto chosen = start.run();
             if (!chosen) {
                 return;
             }
             if (connected) {
-                options = Options{}; // the world of another server
+                options = Options{}; // they were for the other server
             }
             options.connection = *chosen;
             must_connect = true;
@@ -36,9 +36,9 @@ void run(Options options) {
                 start.remember(options.connection.server);
             });
         }
-        screen.stage().panels().begin_session(); // what they ask of the other server is never answered
-        ask = ending.elsewhere;
-        start.tell(ending.reason);
+        screen.renderer().panels().begin_session(); // requests to the other server will not be answered
+        show_start = ending.to_start_screen;
+        start.set_reason(ending.reason);
     }
 }
 

@@ -21,12 +21,11 @@ using command_line::Command;
 using command_line::RealNumber;
 using command_line::WholeNumber;
 
-constexpr const char* footer = R"(Keys: H in the window lists them. The window closes with Q; the worlds run on.
+constexpr const char* footer = R"(Keys: H in the window lists them. Q closes the window; the worlds continue.
 
-A screenshot only watches: it sends no command, so the world must be running, or have
-reached the tick already. A recording steps the world from picture to picture if the role
-allows that, so that no tick is missed; the world goes on afterwards if it ran before. Without
-a screen both work under xvfb-run.
+A screenshot sends no command, so the world must be running or have reached the tick already. A
+recording steps the world from frame to frame if the role allows it, so that no tick is missed;
+a world that ran before runs again afterwards. Both work without a display under xvfb-run.
 
   evoview lab.example:7744 --world default
   evoview --start
@@ -34,14 +33,14 @@ a screen both work under xvfb-run.
   evoview --world default --beside fork --all-islands
   evoview --record film.mp4 --past 12 --record-generations 1
 
-Without a server evoview goes to this machine's, or else to the start screen.
+Without --server, evoview connects to this machine; if there is no server, it opens the start screen.
 
-Exit status: 0; 1 no picture could be had or written, no window opened, or a line of the script could
-not be done; 2 the command line or the script is wrong.)";
+Exit status: 0 success; 1 no snapshot arrived, a file could not be written, no window could be opened,
+or a line of the script failed; 2 the command line or the script is invalid.)";
 
 constexpr unsigned pixels_min = 64, pixels_max = 8192;
 
-/// "1280x720" → width and height; the text of an error, or empty.
+/// Parses "1280x720". Returns an error, or an empty text.
 std::string parse_size(const std::string& text, Options::Size& size) {
     const char* end = text.data() + text.size();
     const auto [cross, bad_width] = std::from_chars(text.data(), end, size.width);
@@ -52,8 +51,8 @@ std::string parse_size(const std::string& text, Options::Size& size) {
             return {};
         }
     }
-    return "\"" + text + "\" is no size like 1280x720, each from " + std::to_string(pixels_min) + " to " +
-           std::to_string(pixels_max);
+    return "got \"" + text + "\", allowed WIDTHxHEIGHT like 1280x720, each from " + std::to_string(pixels_min) +
+           " to " + std::to_string(pixels_max);
 }
 
 core::Result<Script> read_script(const std::string& path) {
@@ -63,7 +62,7 @@ core::Result<Script> read_script(const std::string& path) {
     std::error_code ignored;
     std::ifstream file;
     if (std::filesystem::is_directory(path, ignored)) {
-        errno = EISDIR; // a stream opens it, and throws when it is read
+        errno = EISDIR; // a stream would open a folder, and throw when it is read
     } else {
         file.open(path);
     }
@@ -85,13 +84,13 @@ Options::Size size_of(const Options& options, double scale) {
     return options.size.value_or(Options::Size{scaled(1280), scaled(720)});
 }
 
-Watch::Wanted wanted_of(const Options& options, double rate_hz) {
+WantedWorld wanted_of(const Options& options, double rate_hz) {
     return {.connection = options.connection,
             .world = options.world,
             .island = options.island,
             .rate_hz = rate_hz,
             .all_islands = options.all_islands,
-            .past_generation = options.past_generation};
+            .replay_generation = options.replay_generation};
 }
 
 std::variant<Options, int> parse_options(int argc, const char* const* argv) {
@@ -100,56 +99,57 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options::Record record;
     std::string server = "localhost", size;
     Command app{"evoview", "evoview: a window into an evolution laboratory.", "evoview " EVOD_VERSION};
-    app.footer(footer + std::string{"\n\nA script has these actions, one a line:\n"} + Script::reference());
-    const auto where = app.add_option("server,--server", &server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
+    app.footer(footer + std::string{"\n\nActions of a script, one per line:\n"} + Script::reference());
+    const auto where = app.add_option("server,--server", &server, "address of evod: HOST, HOST:PORT, [IPV6]:PORT")
                            .environment("EVOD_SERVER")
                            .show_default();
     core::Credentials credentials;
     add_options(app, credentials);
-    app.add_option("--world", &options.world, "the world to look at; else the only one, or \"default\"")
+    app.add_option("--world", &options.world, "the world to show; else the only one, or \"default\"")
         .environment("EVOD_WORLD");
-    app.add_option("--island", &options.island, "its island, from 0")
+    app.add_option("--island", &options.island, "the island to show, from 0")
         .show_default()
         .check(WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    app.add_flag("--all-islands", &options.all_islands, "all islands at once, as tiles");
-    app.add_option("--beside", &options.beside, "a second world, in the right half");
-    app.add_option("--past", &options.past_generation, "look at the past of the world, from this generation on")
+    app.add_flag("--all-islands", &options.all_islands, "show all islands as tiles");
+    app.add_option("--beside", &options.beside, "show a second world in the right half");
+    app.add_option("--past", &options.replay_generation, "replay the world's past from this generation")
         .check(WholeNumber{.min = 1});
-    app.add_option("--size", &size, "of the window or the pictures, in pixels; else 1280x720 times the scale");
-    app.add_option("--scale", &options.scale, "of text and widgets; else as the screen needs it, 1 for pictures")
+    app.add_option("--size", &size, "size of the window or image in pixels; else 1280x720 times the scale");
+    app.add_option("--scale", &options.scale, "scale of text and widgets; else chosen by the display, 1 for files")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
     const auto start = app.add_flag("--start", &options.start, "begin with the start screen");
     const auto script =
-        app.add_option("--script", &options.script_path, "file with actions to be carried out in the window");
+        app.add_option("--script", &options.script_path, "file with actions to carry out in the window");
     const auto shot =
-        app.add_option("--screenshot", &screenshot.path, "save one picture as this PNG file, open no window")
+        app.add_option("--screenshot", &screenshot.path, "save one frame as this PNG file, without a window")
             .excludes(start)
             .excludes(script);
-    app.add_option("--at-tick", &screenshot.tick, "of the first tick from this one on that the server shows")
+    app.add_option("--at-tick", &screenshot.tick, "take the screenshot at this tick or the first later one")
         .needs(shot)
         .check(WholeNumber{});
-    const auto film = app.add_option("--record", &record.path,
-                                     "save picture after picture, open no window: PNG files in this folder, or a film "
-                                     "by\nffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
-                          .excludes(shot)
-                          .excludes(start)
-                          .excludes(script);
-    app.add_option("--record-ticks", &record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
-        .needs(film)
+    const auto recording =
+        app.add_option("--record", &record.path,
+                       "save frame after frame, without a window: as PNG files in this folder, or as a "
+                       "film\nby ffmpeg if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
+            .excludes(shot)
+            .excludes(start)
+            .excludes(script);
+    app.add_option("--record-ticks", &record.ticks, "stop after this many ticks; else with the run, or Ctrl+C")
+        .needs(recording)
         .check(WholeNumber{});
-    app.add_option("--record-generations", &record.generations, "end when so many more generations have ended")
-        .needs(film)
+    app.add_option("--record-generations", &record.generations, "stop when this many more generations have ended")
+        .needs(recording)
         .check(WholeNumber{.min = 1});
-    app.add_option("--every", &record.every_ticks, "ticks from one picture to the next")
-        .needs(film)
+    app.add_option("--every", &record.every_ticks, "ticks from one frame to the next")
+        .needs(recording)
         .show_default()
         .check(WholeNumber{1, 1'000'000});
-    app.add_option("--fps", &record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
-        .needs(film)
+    app.add_option("--fps", &record.fps, "frames per second of a film; a tick is 1/60 s unless set otherwise")
+        .needs(recording)
         .show_default()
         .check(RealNumber{0.1, 1000});
     const auto timeout =
-        app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
+        app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot or a recorded frame")
             .show_default()
             .check(RealNumber{0, 1e6});
     if (const auto ended = app.parse(argc, argv)) {
@@ -166,7 +166,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         return app.reject(known.error().what);
     }
     if (timeout.is_given() && screenshot.path.empty() && record.path.empty()) {
-        return app.reject("--timeout: is of --screenshot and --record");
+        return app.reject("--timeout: requires --screenshot or --record");
     }
     if (!size.empty()) {
         if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {

@@ -17,7 +17,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t line_bytes_max = 300; // a name of 255 and a port
+constexpr std::size_t line_bytes_max = 300; // a name of 255 bytes and a port
 constexpr std::size_t lines_max = 100;
 
 } // namespace
@@ -27,7 +27,8 @@ std::optional<std::filesystem::path> RecentServers::default_file() {
         const char* value = std::getenv(variable);
         return value == nullptr ? "" : value;
     };
-    if (const auto state = from("XDG_STATE_HOME"); state.is_absolute()) { // a relative one is to be ignored
+    if (const auto state = from("XDG_STATE_HOME");
+        state.is_absolute()) { // by the XDG specification a relative path is ignored
         return state / "evod" / "recent_servers";
     }
     if (const auto home = from("HOME"); !home.empty()) {
@@ -55,13 +56,13 @@ void RecentServers::read() {
         const auto address = core::parse_endpoint(line.substr(0, line_bytes_max));
         const bool clean = std::ranges::all_of(line, [](unsigned char sign) { return std::isgraph(sign) != 0; });
         if (number > lines_max || line.size() > line_bytes_max || !clean || !address) {
-            problem_ = file_.string() + ":" + std::to_string(number) + ": this is no address; the file is left alone";
+            problem_ = file_.string() + ":" + std::to_string(number) + ": not an address; the file is not changed";
             return;
         }
         read.push_back(core::to_text(*address));
     }
     if (!in.eof()) {
-        problem_ = file_.string() + ": cannot be read; the servers of before are not listed";
+        problem_ = file_.string() + ": cannot be read; earlier servers are not listed";
         return;
     }
     read.resize(std::min(read.size(), kept_max));

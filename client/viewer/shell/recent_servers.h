@@ -1,9 +1,10 @@
-// RecentServers: the addresses that evoview was connected with, the last one first, kept in a file of the user's own:
+// RecentServers: the addresses of servers that evoview was connected to, the newest first, in the file
 // $XDG_STATE_HOME/evod/recent_servers, or ~/.local/state/evod/recent_servers.
 //
-// The file holds an address a line and nothing else: never a token. It is written whole, readable by its owner alone,
-// and takes the place of the one before in one step. A file that says anything else is left alone, and told of.
+// The file contains one address per line and never a token. Each write replaces it atomically; only its owner may read
+// it. A file with any other content is not overwritten, and problem() reports it.
 //
+// Owner        StartScreen.
 // Threads      none.
 #pragma once
 
@@ -20,25 +21,25 @@ class RecentServers {
   public:
     static constexpr std::size_t kept_max = 10;
 
-    /// Reads the file; one that is not there is empty.
+    /// Reads the file; a missing file is treated as empty.
     explicit RecentServers(std::filesystem::path file);
 
-    /// Where it is kept; nullopt if neither variable says.
+    /// The path of the file; nullopt if neither environment variable is set.
     static std::optional<std::filesystem::path> default_file();
 
     const std::vector<std::string>& addresses() const { return addresses_; }
 
-    /// Puts it in front, and writes the file.
+    /// Moves or adds the server to the front, and writes the file.
     void add(const core::Endpoint& server);
 
-    /// What a person has to know of the file; empty if all is well.
+    /// What is wrong with the file, as a sentence; empty if nothing is.
     const std::string& problem() const { return problem_; }
 
   private:
     void read();
     void write();
 
-    std::filesystem::path file_; // empty: they are not kept
+    std::filesystem::path file_; // empty: addresses are not saved
     std::vector<std::string> addresses_;
     std::string problem_;
 };

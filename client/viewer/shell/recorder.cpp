@@ -1,11 +1,11 @@
 #include "client/viewer/shell/recorder.h"
 
 #include "client/core/duration.h"
-#include "client/viewer/shell/film.h"
-#include "client/viewer/shell/waiting.h"
+#include "client/viewer/panes/window_renderer.h"
+#include "client/viewer/shell/frame_writer.h"
+#include "client/viewer/shell/snapshot_wait.h"
 #include "client/viewer/shell/window.h"
-#include "client/viewer/stage/stage.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <SFML/Window/Context.hpp>
 
@@ -24,129 +24,130 @@ namespace {
 
 using Clock = core::WorldView::Clock;
 
-constexpr double film_rate_hz = 60; // of pictures that come by themselves; the end of a step is shown at once
-constexpr std::chrono::seconds give_back_max{2};
+constexpr double snapshot_rate_hz =
+    60; // of snapshots of a world that is not stepped; the end of a step is sent at once
+constexpr std::chrono::seconds release_timeout{2};
 
 volatile std::sig_atomic_t interrupted = 0;
 
-bool is_over(const Watch& watch) {
-    return watch.control().state() == evod::v1::RUN_STATE_TERMINATED;
+bool is_over(const ViewedWorld& world) {
+    return world.feed.control().state() == evod::v1::RUN_STATE_TERMINATED;
 }
 
 class Recorder {
   public:
     Recorder(const Options& options, const Options::Record& wanted)
         : wanted_{wanted}
-        , scale_{options.scale.value_or(1)} // a film is on no screen
+        , scale_{options.scale.value_or(1)} // not shown on a display
         , size_{size_of(options, scale_)}
-        , film_{begin_film(wanted.path, size_.width, size_.height, wanted.fps)}
-        , panes_{wanted_of(options, film_rate_hz), options.beside} {}
+        , writer_{open_frame_writer(wanted.path, size_.width, size_.height, wanted.fps)}
+        , panes_{wanted_of(options, snapshot_rate_hz), options.beside} {}
 
     void run() {
-        if (wait_until([&] { return all_have_pictures(panes_); }, true)) {
+        if (wait_until([&] { return all_have_snapshots(panes_); }, true)) {
             try {
-                if (hold()) {
+                if (stop_worlds()) {
                     record_all();
                 }
             } catch (...) {
-                give_back();
+                release();
                 throw;
             }
-            give_back();
+            release();
         }
-        film_->finish();
-        std::cout << wanted_.path << ": " << film_->picture_count() << " pictures, ticks " << first_tick_ << " to "
+        writer_->finish();
+        std::cout << wanted_.path << ": " << writer_->frame_count() << " frames, ticks " << first_tick_ << " to "
                   << last_tick_ << '\n';
         if (missed_ticks_ > 0) {
-            std::cerr << "evoview: " << missed_ticks_ << " ticks in between were not shown: "
-                      << (leader().may_command() ? "somebody else ran the world meanwhile"
-                                                 : "a viewer cannot step the world")
+            std::cerr << "evoview: " << missed_ticks_ << " ticks in between were missed: "
+                      << (leader().commands.may_command() ? "another client ran the world meanwhile"
+                                                          : "a viewer cannot step the world")
                       << '\n';
         }
     }
 
   private:
-    /// The world that says when it is enough.
-    Watch& leader() { return panes_[0].watch; }
+    /// The world whose ticks and generations decide when the recording ends.
+    ViewedWorld& leader() { return panes_[0].world; }
 
     void record_all() {
-        const evod::v1::SnapshotFrame& first = leader().picture()->about;
+        const evod::v1::SnapshotFrame& first = leader().feed.snapshot()->about;
         first_tick_ = last_tick_ = first.tick();
         first_generation_ = first.generation();
         do {
             for (std::size_t i = 0; i < panes_.size(); ++i) {
                 if (was_reset(i)) {
-                    throw std::runtime_error{quoted(panes_[i].watch.control().world()) +
+                    throw std::runtime_error{quoted(panes_[i].world.feed.control().world()) +
                                              " was reset while it was recorded"};
                 }
             }
-            const evod::v1::SnapshotFrame& shown = leader().picture()->about;
+            const evod::v1::SnapshotFrame& shown = leader().feed.snapshot()->about;
             if (wanted_.generations && shown.generation() >= first_generation_ + *wanted_.generations) {
                 return;
             }
-            if (film_->picture_count() > 0 && shown.tick() == last_tick_) {
-                continue; // it ended where it stood
+            if (writer_->frame_count() > 0 && shown.tick() == last_tick_) {
+                continue; // the world ended at this tick
             }
-            if (film_->picture_count() > 0 && shown.tick() > last_tick_ + wanted_.every_ticks) {
+            if (writer_->frame_count() > 0 && shown.tick() > last_tick_ + wanted_.every_ticks) {
                 missed_ticks_ += shown.tick() - last_tick_ - wanted_.every_ticks;
             }
             last_tick_ = shown.tick();
-            film_->add(stage_.capture(
-                           panes_, {.width_pixels = size_.width, .height_pixels = size_.height, .now = Clock::now()}),
-                       last_tick_);
+            writer_->add(renderer_.capture(
+                             panes_, {.width_pixels = size_.width, .height_pixels = size_.height, .now = Clock::now()}),
+                         last_tick_);
             if (wanted_.ticks && last_tick_ >= first_tick_ + *wanted_.ticks) {
                 return;
             }
         } while (advance());
     }
 
-    /// Stops the worlds that are stepped where they are, so that no tick passes between the first picture and the next.
-    bool hold() {
+    /// Stops the worlds that will be stepped at their current tick, so that the second frame follows the first.
+    bool stop_worlds() {
         targets_.assign(panes_.size(), 0);
         for (std::size_t i = 0; i < panes_.size(); ++i) {
-            Watch& watch = panes_[i].watch;
-            run_ids_.push_back(watch.picture()->about.run_id());
-            if (watch.may_command() && !is_over(watch)) {
-                step(watch, watch.picture()->about.tick(), i);
+            ViewedWorld& world = panes_[i].world;
+            run_ids_.push_back(world.feed.snapshot()->about.run_id());
+            if (world.commands.may_command() && !is_over(world)) {
+                step(world, world.feed.snapshot()->about.tick(), i);
             }
         }
-        return wait_until([&] { return all_have_pictures(panes_) && all_arrived(); }, true);
+        return wait_until([&] { return all_have_snapshots(panes_) && all_arrived(); }, true);
     }
 
-    /// Brings every world on to its next picture. False: the leader has no further one, or the recording was ended.
+    /// Advances every world to its next frame. False: the leader has no further tick, or the recording was interrupted.
     bool advance() {
-        targets_.assign(panes_.size(), 0); // ticks to be waited for
+        targets_.assign(panes_.size(), 0); // ticks to wait for
         for (std::size_t i = 0; i < panes_.size(); ++i) {
-            Watch& watch = panes_[i].watch;
-            const std::uint64_t tick = watch.picture()->about.tick();
+            ViewedWorld& world = panes_[i].world;
+            const std::uint64_t tick = world.feed.snapshot()->about.tick();
             std::uint64_t target = tick + wanted_.every_ticks;
-            if (watch.replay() != nullptr && watch.may_command()) {
-                target = std::min(target, watch.replay()->last_tick());
+            if (world.replay.info() != nullptr && world.commands.may_command()) {
+                target = std::min(target, world.replay.info()->last_tick());
             }
-            if (is_over(watch) || target <= tick) {
+            if (is_over(world) || target <= tick) {
                 if (i == 0) {
                     return false;
                 }
-            } else if (watch.may_command()) {
-                step(watch, target, i);
+            } else if (world.commands.may_command()) {
+                step(world, target, i);
             } else if (i == 0) {
                 targets_[i] = target;
             }
         }
-        return wait_until([&] { return all_arrived(); }, leader().may_command());
+        return wait_until([&] { return all_arrived(); }, leader().commands.may_command());
     }
 
-    /// A tick that is over already only stops the world; where, is told by the answer.
-    void step(Watch& watch, std::uint64_t tick, std::size_t pane) {
+    /// Runs a world to a tick. A tick that is over only stops the world; the answer contains the tick where it stopped.
+    void step(ViewedWorld& world, std::uint64_t tick, std::size_t pane) {
         targets_[pane] = tick;
         evod::v1::Request request;
-        request.mutable_run_until_tick()->set_world(watch.control().world());
+        request.mutable_run_until_tick()->set_world(world.feed.control().world());
         request.mutable_run_until_tick()->set_tick(tick);
-        watch.ask(std::move(request), [this, &watch, pane](const core::Result<evod::v1::Response>& response) {
+        world.server.send(std::move(request), [this, &world, pane](const core::Result<evod::v1::Response>& response) {
             if (!response) {
                 refusal_ = response.error().what;
-            } else if (!core::accepted(*response) && !is_over(watch)) {
-                refusal_ = shown_refusal(response->status());
+            } else if (!core::accepted(*response) && !is_over(world)) {
+                refusal_ = refusal_text(response->status());
             } else {
                 targets_[pane] = std::max(targets_[pane], response->world().tick());
             }
@@ -154,25 +155,25 @@ class Recorder {
     }
 
     bool was_reset(std::size_t pane) {
-        const codec::DecodedSnapshot* picture = panes_[pane].watch.picture();
-        return picture != nullptr && picture->about.run_id() != run_ids_[pane];
+        const codec::DecodedSnapshot* snapshot = panes_[pane].world.feed.snapshot();
+        return snapshot != nullptr && snapshot->about.run_id() != run_ids_[pane];
     }
 
     bool all_arrived() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             const std::vector<Tile> tiles = panes_[i].tiles();
             const bool arrived = std::ranges::all_of(tiles, [&](const Tile& tile) {
-                const auto& picture = tile.view.latest();
-                return picture && picture->about.tick() >= targets_[i];
+                const auto& snapshot = tile.view.latest();
+                return snapshot && snapshot->about.tick() >= targets_[i];
             });
-            if (!arrived && !is_over(panes_[i].watch) && !was_reset(i)) {
+            if (!arrived && !is_over(panes_[i].world) && !was_reset(i)) {
                 return false;
             }
         }
         return true;
     }
 
-    /// False if the recording was ended meanwhile.
+    /// Waits until the condition holds. False: the recording was interrupted.
     template <class Condition>
     bool wait_until(Condition condition, bool limited) {
         const auto end = Clock::now() +
@@ -183,7 +184,7 @@ class Recorder {
                 return true;
             }
             for (std::size_t i = 0; i < panes_.size(); ++i) {
-                check_hope(panes_[i].watch);
+                check_reachable(panes_[i].world);
             }
             if (!refusal_.empty()) {
                 throw std::runtime_error{refusal_};
@@ -192,28 +193,29 @@ class Recorder {
                 return false;
             }
             if (limited && Clock::now() >= end) {
-                throw std::runtime_error{"no picture came within " + core::duration(wanted_.timeout_s) + ": " +
-                                         standing(leader())};
+                throw std::runtime_error{"no snapshot arrived within " + core::duration(wanted_.timeout_s) + ": " +
+                                         progress_text(leader())};
             }
-            std::this_thread::sleep_for(look_again);
+            std::this_thread::sleep_for(poll_interval);
         }
     }
 
-    /// A world that was only lent goes on at once, and not when its lease is over.
-    void give_back() {
+    /// Releases the leases, so that worlds that ran before run again at once and not when their leases expire.
+    void release() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
-            Watch& watch = panes_[i].watch;
-            if (watch.may_command() && watch.replay() == nullptr) {
+            ViewedWorld& world = panes_[i].world;
+            if (world.commands.may_command() && world.replay.info() == nullptr) {
                 evod::v1::Request request;
-                request.mutable_release_lease()->set_world(watch.control().world());
-                watch.ask(std::move(request), [](const auto&) {}); // without a lease there is nothing to give back
+                request.mutable_release_lease()->set_world(world.feed.control().world());
+                world.server.send(std::move(request),
+                                  [](const auto&) {}); // a refusal does not matter: there was no lease
             }
         }
-        const auto end = Clock::now() + give_back_max;
+        const auto end = Clock::now() + release_timeout;
         for (std::size_t i = 0; i < panes_.size(); ++i) {
-            while (!panes_[i].watch.all_answered() && Clock::now() < end) {
-                std::this_thread::sleep_for(look_again);
-                panes_[i].watch.update(Clock::now());
+            while (!panes_[i].world.all_answered() && Clock::now() < end) {
+                std::this_thread::sleep_for(poll_interval);
+                panes_[i].world.update(Clock::now());
             }
         }
     }
@@ -221,11 +223,11 @@ class Recorder {
     const Options::Record& wanted_;
     double scale_;
     Options::Size size_;
-    std::unique_ptr<Film> film_; // first: without a place for its pictures no world is touched
-    Stage stage_{scale_};
+    std::unique_ptr<FrameWriter> writer_; // before panes_: if it cannot be opened, no world is commanded
+    WindowRenderer renderer_{scale_};
     Panes panes_;
     std::vector<std::uint64_t> targets_;
-    std::vector<std::string> run_ids_; // of each pane's world
+    std::vector<std::string> run_ids_; // by pane
     std::string refusal_;
     std::uint64_t first_tick_ = 0, last_tick_ = 0, first_generation_ = 0, missed_ticks_ = 0;
 };

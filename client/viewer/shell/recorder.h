@@ -1,14 +1,15 @@
-// Record: picture after picture of worlds, in files, without a window.
+// Records worlds frame by frame into files, without a window.
 #pragma once
 
 #include "client/viewer/shell/options.h"
 
 namespace evod::viewer {
 
-/// Records until what was asked for is recorded, the run is over, or SIGINT or SIGTERM ends it. Worlds that may be
-/// commanded are stepped from picture to picture, so that none is missed, and given back at the end: one that ran is
-/// only lent and goes on. Of others pictures are taken as they come, and how many ticks were not shown is told on the
-/// error output. Throws std::runtime_error, with a sentence for a person, if that cannot be done.
+/// Records until the wanted ticks or generations are recorded, the run ends, or SIGINT or SIGTERM arrives.
+///
+/// Worlds that this session may command are stepped from frame to frame, so that no tick is missed. Their lease is
+/// released at the end, and worlds that ran before run again. Of other worlds the snapshots are drawn as they arrive, and
+/// standard error reports how many ticks were missed. Throws std::runtime_error, with one sentence, on failure.
 void record(const Options& options, const Options::Record& wanted);
 
 } // namespace evod::viewer

@@ -12,10 +12,10 @@ namespace evod::viewer {
 
 namespace {
 
-// The screen paces the window where it can; this is for where it cannot, and too short to miss a beat at 60 Hz.
+// Vertical sync paces the frames. This limit is for displays without it, and short enough not to miss a frame at 60 Hz.
 constexpr std::chrono::milliseconds frame_min{15};
 
-// Widgets answer in the frame in which they are given an event; what that opens is there in the next.
+// Widgets react in the frame after an event; what the reaction opens appears in the next frame.
 constexpr unsigned settled_frames = 2;
 
 } // namespace
@@ -24,23 +24,24 @@ sf::ContextSettings context_settings() {
     return sf::ContextSettings{0, 0, 0, 3, 3, sf::ContextSettings::Core};
 }
 
-/// What a script has hands on.
-class Screen::Hands : public Script::Host {
+/// The window as a script acts on it.
+class Screen::ScriptHost : public Script::Host {
   public:
-    Hands(Screen& screen, const Watch* watch, const Stage::Frame& frame, const std::function<void()>& draw)
-        : screen_{screen}, watch_{watch}, frame_{frame}, draw_{draw} {}
+    ScriptHost(Screen& screen, const ViewedWorld* world, const WindowRenderer::Frame& frame,
+               const std::function<void()>& draw)
+        : screen_{screen}, world_{world}, frame_{frame}, draw_{draw} {}
 
-    void send(const sf::Event& event) override { screen_.played_.push_back(event); }
+    void send(const sf::Event& event) override { screen_.script_events_.push_back(event); }
     std::optional<Point> find(const std::string& widget) const override {
-        return screen_.stage_.gui().spots().find(widget);
+        return screen_.renderer_.gui().spots().find(widget);
     }
     const std::vector<std::string>* choices(const std::string& widget) const override {
-        return screen_.stage_.gui().spots().choices(widget);
+        return screen_.renderer_.gui().spots().choices(widget);
     }
-    const Watch* watched() const override { return watch_; }
+    const ViewedWorld* world() const override { return world_; }
     std::string save(const std::string& path) override {
         try {
-            write_file(path, png_of(screen_.stage_.capture(frame_, draw_)));
+            write_file(path, png_of(screen_.renderer_.capture(frame_, draw_)));
         } catch (const std::runtime_error& error) {
             return error.what();
         }
@@ -50,8 +51,8 @@ class Screen::Hands : public Script::Host {
 
   private:
     Screen& screen_;
-    const Watch* watch_;
-    const Stage::Frame& frame_;
+    const ViewedWorld* world_;
+    const WindowRenderer::Frame& frame_;
     const std::function<void()>& draw_;
 };
 
@@ -69,7 +70,7 @@ sf::VideoMode mode_of(const Options& options) {
     return {size.width, size.height};
 }
 
-/// Where no window manager does it, puts the window in the middle of the desktop: SFML puts it lower.
+/// Without a window manager, moves the window to the middle of the desktop; SFML places it lower.
 void place(sf::Window& window) {
     const auto whole = desktop();
     if (!whole || whole->managed) {
@@ -84,7 +85,7 @@ void place(sf::Window& window) {
 
 Screen::Screen(const Options& options)
     : window_{mode_of(options), "evoview", sf::Style::Default, context_settings()}
-    , stage_{scale_of(options)}
+    , renderer_{scale_of(options)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
     place(window_);
@@ -92,36 +93,36 @@ Screen::Screen(const Options& options)
 }
 
 bool Screen::poll(sf::Event& event) {
-    if (!played_.empty()) {
-        event = played_.front();
-        played_.pop_front();
+    if (!script_events_.empty()) {
+        event = script_events_.front();
+        script_events_.pop_front();
     } else if (!window_.pollEvent(event)) {
         return false;
     }
-    stage_.gui().handle(event);
+    renderer_.gui().handle(event);
     return true;
 }
 
-Stage::Frame Screen::frame(Clock::time_point now) const {
+WindowRenderer::Frame Screen::frame(Clock::time_point now) const {
     const sf::Vector2u size = window_.getSize();
     return {
         .width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now, .interactive = true};
 }
 
-void Screen::show(const Watch* watch, const Stage::Frame& frame, const std::function<void()>& draw) {
+void Screen::show(const ViewedWorld* world, const WindowRenderer::Frame& frame, const std::function<void()>& draw) {
     draw();
     window_.display();
-    Hands hands{*this, watch, frame, draw};
-    advance_script(hands, frame.now);
+    ScriptHost host{*this, world, frame, draw};
+    advance_script(host, frame.now);
     std::this_thread::sleep_until(frame.now + frame_min);
 }
 
-void Screen::advance_script(Hands& hands, Clock::time_point now) {
-    settled_count_ = played_.empty() && stage_.gui().settled() ? settled_count_ + 1 : 0;
+void Screen::advance_script(ScriptHost& host, Clock::time_point now) {
+    settled_count_ = script_events_.empty() && renderer_.gui().settled() ? settled_count_ + 1 : 0;
     if (script_.done() || settled_count_ < settled_frames) {
         return;
     }
-    if (const auto advanced = script_.advance(hands, now); !advanced) {
+    if (const auto advanced = script_.advance(host, now); !advanced) {
         throw std::runtime_error{script_path_ + ":" + advanced.error().what};
     }
 }

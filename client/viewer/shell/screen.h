@@ -1,13 +1,13 @@
-// Screen: the window on the desktop and what draws in it, for as long as evoview runs. The start screen and the worlds
-// take turns in it. Events come from here: a script's as well as a person's.
+// Screen: the window on the desktop and the renderer that draws in it, from the start of evoview to its end. It shows the
+// start screen or worlds. It is the source of events, those of a script and those of a person.
 //
 // Owner        run().
 // Threads      used by the thread that made it.
 #pragma once
 
+#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/script.h"
-#include "client/viewer/stage/stage.h"
 
 #include <SFML/Window/ContextSettings.hpp>
 #include <SFML/Window/Window.hpp>
@@ -18,7 +18,7 @@
 
 namespace evod::viewer {
 
-/// What the drawing needs.
+/// The OpenGL version that drawing needs.
 sf::ContextSettings context_settings();
 
 class Screen {
@@ -28,32 +28,32 @@ class Screen {
     /// Throws std::runtime_error if the window cannot be opened.
     explicit Screen(const Options& options);
 
-    /// The next event. The stage's widgets have been given it.
+    /// Takes the next event and passes it to the widgets.
     bool poll(sf::Event& event);
 
-    /// The window as it is, to be drawn at this moment.
-    Stage::Frame frame(Clock::time_point now) const;
+    /// A frame of the window's current size, for drawing at this time.
+    WindowRenderer::Frame frame(Clock::time_point now) const;
 
-    /// Draws, shows it, takes the script a step further, and waits for the next frame.
+    /// Draws and shows a frame, runs the next step of the script, and waits until the next frame is due.
     ///
-    /// watch   null: nothing is watched
-    /// draw    what there is to be drawn; called again for a screenshot
-    /// Throws std::runtime_error if the script cannot go on; it names the line.
-    void show(const Watch* watch, const Stage::Frame& frame, const std::function<void()>& draw);
+    /// world   null: the start screen is shown
+    /// draw    draws the frame; called again for a screenshot
+    /// Throws std::runtime_error, with the line, if a step of the script fails.
+    void show(const ViewedWorld* world, const WindowRenderer::Frame& frame, const std::function<void()>& draw);
 
     sf::Window& window() { return window_; }
-    Stage& stage() { return stage_; }
+    WindowRenderer& renderer() { return renderer_; }
 
   private:
-    class Hands;
-    void advance_script(Hands& hands, Clock::time_point now);
+    class ScriptHost;
+    void advance_script(ScriptHost& host, Clock::time_point now);
 
     sf::Window window_;
-    Stage stage_; // after the window, whose OpenGL it needs
+    WindowRenderer renderer_; // after window_, whose OpenGL context it needs
     Script script_;
     std::string script_path_;
-    std::deque<sf::Event> played_;
-    unsigned settled_count_ = 0; // frames since the last event was given to the widgets
+    std::deque<sf::Event> script_events_;
+    unsigned settled_count_ = 0; // frames since the last event of the script
 };
 
 } // namespace evod::viewer

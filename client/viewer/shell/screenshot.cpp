@@ -2,10 +2,10 @@
 
 #include "client/core/duration.h"
 #include "client/viewer/drawing/png.h"
+#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/screen.h"
-#include "client/viewer/shell/waiting.h"
-#include "client/viewer/stage/stage.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/shell/snapshot_wait.h"
+#include "client/viewer/world/status_text.h"
 
 #include <SFML/Window/Context.hpp>
 
@@ -19,13 +19,14 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr double screenshot_rate_hz = 60; // of pictures: a later tick than was asked for is shown as little as possible
+constexpr double screenshot_rate_hz =
+    60; // of snapshots; high, so that the tick of the screenshot is close to the wanted one
 
-/// Throws if the picture will never come.
-void check_hope(const Watch& watch, std::uint64_t tick) {
-    check_hope(watch);
-    if (watch.control().state() == evod::v1::RUN_STATE_TERMINATED && watch.control().tick() < tick) {
-        throw std::runtime_error{standing(watch) + ", before tick " + std::to_string(tick)};
+/// Throws if the snapshot will never arrive.
+void check_reachable(const ViewedWorld& world, std::uint64_t tick) {
+    check_reachable(world);
+    if (world.feed.control().state() == evod::v1::RUN_STATE_TERMINATED && world.feed.control().tick() < tick) {
+        throw std::runtime_error{progress_text(world) + ", before tick " + std::to_string(tick)};
     }
 }
 
@@ -36,41 +37,41 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};
-    const double scale = options.scale.value_or(1); // a file is on no screen
-    Stage stage{scale};
+    const double scale = options.scale.value_or(1); // not shown on a display
+    WindowRenderer renderer{scale};
     Panes panes{wanted_of(options, screenshot_rate_hz), options.beside};
-    bool told = false;
-    const auto late = [&]() -> const Watch* { // a world that is not there yet
-        const bool all = all_have_pictures(panes);
+    bool reported = false;
+    const auto late = [&]() -> const ViewedWorld* { // a world whose snapshot has not arrived
+        const bool all = all_have_snapshots(panes);
         for (std::size_t i = 0; i < panes.size(); ++i) {
             for (const Tile& tile : panes[i].tiles()) {
                 if (!tile.view.latest() || tile.view.latest()->about.tick() < screenshot.tick) {
-                    return &panes[i].watch;
+                    return &panes[i].world;
                 }
             }
         }
-        return all ? nullptr : &panes[0].watch;
+        return all ? nullptr : &panes[0].world;
     };
-    while (const Watch* watch = late()) {
+    while (const ViewedWorld* world = late()) {
         for (std::size_t i = 0; i < panes.size(); ++i) {
-            check_hope(panes[i].watch, screenshot.tick);
+            check_reachable(panes[i].world, screenshot.tick);
         }
-        const auto state = watch->control().state();
-        if (!told && (state == evod::v1::RUN_STATE_WAITING || state == evod::v1::RUN_STATE_PAUSED) &&
-            watch->control().tick() < screenshot.tick) {
-            std::cerr << "evoview: " << standing(*watch) << "; waiting for somebody to run it\n";
-            told = true;
+        const auto state = world->feed.control().state();
+        if (!reported && (state == evod::v1::RUN_STATE_WAITING || state == evod::v1::RUN_STATE_PAUSED) &&
+            world->feed.control().tick() < screenshot.tick) {
+            std::cerr << "evoview: " << progress_text(*world) << "; waiting until a client runs it\n";
+            reported = true;
         }
         if (Clock::now() >= end) {
-            throw std::runtime_error{"no picture of tick " + std::to_string(screenshot.tick) + " came within " +
-                                     core::duration(screenshot.timeout_s) + ": " + standing(*watch)};
+            throw std::runtime_error{"no snapshot of tick " + std::to_string(screenshot.tick) + " arrived within " +
+                                     core::duration(screenshot.timeout_s) + ": " + progress_text(*world)};
         }
-        std::this_thread::sleep_for(look_again);
+        std::this_thread::sleep_for(poll_interval);
     }
     const Options::Size size = size_of(options, scale);
-    const Stage::Frame frame{.width_pixels = size.width, .height_pixels = size.height, .now = Clock::now()};
-    write_file(screenshot.path, png_of(stage.capture(panes, frame)));
-    const auto& about = panes[0].watch.picture()->about;
+    const WindowRenderer::Frame frame{.width_pixels = size.width, .height_pixels = size.height, .now = Clock::now()};
+    write_file(screenshot.path, png_of(renderer.capture(panes, frame)));
+    const auto& about = panes[0].world.feed.snapshot()->about;
     std::cout << screenshot.path << ": " << quoted(about.world()) << " at tick " << about.tick() << '\n';
 }
 

@@ -1,12 +1,13 @@
-// Screenshot: one picture of a world in a file, without a window.
+// Saves one frame of a world as a PNG file, without a window.
 #pragma once
 
 #include "client/viewer/shell/options.h"
 
 namespace evod::viewer {
 
-/// Waits for the picture and saves it. Sends no command; if the world stands still before the tick, says so on the
-/// error output and waits on. Throws std::runtime_error, with a sentence for a person, if the picture cannot be had.
+/// Waits for a snapshot of the wanted tick or a later one, draws it and saves the frame. Sends no command; if the world
+/// is stopped before the tick, standard error says so, and the wait continues. Throws std::runtime_error, with one
+/// sentence, on failure.
 void take_screenshot(const Options& options, const Options::Screenshot& screenshot);
 
 } // namespace evod::viewer

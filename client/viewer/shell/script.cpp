@@ -1,6 +1,6 @@
 #include "client/viewer/shell/script.h"
 
-#include "client/viewer/watch/watch.h"
+#include "client/viewer/world/viewed_world.h"
 
 #include <SFML/System/String.hpp>
 
@@ -19,7 +19,7 @@ using Key = sf::Keyboard;
 using Host = Script::Host;
 using Acts = std::vector<Script::Act>;
 
-constexpr double patience_s_first = 60, patience_s_max = 86'400;
+constexpr double timeout_s_default = 60, timeout_s_max = 86'400;
 
 core::Error usage(std::string what) {
     return {.kind = core::Error::Kind::Usage, .what = std::move(what)};
@@ -40,7 +40,7 @@ std::string in_order(const std::vector<std::string>& names) {
 
 // ---- words -----------------------------------------------------------------------------------------------------
 
-/// The words of a line; those in quotes without them. Refused if a quote is not closed.
+/// The words of a line, without quotes. An error if a quote is not closed.
 core::Result<std::vector<std::string>> words_of(std::string_view line) {
     std::vector<std::string> words;
     for (std::size_t i = 0; i < line.size();) {
@@ -51,7 +51,7 @@ core::Result<std::vector<std::string>> words_of(std::string_view line) {
         } else if (line[i] == '"') {
             const std::size_t end = line.find('"', i + 1);
             if (end == std::string_view::npos) {
-                return usage("word " + std::to_string(words.size() + 1) + ": its quote is not closed");
+                return usage("word " + std::to_string(words.size() + 1) + ": the quote is not closed");
             }
             words.emplace_back(line.substr(i + 1, end - i - 1));
             i = end + 1;
@@ -104,7 +104,7 @@ struct Chord {
     bool control = false, shift = false, alt = false;
 };
 
-/// "F4", "Ctrl+A", "+"; nullopt if there is no such key.
+/// Parses "F4", "Ctrl+A", "+"; nullopt if there is no such key.
 std::optional<Chord> parse_chord(std::string_view text) {
     Chord chord;
     const auto take = [&](std::string_view modifier) {
@@ -193,8 +193,8 @@ Script::Act type_act(std::string text) {
 
 // ---- mouse -----------------------------------------------------------------------------------------------------
 
-/// Moves the mouse to a widget; false if that is not on the screen.
-bool go_to(Host& host, const std::string& widget) {
+/// Moves the mouse to a widget; false if the widget is not on the screen.
+bool move_to(Host& host, const std::string& widget) {
     const auto place = host.find(widget);
     if (place) {
         sf::Event event{};
@@ -205,7 +205,7 @@ bool go_to(Host& host, const std::string& widget) {
     return place.has_value();
 }
 
-/// Presses and releases the left button on a widget; false if that is not on the screen.
+/// Presses and releases the left button on a widget; false if the widget is not on the screen.
 bool click_on(Host& host, const std::string& widget, bool with_control) {
     const auto place = host.find(widget);
     if (!place) {
@@ -227,38 +227,38 @@ bool click_on(Host& host, const std::string& widget, bool with_control) {
     return true;
 }
 
-/// Goes there, and in a step of its own, when that has been seen, presses and releases.
+/// Moves the mouse there, and clicks in a second step, after a frame has shown the mouse there.
 Acts click_acts(const std::string& widget) {
-    return {[widget](Host& host) -> core::Result<bool> { return go_to(host, widget); },
+    return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
             [widget](Host& host) -> core::Result<bool> { return click_on(host, widget, false); }};
 }
 
-/// Types a text into a field, in place of what it says; of a drop-down, opens it and clicks on what has this text.
+/// Replaces the text of a field; opens a drop-down and clicks on the choice with this text.
 Acts set_acts(const std::string& widget, const std::string& text) {
     const std::string choice = widget + ": " + text;
-    // Whether it is a drop-down is seen when it is clicked: what is chosen may take it away.
-    const auto drops_down = std::make_shared<bool>(false);
-    return {[widget](Host& host) -> core::Result<bool> { return go_to(host, widget); },
-            [widget, drops_down](Host& host) -> core::Result<bool> {
-                *drops_down = host.choices(widget) != nullptr;
-                return click_on(host, widget, !*drops_down);
+    // The kind of widget is looked up at the click: a choice may remove the drop-down from the screen.
+    const auto is_drop_down = std::make_shared<bool>(false);
+    return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
+            [widget, is_drop_down](Host& host) -> core::Result<bool> {
+                *is_drop_down = host.choices(widget) != nullptr;
+                return click_on(host, widget, !*is_drop_down);
             },
-            [choice, drops_down](Host& host) -> core::Result<bool> {
-                if (*drops_down) {
-                    return go_to(host, choice);
+            [choice, is_drop_down](Host& host) -> core::Result<bool> {
+                if (*is_drop_down) {
+                    return move_to(host, choice);
                 }
                 press(host, {.key = Key::A, .control = true});
                 return true;
             },
-            [choice, text, drops_down](Host& host) -> core::Result<bool> {
-                if (*drops_down) {
+            [choice, text, is_drop_down](Host& host) -> core::Result<bool> {
+                if (*is_drop_down) {
                     return click_on(host, choice, false);
                 }
                 send_text(host, text);
                 return true;
             },
-            [drops_down](Host& host) -> core::Result<bool> {
-                if (!*drops_down) {
+            [is_drop_down](Host& host) -> core::Result<bool> {
+                if (!*is_drop_down) {
                     press(host, {.key = Key::Enter});
                 }
                 return true;
@@ -267,9 +267,9 @@ Acts set_acts(const std::string& widget, const std::string& text) {
 
 // ---- conditions ------------------------------------------------------------------------------------------------
 
-const evod::v1::SnapshotFrame* picture_of(const Host& host) {
-    const Watch* watch = host.watched();
-    return watch != nullptr && watch->picture() != nullptr ? &watch->picture()->about : nullptr;
+const evod::v1::SnapshotFrame* snapshot_of(const Host& host) {
+    const ViewedWorld* world = host.world();
+    return world != nullptr && world->feed.snapshot() != nullptr ? &world->feed.snapshot()->about : nullptr;
 }
 
 constexpr std::pair<std::string_view, evod::v1::RunState> state_names[] = {
@@ -289,9 +289,9 @@ std::string allowed_states() {
 
 struct Condition {
     std::string_view name;
-    std::string_view argument; // empty: takes none
+    std::string_view argument; // empty: none
     std::string_view meaning;
-    /// What is allowed, if the word is not; else nothing.
+    /// Returns what is allowed if the word is invalid; else an empty text.
     std::string (*fault)(const std::string& word);
     bool (*holds)(const Host& host, const std::string& word);
 };
@@ -308,22 +308,22 @@ std::string state_fault(const std::string& word) {
 }
 
 const Condition conditions[] = {
-    {"connected", "", "a server is watched, and has answered everything", no_fault,
-     [](const Host& host, const std::string&) { return host.watched() != nullptr && host.watched()->all_answered(); }},
-    {"picture", "", "a picture of the world is shown", no_fault,
-     [](const Host& host, const std::string&) { return picture_of(host) != nullptr; }},
+    {"connected", "", "connected, and the server has answered every request", no_fault,
+     [](const Host& host, const std::string&) { return host.world() != nullptr && host.world()->all_answered(); }},
+    {"snapshot", "", "a snapshot of the world is shown", no_fault,
+     [](const Host& host, const std::string&) { return snapshot_of(host) != nullptr; }},
     {"generation", "N", "this generation or a later one is shown", number_fault,
      [](const Host& host, const std::string& word) {
-         return picture_of(host) != nullptr && picture_of(host)->generation() >= *number_in<std::uint64_t>(word);
+         return snapshot_of(host) != nullptr && snapshot_of(host)->generation() >= *number_in<std::uint64_t>(word);
      }},
     {"tick", "N", "this tick or a later one is shown", number_fault,
      [](const Host& host, const std::string& word) {
-         return picture_of(host) != nullptr && picture_of(host)->tick() >= *number_in<std::uint64_t>(word);
+         return snapshot_of(host) != nullptr && snapshot_of(host)->tick() >= *number_in<std::uint64_t>(word);
      }},
     {"state", "STATE", "the world is waiting, running, paused or ended", state_fault,
      [](const Host& host, const std::string& word) {
          const auto* named = std::ranges::find(state_names, word, [](const auto& pair) { return pair.first; });
-         return host.watched() != nullptr && host.watched()->control().state() == named->second;
+         return host.world() != nullptr && host.world()->feed.control().state() == named->second;
      }},
     {"widget", "NAME", "the widget is on the screen", no_fault,
      [](const Host& host, const std::string& word) { return host.find(word).has_value(); }},
@@ -342,26 +342,27 @@ std::string condition_names() {
 // ---- verbs -----------------------------------------------------------------------------------------------------
 
 struct ScriptLine {
-    std::vector<std::string> words; // the verb is the first
-    double patience_s;              // from here on; a verb may change it
+    std::vector<std::string> words; // the first is the verb
+    double timeout_s;               // of this and the next lines; a verb may change it
 };
 
-/// What is wrong with a word of a line, counted from 1.
+/// An error about a word of a line. `number` counts from 1.
 core::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
-    return usage("word " + std::to_string(number) + ": " + in_quotes(line.words[number - 1]) + "; allowed: " + allowed);
+    return usage("word " + std::to_string(number) + ": got " + in_quotes(line.words[number - 1]) + ", allowed " +
+                 allowed);
 }
 
 struct Verb {
     std::string_view name;
-    std::string_view words; // after it, in capitals
+    std::string_view words; // the arguments, in capitals
     std::string_view meaning;
     std::size_t words_min, words_max; // the verb not counted
     core::Result<Acts> (*parse)(ScriptLine& line);
 };
 
 const Verb verbs[] = {
-    {"key", "NAME", "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, …, a sign; with Ctrl+, Shift+, Alt+",
-     1, 1,
+    {"key", "NAME",
+     "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, … or a sign; also with Ctrl+, Shift+, Alt+", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto chord = parse_chord(line.words[1]);
          if (!chord) {
@@ -371,12 +372,11 @@ const Verb verbs[] = {
      }},
     {"type", "TEXT", "types into the field that has the keyboard", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return Acts{type_act(line.words[1])}; }},
-    {"click", "NAME", "clicks on a widget, by what stands on it or beside it", 1, 1,
+    {"click", "NAME", "clicks on a widget, named by the text on it or beside it", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return click_acts(line.words[1]); }},
-    {"set", "NAME TEXT",
-     "types a value into a field or slider, in place of what it says, and Enter; chooses it from a drop-down", 2, 2,
+    {"set", "NAME TEXT", "replaces the value of a field or slider and presses Enter; chooses from a drop-down", 2, 2,
      [](ScriptLine& line) -> core::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
-    {"wait", "CONDITION", "waits until that holds", 1, 2,
+    {"wait", "CONDITION", "waits until the condition holds", 1, 2,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
          if (condition == std::end(conditions)) {
@@ -395,13 +395,13 @@ const Verb verbs[] = {
          }
          return Acts{[condition, word](Host& host) -> core::Result<bool> { return condition->holds(host, word); }};
      }},
-    {"timeout", "SECONDS", "how long each of the next lines may take; 60 at first", 1, 1,
+    {"timeout", "SECONDS", "sets how long each of the next lines may take; 60 by default", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto seconds = number_in<double>(line.words[1]);
-         if (!seconds || !(*seconds > 0 && *seconds <= patience_s_max)) {
+         if (!seconds || !(*seconds > 0 && *seconds <= timeout_s_max)) {
              return bad_word(line, 2, "more than 0, to 86400");
          }
-         line.patience_s = *seconds;
+         line.timeout_s = *seconds;
          return Acts{};
      }},
     {"screenshot", "FILE", "saves the window as PNG", 1, 1,
@@ -441,7 +441,7 @@ core::Result<Acts> acts_of(ScriptLine& line) {
                      std::string{verb->words});
     }
     if (count > verb->words_max) {
-        return bad_word(line, verb->words_max + 2, "no more words (a word with spaces stands in quotes)");
+        return bad_word(line, verb->words_max + 2, "no more words (put a word with spaces in quotes)");
     }
     return verb->parse(line);
 }
@@ -450,7 +450,7 @@ core::Result<Acts> acts_of(ScriptLine& line) {
 
 core::Result<Script> Script::parse(std::string_view text) {
     Script script;
-    double patience_s = patience_s_first;
+    double timeout_s = timeout_s_default;
     unsigned number = 0;
     while (!text.empty()) {
         ++number;
@@ -461,17 +461,17 @@ core::Result<Script> Script::parse(std::string_view text) {
         if (words && words->empty()) {
             continue;
         }
-        ScriptLine line{.words = words ? *std::move(words) : std::vector<std::string>{}, .patience_s = patience_s};
+        ScriptLine line{.words = words ? *std::move(words) : std::vector<std::string>{}, .timeout_s = timeout_s};
         auto acts = words ? acts_of(line) : core::Result<Acts>{words.error()};
         if (!acts) {
             return usage(std::to_string(number) + ": " + acts.error().what);
         }
-        patience_s = line.patience_s;
+        timeout_s = line.timeout_s;
         for (Act& act : *acts) {
             script.steps_.push_back({.line = number,
                                      .text = std::string{whole},
                                      .drop_down = line.words[0] == "set" ? line.words[1] : "",
-                                     .patience = std::chrono::duration<double>{patience_s},
+                                     .timeout = std::chrono::duration<double>{timeout_s},
                                      .act = std::move(act)});
         }
     }
@@ -495,9 +495,9 @@ core::Result<void> Script::advance(Host& host, Clock::time_point now) {
     }
     if (!waiting_since_) {
         waiting_since_ = now;
-    } else if (now - *waiting_since_ > step.patience) {
-        std::string what = place() + "it did not come to that within " +
-                           std::to_string(static_cast<long long>(step.patience.count())) + " s";
+    } else if (now - *waiting_since_ > step.timeout) {
+        std::string what =
+            place() + "not done within " + std::to_string(static_cast<long long>(step.timeout.count())) + " s";
         if (const auto* choices = host.choices(step.drop_down); choices != nullptr && !choices->empty()) {
             what += "; " + in_quotes(step.drop_down) + " offers " + in_order(*choices);
         }

@@ -1,7 +1,6 @@
-// Script: what a person would do at the window, as a text of actions, one a line. For tests, and for pictures that can
-// be made again.
+// Script: actions of a person at the window as a text, one per line, for tests and for reproducible screenshots.
 //
-//     # sets a chance, looks at what comes of it
+//     # changes a parameter and saves the window in generation 2
 //     wait connected
 //     key F4
 //     set Search mutation_chance
@@ -11,10 +10,10 @@
 //     screenshot out.png
 //     quit
 //
-// A line is a verb and its words; a word with spaces stands in double quotes. A line waits until it can be done: a
-// click for its widget to be on the screen. Verbs and conditions are tables in script.cpp.
+// A line is a verb and its arguments; an argument with spaces is put in double quotes. A line waits until it can be
+// carried out: a click waits for its widget to be on the screen. script.cpp has tables of the verbs and conditions.
 //
-// Owner        the screen, which carries out one step at a time, when what the one before did has been drawn.
+// Owner        Screen, which carries out one step at a time, after the effect of the step before has been drawn.
 // Threads      none.
 #pragma once
 
@@ -33,51 +32,51 @@
 
 namespace evod::viewer {
 
-class Watch;
+class ViewedWorld;
 
 class Script {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// What a script sees, and has hands on.
+    /// The window as a script acts on it.
     class Host {
       public:
         virtual ~Host() = default;
-        /// As if a person had done it.
+        /// Adds an event, as if a person had caused it.
         virtual void send(const sf::Event& event) = 0;
-        /// The middle of a widget, by the name that it was marked with.
+        /// The centre of a widget, by the name given to widgets::mark().
         virtual std::optional<Point> find(const std::string& widget) const = 0;
-        /// What a drop-down offers, by the name that it was marked with, each marked "drop-down: choice"; nothing while
-        /// it is closed, and null if it is no drop-down.
+        /// The choices of a drop-down, by its name; each choice is marked "drop-down: choice". Empty while it is closed;
+        /// null if the widget is not a drop-down.
         virtual const std::vector<std::string>* choices(const std::string& widget) const = 0;
-        /// Null while nothing is watched.
-        virtual const Watch* watched() const = 0;
-        /// Saves what is shown; says why it cannot, or nothing.
+        /// Null while the start screen is shown.
+        virtual const ViewedWorld* world() const = 0;
+        /// Saves the window as PNG. Returns why it could not, or an empty text.
         virtual std::string save(const std::string& path) = 0;
         virtual void close() = 0;
     };
 
-    /// Refused, with line and word, if there is anything in it that cannot be understood: '3: word 2: "generaton": …'.
+    /// An error contains line and word: '3: word 2: got "generaton", allowed …'.
     static core::Result<Script> parse(std::string_view text);
 
     bool done() const { return steps_.empty(); }
 
-    /// Carries out the next step, or finds that it has to wait. Refused, with its line, when that takes too long or
-    /// cannot be done.
+    /// Carries out the next step, or waits until it can be. An error contains the line of a step that failed or took too
+    /// long.
     core::Result<void> advance(Host& host, Clock::time_point now);
 
-    /// Each verb with its words and what it does, a line each, for the documentation.
+    /// The verbs and conditions with their arguments and meaning, one per line, for the documentation.
     static std::string reference();
 
-    /// True when it is done, false if it has to wait.
+    /// Returns true when done, false if it has to wait.
     using Act = std::function<core::Result<bool>(Host&)>;
 
   private:
     struct Step {
         unsigned line;
-        std::string text;      // of the line
-        std::string drop_down; // that something is chosen from, if it is one; empty: none
-        std::chrono::duration<double> patience;
+        std::string text;      // the whole line
+        std::string drop_down; // the widget that is set; empty: none
+        std::chrono::duration<double> timeout;
         Act act;
     };
 

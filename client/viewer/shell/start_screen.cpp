@@ -20,14 +20,14 @@ void put(std::array<char, size>& field, const std::string& text) {
 
 } // namespace
 
-StartScreen::StartScreen(Screen& screen, const core::Options& begin_with)
+StartScreen::StartScreen(Screen& screen, const core::Options& initial)
     : screen_{screen}
-    , options_{begin_with}
+    , options_{initial}
     , recent_{RecentServers::default_file().value_or(std::filesystem::path{})}
-    , tls_{begin_with.tls.has_value()} {
-    put(address_, core::to_text(begin_with.server));
-    put(token_, begin_with.token);
-    put(ca_, begin_with.tls ? begin_with.tls->ca : "");
+    , tls_{initial.tls.has_value()} {
+    put(address_, core::to_text(initial.server));
+    put(token_, initial.token);
+    put(ca_, initial.tls ? initial.tls->ca : "");
 }
 
 void StartScreen::remember(const core::Endpoint& server) {
@@ -46,8 +46,8 @@ std::optional<core::Options> StartScreen::run() {
             window.close();
             break;
         }
-        const Stage::Frame frame = screen_.frame(Screen::Clock::now());
-        screen_.show(nullptr, frame, [&] { screen_.stage().draw([&](const Gui& gui) { build(gui); }, frame); });
+        const WindowRenderer::Frame frame = screen_.frame(Screen::Clock::now());
+        screen_.show(nullptr, frame, [&] { screen_.renderer().draw([&](const Gui& gui) { build(gui); }, frame); });
     }
     return chosen_;
 }
@@ -66,7 +66,7 @@ void StartScreen::build(const Gui& gui) {
     ImGui::PushFont(&gui.title());
     ImGui::TextUnformatted("evoview");
     ImGui::PopFont();
-    widgets::say("A window into an evolution laboratory. Where is the server?");
+    widgets::say("A window into an evolution laboratory. Which server?");
     ImGui::Dummy({0, 6 * scale});
     if (!reason_.empty()) {
         widgets::say(reason_, palette::warning);
@@ -108,16 +108,16 @@ bool StartScreen::build_fields(const Gui& gui) {
     entered |= ImGui::InputTextWithHint("##token", "none", token_.data(), token_.size(),
                                         on_enter | ImGuiInputTextFlags_Password);
     widgets::mark("Token");
-    widgets::explain("Who you come as: the server's admin hands it out. It is sent to the server and kept nowhere.");
+    widgets::explain("Identifies you; the server's administrator issues it. It is sent to the server and not saved.");
     label("");
     ImGui::Checkbox("TLS", &tls_);
     widgets::mark("TLS");
-    widgets::explain("Encrypts the line, and checks that it is that server.");
+    widgets::explain("Encrypts the connection and checks the server's identity.");
     if (tls_) {
         label("CA file");
-        entered |= ImGui::InputTextWithHint("##ca", "those that this system trusts", ca_.data(), ca_.size(), on_enter);
+        entered |= ImGui::InputTextWithHint("##ca", "the system's certificates", ca_.data(), ca_.size(), on_enter);
         widgets::mark("CA file");
-        widgets::explain("PEM file of who vouches for the server: its own evod.crt, perhaps.");
+        widgets::explain("PEM file with the certificate that signed the server's, such as its evod.crt.");
     }
     return entered;
 }
@@ -135,7 +135,7 @@ void StartScreen::build_recent() {
     for (const std::string& address : recent_.addresses()) {
         if (ImGui::Selectable(address.c_str(), address == address_.data(), ImGuiSelectableFlags_AllowDoubleClick)) {
             if (address != address_.data()) {
-                put(token_, ""); // it is for the other server
+                put(token_, ""); // the token is for the other server
             }
             put(address_, address);
             if (ImGui::IsMouseDoubleClicked(0)) {

@@ -1,6 +1,6 @@
-// StartScreen: where to go and as whom: recent servers, an address, a token, TLS.
+// StartScreen: asks for the server to connect to: recent servers, an address, a token, TLS.
 //
-// Tokens stay in this process: they are shown as dots, and written nowhere.
+// Tokens stay in this process: the screen shows them as dots, and no file contains them.
 //
 // Owner        run().
 // Threads      used by the thread that draws.
@@ -17,30 +17,30 @@ namespace evod::viewer {
 
 class StartScreen {
   public:
-    /// begin_with  what the fields say at first
-    StartScreen(Screen& screen, const core::Options& begin_with);
+    /// initial  the first content of the fields
+    StartScreen(Screen& screen, const core::Options& initial);
 
-    /// Until a person has chosen; nullopt if the window was closed.
+    /// Returns when a person has chosen a server; nullopt if the window was closed.
     std::optional<core::Options> run();
 
-    /// Why it is shown again: there is no connection. Empty: a person wants it.
-    void tell(std::string reason) { reason_ = std::move(reason); }
+    /// Sets the problem that the screen shows: why there is no connection. Empty: a person opened the screen.
+    void set_reason(std::string reason) { reason_ = std::move(reason); }
 
-    /// A server that there was a connection with.
+    /// Adds a server to the recent ones.
     void remember(const core::Endpoint& server);
 
   private:
     void build(const Gui& gui);
     void build_recent();
     bool build_fields(const Gui& gui);
-    /// Takes the fields as the choice, or says what is wrong with them.
+    /// Chooses the server in the fields, or sets the problem with them.
     void choose();
 
     template <std::size_t size>
     using Field = std::array<char, size>;
 
     Screen& screen_;
-    core::Options options_; // what the fields do not say
+    core::Options options_; // with what the fields do not contain
     RecentServers recent_;
     Field<300> address_{};
     Field<4096> token_{};

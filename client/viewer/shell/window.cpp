@@ -17,13 +17,16 @@ void toggle(bool& shown) {
 } // namespace
 
 Window::Window(Screen& screen, const Options& options)
-    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{wanted_of(options), options.beside} {}
+    : screen_{screen}
+    , window_{screen.window()}
+    , renderer_{screen.renderer()}
+    , panes_{wanted_of(options), options.beside} {}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = core::WorldView::Clock;
     now_ = Clock::now();
     bool was_connected = false;
-    while (window_.isOpen() && !elsewhere_) {
+    while (window_.isOpen() && !to_start_screen_) {
         const double seconds = std::chrono::duration<double>{Clock::now() - now_}.count();
         now_ = Clock::now();
         handle_events();
@@ -31,29 +34,29 @@ Window::Ending Window::run(bool must_connect, const std::function<void()>& conne
         panes_.link_cameras(panes_.focused().camera());
         panes_.update(now_);
         if (!was_connected) {
-            was_connected = panes_[0].watch.connection_status().connected_count > 0;
+            was_connected = panes_[0].world.server.status().connected_count > 0;
             if (was_connected) {
                 connected();
-            } else if (std::string why = panes_[0].watch.no_connection(); must_connect && !why.empty()) {
-                return {.elsewhere = true, .reason = std::move(why)};
+            } else if (std::string why = panes_[0].world.server.problem(); must_connect && !why.empty()) {
+                return {.to_start_screen = true, .reason = std::move(why)};
             }
         }
         for (std::size_t i = 0; i < panes_.size(); ++i) {
-            for (std::string& notice : panes_[i].watch.take_notices()) {
-                stage_.overlay().notice(std::move(notice), now_);
+            for (std::string& notice : panes_[i].world.server.take_notices()) {
+                renderer_.overlay().notice(std::move(notice), now_);
             }
         }
-        Stage::Frame next = screen_.frame(now_);
-        next.glide = true;
-        next.pointed_at = stage_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
-        screen_.show(&panes_.focused().watch, next, [&] { stage_.draw(panes_, next); });
+        WindowRenderer::Frame next = screen_.frame(now_);
+        next.interpolate = true;
+        next.pointed_at = renderer_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
+        screen_.show(&panes_.focused().world, next, [&] { renderer_.draw(panes_, next); });
     }
-    return {.elsewhere = elsewhere_ && window_.isOpen(), .reason = ""};
+    return {.to_start_screen = to_start_screen_ && window_.isOpen(), .reason = ""};
 }
 
 void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
-        const Captured captured = stage_.captured(event);
+        const Captured captured = renderer_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
         }
@@ -66,126 +69,126 @@ void Window::handle_events() {
             carry_out(*action);
         }
         if (const auto click = input_.take_click()) {
-            stage_.select_at(panes_.focused(), *click);
+            renderer_.select_at(panes_.focused(), *click);
         }
     }
 }
 
 void Window::carry_out(Action action) {
     if (const auto panel = panel_of(action)) {
-        return stage_.panels().toggle(*panel);
+        return renderer_.panels().toggle(*panel);
     }
-    Watch& watch = panes_.focused().watch;
-    Sight& sight = panes_.focused().sight;
+    ViewedWorld& world = panes_.focused().world;
+    IslandView& island_view = panes_.focused().island_view;
     switch (action) {
     case Action::PauseOrResume:
-        return watch.pause_or_resume();
+        return world.commands.pause_or_resume();
     case Action::StepOne:
-        return watch.step(1);
+        return world.commands.step(1);
     case Action::StepMany:
-        return watch.step(step_many_ticks);
+        return world.commands.step(step_many_ticks);
     case Action::Faster:
-        return watch.faster();
+        return world.commands.faster();
     case Action::Slower:
-        return watch.slower();
+        return world.commands.slower();
     case Action::RealTime:
-        return watch.real_time();
+        return world.commands.real_time();
     case Action::MaxSpeed:
-        return watch.max_speed();
+        return world.commands.max_speed();
     case Action::NextIsland:
-        return watch.turn_islands(1);
+        return world.feed.cycle_island(1);
     case Action::PreviousIsland:
-        return watch.turn_islands(-1);
+        return world.feed.cycle_island(-1);
     case Action::NextWorld:
-        return watch.next_world();
-    case Action::PastOrPresent:
-        return look_at_past_or_present();
+        return world.show_next_world();
+    case Action::ReplayOrLive:
+        return toggle_replay();
     case Action::PreviousGeneration:
-        return watch.turn_generations(-1);
+        return world.replay.seek_generations(-1);
     case Action::NextGeneration:
-        return watch.turn_generations(1);
+        return world.replay.seek_generations(1);
     case Action::Beside:
         return panes_.toggle_beside();
-    case Action::OtherHalf:
+    case Action::OtherPane:
         return panes_.focus_next();
     case Action::LinkCameras:
         return panes_.toggle_linked();
     case Action::AllIslands:
-        return watch.show_all_islands(!watch.all_islands());
+        return world.feed.show_all_islands(!world.feed.all_islands());
     case Action::Fit:
         return panes_.focused().camera().fit();
     case Action::NextColouring:
-        return sight.next_colouring();
+        return island_view.next_colouring();
     case Action::Radii:
-        return toggle(sight.shown.radii);
+        return toggle(island_view.options.radii);
     case Action::Forces:
-        return toggle(sight.shown.forces);
+        return toggle(island_view.options.forces);
     case Action::Trails:
-        return toggle(sight.shown.trails);
+        return toggle(island_view.options.trails);
     case Action::Follow:
-        return sight.toggle_following(watch);
+        return island_view.toggle_following(world);
     case Action::Screenshot:
         return save_screenshot();
     case Action::Help:
-        return stage_.overlay().toggle_help();
-    case Action::Start:
-        elsewhere_ = true;
+        return renderer_.overlay().toggle_help();
+    case Action::StartScreen:
+        to_start_screen_ = true;
         return;
     case Action::Close:
         return close_front();
     case Action::Quit:
         return window_.close();
-    case Action::FirstPanel: // a panel: above
+    case Action::FirstPanel: // handled above
         break;
     }
 }
 
 void Window::close_front() {
-    if (stage_.gui().close_popup()) {
+    if (renderer_.gui().close_popup()) {
         return;
     }
-    if (stage_.overlay().help()) {
-        stage_.overlay().toggle_help();
-    } else if (stage_.panels().close_front()) {
+    if (renderer_.overlay().help()) {
+        renderer_.overlay().toggle_help();
+    } else if (renderer_.panels().close_front()) {
         return;
     } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {
         window_.close();
-    } else { // who presses it once too often wants to see the island
+    } else { // a first Esc may be one press too many
         asked_to_quit_ = now_;
-        stage_.overlay().notice("Esc again quits; the worlds run on", now_);
+        renderer_.overlay().notice("Esc again quits; the worlds continue", now_);
     }
 }
 
-void Window::look_at_past_or_present() {
-    Watch& watch = panes_.focused().watch;
-    if (watch.opened_past()) {
-        return watch.return_to_present();
+void Window::toggle_replay() {
+    ViewedWorld& world = panes_.focused().world;
+    if (world.replay.is_own()) {
+        return world.replay.return_to_present();
     }
-    if (watch.replay() != nullptr) {
-        return stage_.overlay().notice("A run file is replayed: it has no present", now_);
+    if (world.replay.info() != nullptr) {
+        return renderer_.overlay().notice("This world replays a run file: there is no live world", now_);
     }
     evod::v1::RunMoment now;
-    if (const codec::DecodedSnapshot* picture = watch.picture()) {
-        now.set_tick(picture->about.tick());
+    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+        now.set_tick(snapshot->about.tick());
     }
-    watch.open_replay(std::move(now));
+    world.replay.open(std::move(now));
 }
 
 void Window::save_screenshot() {
-    const Watch& watch = panes_.focused().watch;
+    const ViewedWorld& world = panes_.focused().world;
     std::string name = "evoview";
-    if (const codec::DecodedSnapshot* picture = watch.picture()) {
-        name += "-" + picture->about.world() + "-island-" + std::to_string(picture->about.island()) + "-tick-" +
-                std::to_string(picture->about.tick());
+    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+        name += "-" + snapshot->about.world() + "-island-" + std::to_string(snapshot->about.island()) + "-tick-" +
+                std::to_string(snapshot->about.tick());
     }
     name += ".png";
     const std::string path = std::filesystem::absolute(name).string();
     try {
-        // Latest positions, as the tick in the name says, and not those on the way there.
-        write_file(path, png_of(stage_.capture(panes_, screen_.frame(now_))));
-        stage_.overlay().notice("Saved " + path, now_);
+        // Without interpolation: the positions are those of the tick in the name.
+        write_file(path, png_of(renderer_.capture(panes_, screen_.frame(now_))));
+        renderer_.overlay().notice("Saved " + path, now_);
     } catch (const std::runtime_error& error) {
-        stage_.overlay().notice(error.what(), now_);
+        renderer_.overlay().notice(error.what(), now_);
     }
 }
 

@@ -172,7 +172,7 @@ def drawing(bench):
         return []
     run = subprocess.run([bench.root / "tests/system/viewer/under_xvfb.sh", bench.program("viewer_frame_bench"),
                           "--benchmark_format=json",
-                          "--benchmark_filter=zoom:1/anew:0/driver:1$|anew:1/driver:0$"], capture_output=True, text=True)
+                          "--benchmark_filter=zoom:1/new_snapshot:0/driver:1$|new_snapshot:1/driver:0$"], capture_output=True, text=True)
     if run.returncode != 0 or not run.stdout.startswith("{"):
         print(f"scripts/benchmark: viewer_frame_bench did not run: {run.stdout[:200]}{run.stderr[-200:]}", file=sys.stderr)
         return []

@@ -129,7 +129,7 @@ TEST(GlassBox, GenesAreFollowedThroughEveryOperator) {
 class GlassBox {
   public:
     explicit GlassBox(const std::string& server)
-        : watch_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = ""}} {}
+        : world_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = ""}} {}
 
     void press(sf::Keyboard::Key key) { host_.press(key); }
     /// Draws until so many pixels of the colour are seen.
@@ -142,15 +142,15 @@ class GlassBox {
 
   private:
     BreedingPanel panel_;
-    Watch watch_;
-    Sight sight_;
+    ViewedWorld world_;
+    IslandView island_view_;
     PanelHost host_{1000, 720, [this](Gui& gui) {
                         const auto now = std::chrono::steady_clock::now();
-                        watch_.update(now);
+                        world_.update(now);
                         ImGui::SetNextWindowPos({10, 10});
                         ImGui::SetNextWindowSize({panel_.first_size().width, panel_.first_size().height});
                         ImGui::Begin("Glass box");
-                        Panel::Context context{.watch = watch_, .gui = gui, .now = now, .sight = sight_};
+                        Panel::Context context{.world = world_, .gui = gui, .now = now, .island_view = island_view_};
                         panel_.build(context);
                         ImGui::End();
                     }};

@@ -65,7 +65,7 @@ TEST_F(PanelsTest, WhatIsAppliedTheServerHasAndWhatIsUndoneItHasNoMore) {
     RealServer server{{"--seed", "7"}};
     const Ran applied = play(server.address(), R"(
 wait connected
-wait picture
+wait snapshot
 key F4
 wait widget "Revision 1"
 set Search "mutation chance"
@@ -80,7 +80,7 @@ quit
     EXPECT_EQ(chance_of(server.parameters()), 0.2);
 
     const Ran undone = play("--server " + server.address(), R"(
-wait picture
+wait snapshot
 click Parameters
 set Search "mutation chance"
 set mutation_chance 0.4
@@ -112,7 +112,7 @@ std::string selection_of(const evod::v1::ParameterSet& set) {
 TEST_F(PanelsTest, ADropDownIsSetToWhatItOffersOrTheScriptEnds) {
     RealServer server{{"--seed", "7"}};
     const Ran chosen = play(server.address(), R"script(
-wait picture
+wait snapshot
 key F4
 set Search selection
 set selection truncation
@@ -127,7 +127,7 @@ quit
 )script");
     ASSERT_EQ(chosen.status, 0) << chosen.output;
     EXPECT_EQ(selection_of(server.parameters()), "tournament");
-    const Ran unknown = play(server.address(), R"(wait picture
+    const Ran unknown = play(server.address(), R"(wait snapshot
 key F4
 set Search selection
 wait widget selection
@@ -143,7 +143,7 @@ set selection turnament
 TEST_F(PanelsTest, WhatIsRefusedIsMarkedAndNothingIsChanged) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F4
 set Search tournament
 set tournament_size 5
@@ -162,7 +162,7 @@ quit
 TEST_F(PanelsTest, KeysThatAreTypedIntoAFieldCommandNothing) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F4
 click Search
 key Space
@@ -185,7 +185,7 @@ quit
 TEST_F(PanelsTest, RunsGenerationsAndResetsWithASeed) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F3
 click "as fast as the server can"
 set generations 2
@@ -213,7 +213,7 @@ quit
 TEST_F(PanelsTest, NumbersThatAreNotAllowedAreRefusedWithWhatIs) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F3
 set ticks 99999999999999
 click "Step ticks"
@@ -239,7 +239,7 @@ quit
 TEST_F(PanelsTest, EscClosesAQuestionThenThePanelUsedLast) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F2
 key F3
 click "Reset …"
@@ -261,7 +261,7 @@ TEST_F(PanelsTest, EscOnTheBareIslandAsksBeforeItQuits) {
     RealServer server{{"--seed", "7"}};
     const std::string path = folder.file("still_there.png");
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key Escape
 key F2
 wait widget Worlds/default
@@ -311,7 +311,7 @@ TEST_F(PanelsTest, AWorldWantedAtTheCommandLineIsShownOnceThereIsAConnection) {
     server.ask(create);
     const Ran ran =
         play("--start --world mars", "set Server localhost:1\nwait widget error\nset Server \"" + server.address() +
-                                         "\"\nwait picture\nkey Space\n" + "wait state running\nquit\n");
+                                         "\"\nwait snapshot\nkey Space\n" + "wait state running\nquit\n");
     ASSERT_EQ(ran.status, 0) << ran.output;
     statistics.mutable_get_statistics()->set_world("mars");
     EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_RUNNING);
@@ -326,7 +326,7 @@ TEST_F(PanelsTest, AClickOnATimeLineGivesItsHalfTheFocus) {
     run.mutable_run_until_tick()->set_tick(30);
     server.ask(run);
     const Ran ran = play(server.address() + " --world default --past 1 --beside mars", R"(
-wait picture
+wait snapshot
 wait widget "left/|<"
 key X
 click "left/|<"
@@ -346,7 +346,7 @@ TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
     ASSERT_TRUE(wait_until([&] { return server.state().tick() == 30; })); // else the line's middle is an earlier tick
     for (const char* when : {"wait widget left/Present\nkey F8\n", "key F8\nwait widget left/Present\n"}) {
         const Ran ran = play(server.address() + " --past 1 --size 1280x720",
-                             std::string{"wait picture\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");
+                             std::string{"wait snapshot\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");
         ASSERT_EQ(ran.status, 0) << ran.output;
     }
 }
@@ -355,7 +355,7 @@ TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
     RealServer server{{"--seed", "7"}};
     server.make_world({.name = "mars", .parameters = {{"island_count", count(3)}}});
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F2
 click mars
 click "island 2"
@@ -372,7 +372,7 @@ TEST_F(PanelsTest, AViewerComesInThroughTheStartScreenAndChangesNothing) {
     const std::string admin = token("admin"), secret = token("viewer");
     RealServer server{{"--seed", "7", "--require-token", "--data", folder.file("data"), "--log-level", "debug"}};
     const Ran ran = play("--start", "set Server " + server.address() + "\nwait widget error\nset Token " + secret + R"(
-wait picture
+wait snapshot
 key F4
 wait widget "Revision 1"
 set Search "mutation chance"
@@ -411,15 +411,15 @@ TEST_F(PanelsTest, TheStartScreenSaysWhyThereIsNoConnectionAndIsComeBackTo) {
     const std::string address = "\"" + server.address() + "\"\n";
     const Ran ran =
         play("--start", "set Server localhost:1\nwait widget error\nset Server " + address +
-                            "wait picture\nkey Ctrl+Backspace\nset Server elsewhere:1\nwait widget error\nclick " +
-                            address + "click Connect\nwait picture\nquit\n");
+                            "wait snapshot\nkey Ctrl+Backspace\nset Server elsewhere:1\nwait widget error\nclick " +
+                            address + "click Connect\nwait snapshot\nquit\n");
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
 TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
     const Ran wrong = play("--start", "wait widget Connect\nclik Connect\n");
     EXPECT_EQ(wrong.status, 2);
-    EXPECT_THAT(wrong.output, HasSubstr("script:2: word 1: \"clik\""));
+    EXPECT_THAT(wrong.output, HasSubstr("script:2: word 1: got \"clik\""));
     const Ran late = play("--start", "timeout 0.1\n\nclick Disconnect\n");
     EXPECT_EQ(late.status, 1);
     EXPECT_THAT(late.output, HasSubstr("script:3: click Disconnect: "));
@@ -450,7 +450,7 @@ TEST_F(PanelsTest, ALookUpThatNeverEndsHoldsUpNoWindow) {
 TEST_F(PanelsTest, ATickOfAnyLengthCanBeTypedAndIsBroughtWithinItsRange) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
-wait picture
+wait snapshot
 key F9
 click "The bodies of this island"
 set "tick, ms" 0

@@ -1,13 +1,13 @@
-// evoview with more than one thing to be seen: the past of a world, two worlds side by side, all islands of one. What
-// is drawn in each place is what the server says.
+// evoview with replays, two worlds side by side, and all islands of a world: each part of the frame matches the server's
+// snapshot.
 //
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"
-#include "client/viewer/stage/timeline.h"
-#include "client/viewer/watch/past.h"
-#include "tests/system/viewer/support/expected_picture.h"
-#include "tests/system/viewer/support/past_of_world.h"
+#include "client/viewer/panes/timeline.h"
+#include "client/viewer/panes/timeline_layout.h"
+#include "tests/system/viewer/support/expected_frame.h"
 #include "tests/system/viewer/support/person.h"
+#include "tests/system/viewer/support/replay_of_world.h"
 
 #include <gtest/gtest.h>
 
@@ -16,25 +16,25 @@
 namespace evod::viewer {
 namespace {
 
-/// Nobody has touched what is seen in `viewport`.
-Camera camera_in(Rectangle viewport, const evod::v1::SnapshotFrame& picture) {
+/// The camera of a new pane.
+Camera camera_in(Rectangle viewport, const evod::v1::SnapshotFrame& snapshot) {
     Camera camera;
     camera.set_viewport(viewport);
-    camera.set_island(picture.width_px(), picture.height_px());
+    camera.set_island(snapshot.width_px(), snapshot.height_px());
     return camera;
 }
 
-void expect_shown(const codec::DecodedSnapshot& picture, Rectangle viewport, const sf::Image& image) {
-    const ExpectedPicture expected{picture, camera_in(viewport, picture.about)};
+void expect_shown(const codec::DecodedSnapshot& snapshot, Rectangle viewport, const sf::Image& image) {
+    const ExpectedFrame expected{snapshot, camera_in(viewport, snapshot.about)};
     EXPECT_GT(expected.count(palette::organism), 100u);
     const auto mismatch = expected.compare(image);
-    EXPECT_EQ(mismatch.count, 0u) << picture.about.world() << " " << mismatch.first;
+    EXPECT_EQ(mismatch.count, 0u) << snapshot.about.world() << " " << mismatch.first;
 }
 
 struct PanesTest : testing::Test {
     TemporaryFolder folder;
     RealServer server{{"--seed", "7", "--data", folder.file("data")}};
-    std::string path = folder.file("picture.png");
+    std::string path = folder.file("frame.png");
 
     sf::Image screenshot(const std::string& arguments) {
         const Ran ran = run_evoview("--server " + server.address() + " " + arguments + " --screenshot " + path);
@@ -45,35 +45,35 @@ struct PanesTest : testing::Test {
     }
 };
 
-TEST_F(PanesTest, TwoWorldsAreDrawnInTheirHalves) {
+TEST_F(PanesTest, DrawsTwoWorldsSideBySide) {
     make_world(server, "one", 130, 3);
     make_world(server, "other", 75, 8);
     const sf::Image image = screenshot("--world one --beside other");
     const auto halves = side_by_side({0, 0, 1280, 720}, 2);
-    expect_shown(*picture_of(server, "one"), viewport_of(halves[0]), image);
-    expect_shown(*picture_of(server, "other"), viewport_of(halves[1]), image);
+    expect_shown(*snapshot_of(server, "one"), viewport_of(halves[0]), image);
+    expect_shown(*snapshot_of(server, "other"), viewport_of(halves[1]), image);
 }
 
-TEST_F(PanesTest, AllIslandsAreDrawnAsTiles) {
+TEST_F(PanesTest, DrawsAllIslandsAsTiles) {
     make_world(server, "one", 130, 3, 5);
     sf::Image image = screenshot("--world one --all-islands");
-    const auto first = picture_of(server, "one");
+    const auto first = snapshot_of(server, "one");
     const auto places = in_tiles(viewport_of(1280, 720), 5, first->about.width_px() / first->about.height_px());
     for (std::uint32_t island = 0; island < 5; ++island) {
         const Rectangle place = places[island];
-        for (unsigned y = 0; y < 24; ++y) { // the name of the island stands above its wall
+        for (unsigned y = 0; y < 24; ++y) { // the label of the island is above its wall
             for (unsigned x = 0; x < 80; ++x) {
                 image.setPixel(static_cast<unsigned>(place.left) + x, static_cast<unsigned>(place.top) + y,
                                sf::Color{palette::background.red, palette::background.green, palette::background.blue});
             }
         }
-        expect_shown(*picture_of(server, "one", island), place, image);
+        expect_shown(*snapshot_of(server, "one", island), place, image);
     }
 }
 
-TEST_F(PanesTest, APastIsShownAsItWas) {
+TEST_F(PanesTest, AReplayShowsTheWorldAsItWas) {
     make_world(server, "one", 421);
-    const auto past = past_picture_of(server, "one", at_generation(2));
+    const auto past = replay_snapshot_of(server, "one", at_generation(2));
     EXPECT_EQ(past->about.tick(), 120u);
     expect_shown(*past, viewport_of(1280, 720), screenshot("--world one --past 2"));
     const Ran ran =
@@ -82,9 +82,9 @@ TEST_F(PanesTest, APastIsShownAsItWas) {
     EXPECT_NE(ran.output.find("99"), std::string::npos) << ran.output;
 }
 
-TEST_F(PanesTest, AScriptGoesToAGenerationOfThePast) {
+TEST_F(PanesTest, AScriptSeeksAGenerationOfAReplay) {
     make_world(server, "one", 421);
-    std::ofstream{folder.file("script")} << R"(wait picture
+    std::ofstream{folder.file("script")} << R"(wait snapshot
 wait widget Present
 set generation 2
 wait generation 2
@@ -97,7 +97,7 @@ quit
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
-/// At a window of 800 × 500 with the past of a world.
+/// A window of 800 × 500 that shows a replay of a world.
 struct TimelineTest : PanesTest {
     TimelineTest() {
         make_world(server, "one", 421);
@@ -106,17 +106,17 @@ struct TimelineTest : PanesTest {
         EXPECT_TRUE(person.finds_window());
         EXPECT_TRUE(person.sees(palette::organism));
         person.press(XK_p);
-        EXPECT_TRUE(person.sees(palette::past)) << "the mark of the past, and the line";
+        EXPECT_TRUE(person.sees(palette::past)) << "the label of the replay, and the time line";
     }
 
-    /// Where the island is seen above the time line.
+    /// The viewport above the time line.
     static Rectangle viewport() {
         const Rectangle below = below_panel_strip(800, 500);
         return viewport_of({below.left, below.top, below.width, below.height - Timeline::height_pixels});
     }
 
-    bool shows(const codec::DecodedSnapshot& picture, Rectangle place) {
-        const ExpectedPicture expected{picture, camera_in(place, picture.about)};
+    bool shows(const codec::DecodedSnapshot& snapshot, Rectangle place) {
+        const ExpectedFrame expected{snapshot, camera_in(place, snapshot.about)};
         return Person::looks_until([&] {
             const sf::Image seen = person.looks();
             return seen.getSize() == sf::Vector2u{800, 500} && expected.compare(seen).count == 0;
@@ -125,46 +125,46 @@ struct TimelineTest : PanesTest {
 
     bool shows_now(Colour colour) {
         const sf::Image seen = person.looks();
-        return seen.getSize().x == 0 || count(seen, colour) > 0; // or else nobody knows
+        return seen.getSize().x == 0 || count(seen, colour) > 0; // else the pixels could not be read
     }
 
     std::optional<Process> evoview;
     Person person;
 };
 
-TEST_F(TimelineTest, KeysGoFromGenerationToGenerationAndBackToThePresent) {
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(421)), viewport())) << "begins with what was shown";
+TEST_F(TimelineTest, KeysSeekGenerationsAndReturnToTheLiveWorld) {
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(421)), viewport())) << "begins at the shown tick";
     person.press(XK_bracketleft);
     person.press(XK_bracketleft);
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_generation(2)), viewport()));
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_generation(2)), viewport()));
     person.press(XK_bracketright);
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_generation(3)), viewport()));
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_generation(3)), viewport()));
     person.press(XK_period);
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(241)), viewport()));
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(241)), viewport()));
     person.press(XK_p);
-    EXPECT_TRUE(shows(*picture_of(server, "one"), viewport_of(below_panel_strip(800, 500))))
-        << "the present, without a time line";
+    EXPECT_TRUE(shows(*snapshot_of(server, "one"), viewport_of(below_panel_strip(800, 500))))
+        << "the live world, without a time line";
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);
 }
 
-TEST_F(TimelineTest, TheLineIsDraggedToAnyTick) {
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(421)), viewport()));
+TEST_F(TimelineTest, DraggingTheLineSeeksAnyTick) {
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(421)), viewport()));
     const TimeScale line{.first_tick = 0, .last_tick = 421, .left = 18, .width = 764};
     const int y = 500 - static_cast<int>(Timeline::height_pixels) + 18;
     const int from = 700, to = 300;
     ASSERT_TRUE(Person::looks_until([&] {
         person.move_mouse(from, y);
         return shows_now(palette::focus);
-    })) << "it is under the mouse";
+    })) << "the line is under the mouse";
     person.press_mouse(from, y);
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(line.tick_at(from))), viewport()));
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(line.tick_at(from))), viewport()));
     for (int x = from; x >= to; x -= 10) {
         person.move_mouse(x, y);
     }
-    EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(line.tick_at(to))), viewport()));
+    EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(line.tick_at(to))), viewport()));
     person.release_mouse(to, y);
-    person.move_mouse(400, 5); // keys are for the line as long as it is held
+    person.move_mouse(400, 5); // the line uses the keyboard while it is dragged
     EXPECT_TRUE(Person::looks_until([&] { return !shows_now(palette::focus); }));
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);

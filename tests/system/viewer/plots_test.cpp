@@ -23,12 +23,12 @@ constexpr unsigned width = 700, height = 620;
 class Plots {
   public:
     explicit Plots(const std::string& server)
-        : watch_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = "lab"}} {}
+        : world_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = "lab"}} {}
 
     /// Clicks at this x all the way up from the bottom until there is the file.
     bool clicks_until_saved(int x, const std::string& path) {
         host_.draw(); // asks for the names of the genes, which are in the file
-        EXPECT_TRUE(wait_until([&] { return watch_.all_answered(); }, [&] { host_.draw(); }));
+        EXPECT_TRUE(wait_until([&] { return world_.all_answered(); }, [&] { host_.draw(); }));
         return wait_until([&] { return std::filesystem::exists(path); },
                           [&] {
                               for (int y = height - 5; y > int{height} - 120 && !std::filesystem::exists(path);
@@ -40,15 +40,15 @@ class Plots {
 
   private:
     PlotsPanel panel_;
-    Sight sight_;
-    Watch watch_;
+    IslandView island_view_;
+    ViewedWorld world_;
     PanelHost host_{width, height, [this](Gui& gui) {
                         const auto now = std::chrono::steady_clock::now();
-                        watch_.update(now);
+                        world_.update(now);
                         ImGui::SetNextWindowPos({0, 0});
                         ImGui::SetNextWindowSize({width, height});
                         ImGui::Begin("Plots");
-                        Panel::Context context{.watch = watch_, .gui = gui, .now = now, .sight = sight_};
+                        Panel::Context context{.world = world_, .gui = gui, .now = now, .island_view = island_view_};
                         panel_.build(context);
                         ImGui::End();
                     }};
@@ -146,7 +146,7 @@ TEST_F(PlotsTest, APictureOfThePlotIsSaved) {
 TEST_F(PlotsTest, ThePicturesSizeIsTypedAndBroughtWithinItsRange) {
     make_world();
     run(3);
-    std::ofstream{folder.file("script")} << R"(wait picture
+    std::ofstream{folder.file("script")} << R"(wait snapshot
 key F7
 wait widget "3 generations, up to 3"
 click "picture's width"
@@ -166,7 +166,7 @@ quit
 TEST_F(PlotsTest, ATabIsFoundByItsNameAndWhatItShowsIsSaved) {
     make_world();
     run(3);
-    std::ofstream{folder.file("script")} << R"(wait picture
+    std::ofstream{folder.file("script")} << R"(wait snapshot
 key F7
 wait widget "3 generations, up to 3"
 click Selection
@@ -183,7 +183,7 @@ TEST_F(PlotsTest, AScriptComparesWithAnotherWorld) {
     make_world();
     run(3);
     server.make_world({.name = "other", .seed = 9, .parameters = {}});
-    std::ofstream{folder.file("script")} << R"(wait picture
+    std::ofstream{folder.file("script")} << R"(wait snapshot
 key F7
 wait widget "3 generations, up to 3"
 set compare "world other"

@@ -1,16 +1,16 @@
-// evoview against evod: what it draws is what the server says, and its keys command the world.
+// evoview against evod: its frames match the server's snapshots, and its keys command the world.
 //
 // Runs under Xvfb.
-#include "tests/system/viewer/support/expected_picture.h"
-#include "tests/system/viewer/support/past_of_world.h"
+#include "tests/system/viewer/support/expected_frame.h"
 #include "tests/system/viewer/support/person.h"
+#include "tests/system/viewer/support/replay_of_world.h"
 
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
 namespace {
 
-TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
+TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
     RealServer server{{"--seed", "7", "--speed", "max"}};
     server.make_world(
         {.name = "room",
@@ -18,9 +18,9 @@ TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
     for (const std::string world : {"default", "room"}) {
         constexpr std::uint64_t tick = 601;
         server.run_to(world, tick);
-        const auto picture = picture_of(server, world);
+        const auto snapshot = snapshot_of(server, world);
         const TemporaryFolder folder;
-        const std::string path = folder.file("picture.png");
+        const std::string path = folder.file("frame.png");
         std::string arguments = "--server " + server.address();
         arguments.append(" --world ").append(world).append(" --screenshot ").append(path);
         arguments.append(" --at-tick ").append(std::to_string(tick));
@@ -28,12 +28,12 @@ TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
         ASSERT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
-        const ExpectedPicture expected{*picture, camera_of(picture->about, 1280, 720)};
+        const ExpectedFrame expected{*snapshot, camera_of(snapshot->about, 1280, 720)};
         EXPECT_GT(expected.count(palette::background), 500'000u);
-        // A ring of radius 4 px has dozens of whole pixels, a disc more.
-        EXPECT_GT(expected.count(palette::organism), 10 * picture->organisms.id.size());
-        EXPECT_GT(expected.count(palette::food), 10 * picture->food.id.size());
-        EXPECT_GT(expected.count(palette::poison), 10 * picture->poison.id.size());
+        // A ring of radius 4 px has dozens of fully covered pixels, a disc more.
+        EXPECT_GT(expected.count(palette::organism), 10 * snapshot->organisms.id.size());
+        EXPECT_GT(expected.count(palette::food), 10 * snapshot->food.id.size());
+        EXPECT_GT(expected.count(palette::poison), 10 * snapshot->poison.id.size());
         const auto mismatch = expected.compare(image);
         EXPECT_EQ(mismatch.count, 0u) << world << " " << mismatch.first;
     }
@@ -68,7 +68,7 @@ TEST(RealServer, KeysCommandTheWorld) {
     EXPECT_EQ(evoview.wait(), 0);
 }
 
-TEST(RealServer, TheWindowStandsInTheMiddleOfTheScreen) {
+TEST(RealServer, TheWindowOpensInTheMiddleOfTheScreen) {
     for (const std::string scale : {"1", "4"}) {
         Process evoview{EVOVIEW, {"--start", "--scale", scale}};
         Person person;
@@ -80,23 +80,23 @@ TEST(RealServer, TheWindowStandsInTheMiddleOfTheScreen) {
     }
 }
 
-TEST(RealServer, NothingIsSaidToRunOnceItIsGone) {
+TEST(RealServer, ShowsNoRunningStateWithoutAServer) {
     RealServer server{{"--seed", "7"}};
     Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500"}};
     Person person;
     ASSERT_TRUE(person.finds_window());
     ASSERT_TRUE(person.sees(palette::organism));
-    const auto says_that_it_runs = [&](bool it_does) {
+    const auto shows_running = [&](bool expected) {
         return Person::looks_until([&] {
             const sf::Image seen = person.looks();
-            return seen.getSize().x > 0 && (count(seen, palette::running) > 0) == it_does;
+            return seen.getSize().x > 0 && (count(seen, palette::running) > 0) == expected;
         });
     };
     person.press(XK_space);
-    ASSERT_TRUE(says_that_it_runs(true));
+    ASSERT_TRUE(shows_running(true));
     server.end();
-    EXPECT_TRUE(says_that_it_runs(false));
-    EXPECT_TRUE(person.sees(palette::organism)) << "the last picture stays";
+    EXPECT_TRUE(shows_running(false));
+    EXPECT_TRUE(person.sees(palette::organism)) << "the last snapshot is still shown";
 }
 
 } // namespace

@@ -1,11 +1,11 @@
-// evoview --record: as many pictures as were asked for, each of the tick in its name, and the world given back.
+// evoview --record: the wanted frames, each of the tick in its name; afterwards a world that ran runs again.
 //
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"
-#include "client/viewer/shell/film.h"
-#include "tests/system/viewer/support/expected_picture.h"
-#include "tests/system/viewer/support/past_of_world.h"
+#include "client/viewer/shell/frame_writer.h"
+#include "tests/system/viewer/support/expected_frame.h"
 #include "tests/system/viewer/support/playing_server.h"
+#include "tests/system/viewer/support/replay_of_world.h"
 
 #include <gtest/gtest.h>
 
@@ -18,39 +18,39 @@ namespace {
 struct RecordTest : testing::Test {
     TemporaryFolder folder;
     RealServer server{{"--seed", "7", "--data", folder.file("data")}};
-    std::string pictures = folder.file("pictures");
+    std::string frames = folder.file("frames");
 
     Ran record(const std::string& path, const std::string& arguments) {
         return run_evoview("--server " + server.address() + " --world one --size 640x400 --record " + path + " " +
                            arguments);
     }
     evod::v1::WorldInfo state() { return server.state("one"); }
-    void expect_picture(std::size_t number, std::uint64_t tick) { expect_picture(number, tick, at_tick(tick)); }
-    void expect_picture(std::size_t number, std::uint64_t tick, const evod::v1::RunMoment& moment) {
+    void expect_frame(std::size_t number, std::uint64_t tick) { expect_frame(number, tick, at_tick(tick)); }
+    void expect_frame(std::size_t number, std::uint64_t tick, const evod::v1::RunMoment& moment) {
         sf::Image image;
-        ASSERT_TRUE(image.loadFromFile(pictures + "/" + picture_name(number, tick)));
-        const auto picture = past_picture_of(server, "one", moment);
-        const ExpectedPicture expected{*picture, camera_of(picture->about, 640, 400)};
+        ASSERT_TRUE(image.loadFromFile(frames + "/" + frame_file_name(number, tick)));
+        const auto snapshot = replay_snapshot_of(server, "one", moment);
+        const ExpectedFrame expected{*snapshot, camera_of(snapshot->about, 640, 400)};
         EXPECT_GT(expected.count(palette::organism), 100u);
         const auto mismatch = expected.compare(image);
         EXPECT_EQ(mismatch.count, 0u) << "tick " << tick << " " << mismatch.first;
     }
-    std::ptrdiff_t picture_count() const { return std::distance(std::filesystem::directory_iterator{pictures}, {}); }
+    std::ptrdiff_t frame_count() const { return std::distance(std::filesystem::directory_iterator{frames}, {}); }
 };
 
-TEST_F(RecordTest, EveryTickIsShownAndThePausedWorldStaysPaused) {
+TEST_F(RecordTest, RecordsEveryTickOfAPausedWorldWhichStaysPaused) {
     make_world(server, "one", 50);
-    const Ran ran = record(pictures, "--record-ticks 4");
+    const Ran ran = record(frames, "--record-ticks 4");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(picture_count(), 5);
+    EXPECT_EQ(frame_count(), 5);
     for (std::size_t i = 0; i < 5; ++i) {
-        expect_picture(i, 50 + i);
+        expect_frame(i, 50 + i);
     }
     EXPECT_EQ(state().tick(), 54u);
     EXPECT_EQ(state().state(), evod::v1::RUN_STATE_PAUSED);
 }
 
-TEST_F(RecordTest, AWorldThatRunsIsOnlyLent) {
+TEST_F(RecordTest, ARunningWorldRunsAgainAfterTheRecording) {
     make_world(server, "one", 50);
     evod::v1::Request speed, run;
     speed.mutable_set_speed()->set_world("one");
@@ -58,59 +58,59 @@ TEST_F(RecordTest, AWorldThatRunsIsOnlyLent) {
     server.ask(speed);
     run.mutable_run()->set_world("one");
     server.ask(run);
-    const Ran ran = record(pictures, "--record-ticks 30 --every 10");
+    const Ran ran = record(frames, "--record-ticks 30 --every 10");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(picture_count(), 4);
-    EXPECT_EQ(ran.output.find("not shown"), std::string::npos) << ran.output;
-    const auto lent = state();
-    EXPECT_FALSE(lent.leased());
-    EXPECT_EQ(lent.state(), evod::v1::RUN_STATE_RUNNING);
-    EXPECT_TRUE(wait_until([&] { return state().tick() > lent.tick(); }));
+    EXPECT_EQ(frame_count(), 4);
+    EXPECT_EQ(ran.output.find("missed"), std::string::npos) << ran.output;
+    const auto before = state();
+    EXPECT_FALSE(before.leased());
+    EXPECT_EQ(before.state(), evod::v1::RUN_STATE_RUNNING);
+    EXPECT_TRUE(wait_until([&] { return state().tick() > before.tick(); }));
 }
 
-TEST_F(RecordTest, AGenerationOfThePastIsRecordedAndTheWorldIsNotTouched) {
+TEST_F(RecordTest, RecordsAReplayWithoutChangingTheWorld) {
     make_world(server, "one", 300);
-    const Ran ran = record(pictures, "--past 2 --record-generations 1 --every 40");
+    const Ran ran = record(frames, "--past 2 --record-generations 1 --every 40");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(picture_count(), 4);            // ticks 120, 160, 200 and 240, its end
-    expect_picture(0, 120, at_generation(2)); // tick 120 alone is the end of the one before
-    expect_picture(3, 240);
+    EXPECT_EQ(frame_count(), 4);              // ticks 120, 160, 200 and 240, the last
+    expect_frame(0, 120, at_generation(2)); // a seek to tick 120 would show the end of generation 1
+    expect_frame(3, 240);
     EXPECT_EQ(state().tick(), 300u);
 }
 
-TEST_F(RecordTest, TwoWorldsGoOnByAsManyTicks) {
+TEST_F(RecordTest, TwoWorldsAdvanceByTheSameTicks) {
     make_world(server, "one", 50);
     make_world(server, "other", 200, 8);
-    // Large enough for the smallest item to be a pixel in its half.
+    // Large enough for the smallest item to be a pixel wide.
     const Ran ran =
         run_evoview("--server " + server.address() + " --world one --beside other --size 1280x720 --record " +
-                    pictures + " --record-ticks 20 --every 10");
+                    frames + " --record-ticks 20 --every 10");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(picture_count(), 3);
+    EXPECT_EQ(frame_count(), 3);
     const auto halves = side_by_side({0, 0, 1280, 720}, 2);
     for (std::size_t i = 0; i < 3; ++i) {
         sf::Image image;
-        ASSERT_TRUE(image.loadFromFile(pictures + "/" + picture_name(i, 50 + 10 * i)));
+        ASSERT_TRUE(image.loadFromFile(frames + "/" + frame_file_name(i, 50 + 10 * i)));
         for (const auto& [world, tick, half] : {std::tuple{"one", 50u, halves[0]}, {"other", 200u, halves[1]}}) {
-            const auto picture = past_picture_of(server, world, at_tick(tick + 10 * i));
+            const auto snapshot = replay_snapshot_of(server, world, at_tick(tick + 10 * i));
             Camera camera;
             camera.set_viewport(viewport_of(half));
-            camera.set_island(picture->about.width_px(), picture->about.height_px());
-            const auto mismatch = ExpectedPicture{*picture, camera}.compare(image);
+            camera.set_island(snapshot->about.width_px(), snapshot->about.height_px());
+            const auto mismatch = ExpectedFrame{*snapshot, camera}.compare(image);
             EXPECT_EQ(mismatch.count, 0u) << world << " " << i << " " << mismatch.first;
         }
     }
 }
 
-TEST_F(RecordTest, EndsWithWhatIsKnownOfThePast) {
+TEST_F(RecordTest, EndsAtTheEndOfTheReplay) {
     make_world(server, "one", 300);
-    const Ran ran = record(pictures, "--past 3 --every 50");
+    const Ran ran = record(frames, "--past 3 --every 50");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(picture_count(), 3); // ticks 240, 290 and 300
-    expect_picture(2, 300);
+    EXPECT_EQ(frame_count(), 3); // ticks 240, 290 and 300
+    expect_frame(2, 300);
 }
 
-/// Programs called ffmpeg that do what a test needs; the real one may not be installed.
+/// Replaces ffmpeg by scripts; the real one may not be installed.
 struct FfmpegTest : RecordTest {
     FfmpegTest() {
         make_world(server, "one", 50);
@@ -125,7 +125,7 @@ struct FfmpegTest : RecordTest {
     const std::string path = std::getenv("PATH");
 };
 
-TEST_F(FfmpegTest, IsHandedEveryPictureWhole) {
+TEST_F(FfmpegTest, ReceivesEveryFrameComplete) {
     install(R"(echo "$@" >"${0%/*}/words"; for last; do :; done; cat >"${last#file:}")");
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2 --fps 30");
     ASSERT_EQ(ran.status, 0) << ran.output;
@@ -140,12 +140,12 @@ TEST_F(FfmpegTest, IsHandedEveryPictureWhole) {
         film.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
         sf::Image image;
         image.create(640, 400, pixels.data());
-        const auto picture = past_picture_of(server, "one", at_tick(tick));
-        EXPECT_EQ((ExpectedPicture{*picture, camera_of(picture->about, 640, 400)}.compare(image).count), 0u) << tick;
+        const auto snapshot = replay_snapshot_of(server, "one", at_tick(tick));
+        EXPECT_EQ((ExpectedFrame{*snapshot, camera_of(snapshot->about, 640, 400)}.compare(image).count), 0u) << tick;
     }
 }
 
-TEST_F(FfmpegTest, WhatItSaysOfItsFailureIsTold) {
+TEST_F(FfmpegTest, ReportsTheMessageOfAFailedFfmpeg) {
     install("head -c 100 >/dev/null; echo 'film.mp4: No space left on device' >&2; exit 3");
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 20");
     EXPECT_EQ(ran.status, 1);
@@ -156,15 +156,15 @@ TEST_F(FfmpegTest, WhatItSaysOfItsFailureIsTold) {
     EXPECT_EQ(state().state(), evod::v1::RUN_STATE_PAUSED);
 }
 
-TEST_F(FfmpegTest, ThatItIsMissingIsToldBeforeTheWorldIsTouched) {
+TEST_F(FfmpegTest, ReportsAMissingFfmpegBeforeAnyCommand) {
     setenv("PATH", folder.file("bin").c_str(), 1);
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2");
     EXPECT_EQ(ran.status, 1);
-    EXPECT_NE(ran.output.find("ffmpeg, which would make"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("could not start ffmpeg to make"), std::string::npos) << ran.output;
     EXPECT_EQ(state().tick(), 50u);
 }
 
-TEST(RecordOptions, AWrongCommandLineIsRefusedWithStatus2) {
+TEST(RecordOptions, AnInvalidCommandLineEndsWithStatus2) {
     for (const char* arguments :
          {"--record-ticks 5", "--fps 30", "--record a --every 0", "--record a --record-generations 0",
           "--record a --screenshot b.png", "--past 0", "--timeout 5"}) {
@@ -172,23 +172,23 @@ TEST(RecordOptions, AWrongCommandLineIsRefusedWithStatus2) {
     }
 }
 
-TEST(RecordAsAViewer, TakesPicturesAsTheyComeAndSendsNoCommand) {
+TEST(RecordAsAViewer, RecordsWithoutSendingCommands) {
     const TemporaryFolder folder;
-    evod::v1::SnapshotFrame picture;
-    picture.set_width_px(100);
-    picture.set_height_px(100);
-    codec::encode({}, picture);
-    picture.set_world("default");
-    picture.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
-    picture.set_island_count(1);
-    picture.set_tick(77);
-    picture.set_generation(2);
-    picture.set_state(evod::v1::RUN_STATE_TERMINATED); // there is no other one to come
-    PlayingServer server{picture};
-    const Ran ran = run_evoview("--server " + server.address() + " --record " + folder.file("pictures"));
+    evod::v1::SnapshotFrame snapshot;
+    snapshot.set_width_px(100);
+    snapshot.set_height_px(100);
+    codec::encode({}, snapshot);
+    snapshot.set_world("default");
+    snapshot.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
+    snapshot.set_island_count(1);
+    snapshot.set_tick(77);
+    snapshot.set_generation(2);
+    snapshot.set_state(evod::v1::RUN_STATE_TERMINATED); // no further snapshot will arrive
+    PlayingServer server{snapshot};
+    const Ran ran = run_evoview("--server " + server.address() + " --record " + folder.file("frames"));
     EXPECT_EQ(ran.status, 0) << ran.output;
     EXPECT_EQ(server.command_count(), 0u);
-    EXPECT_TRUE(std::filesystem::exists(folder.file("pictures/frame-000000-tick-77.png"))) << ran.output;
+    EXPECT_TRUE(std::filesystem::exists(folder.file("frames/frame-000000-tick-77.png"))) << ran.output;
 }
 
 } // namespace

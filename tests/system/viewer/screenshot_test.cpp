@@ -1,9 +1,9 @@
-// evoview --screenshot against a server of the test's own: every pixel is what the picture says.
+// evoview --screenshot against a test server: every pixel matches the snapshot.
 //
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"
-#include "tests/system/viewer/support/expected_picture.h"
-#include "tests/system/viewer/support/known_picture.h"
+#include "tests/system/viewer/support/expected_frame.h"
+#include "tests/system/viewer/support/known_snapshot.h"
 #include "tests/system/viewer/support/playing_server.h"
 #include "tests/system/viewer/support/processes.h"
 
@@ -17,21 +17,21 @@ namespace {
 
 struct ScreenshotTest : testing::Test {
     TemporaryFolder folder;
-    std::string path = folder.file("picture.png");
+    std::string path = folder.file("frame.png");
 };
 
-TEST_F(ScreenshotTest, EveryPixelIsWhatThePictureSays) {
-    const auto picture = known_picture();
+TEST_F(ScreenshotTest, EveryPixelMatchesTheSnapshot) {
+    const auto snapshot = known_snapshot();
     for (const auto& [size, width, height] : {std::tuple{"1280x720", 1280u, 720u}, {"641x479", 641u, 479u}}) {
-        PlayingServer server{picture};
+        PlayingServer server{snapshot};
         const Ran ran = run_evoview("--server " + server.address() + " --size " + size + " --screenshot " + path +
                                     " --at-tick 36000 --timeout 600");
         ASSERT_EQ(ran.status, 0) << ran.output;
-        EXPECT_EQ(server.command_count(), 0u) << "a screenshot only watches";
+        EXPECT_EQ(server.command_count(), 0u) << "a screenshot sends no command";
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
         ASSERT_EQ(image.getSize(), (sf::Vector2u{width, height}));
-        const ExpectedPicture expected{codec::decode(picture).value(), camera_of(picture, width, height)};
+        const ExpectedFrame expected{codec::decode(snapshot).value(), camera_of(snapshot, width, height)};
         for (const Colour colour : {palette::background, palette::wall, palette::organism, palette::food,
                                     palette::poison, palette::crate, palette::crate_edge, palette::obstacle}) {
             EXPECT_GT(expected.count(colour), 20u);
@@ -41,15 +41,15 @@ TEST_F(ScreenshotTest, EveryPixelIsWhatThePictureSays) {
     }
 }
 
-TEST_F(ScreenshotTest, HealthStandsAboveEachOrganism) {
-    const auto picture = known_picture();
-    PlayingServer server{picture};
+TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
+    const auto snapshot = known_snapshot();
+    PlayingServer server{snapshot};
     const Ran ran = run_evoview("--server " + server.address() + " --screenshot " + path + " --timeout 600");
     ASSERT_EQ(ran.status, 0) << ran.output;
     sf::Image image;
     ASSERT_TRUE(image.loadFromFile(path));
-    const Camera camera = camera_of(picture, 1280, 720);
-    const auto decoded = codec::decode(picture).value();
+    const Camera camera = camera_of(snapshot, 1280, 720);
+    const auto decoded = codec::decode(snapshot).value();
     for (std::size_t i = 0; i < decoded.organisms.id.size(); ++i) {
         const Point top =
             camera.to_screen({decoded.organisms.x_px[i], decoded.organisms.y_px[i] - decoded.organisms.radius_px[i]});
@@ -60,11 +60,11 @@ TEST_F(ScreenshotTest, HealthStandsAboveEachOrganism) {
                 dark_count += is.r < 120 && is.g < 120 && is.b < 120;
             }
         }
-        EXPECT_GE(dark_count, 6u) << "organism " << i; // a "1" is the thinnest
+        EXPECT_GE(dark_count, 6u) << "organism " << i; // "1" is the thinnest digit
     }
 }
 
-TEST_F(ScreenshotTest, TellsThatThereIsNoServer) {
+TEST_F(ScreenshotTest, ReportsAMissingServer) {
     core::FakeServer server;
     const std::string address = core::to_text(server.endpoint());
     server.stop_listening();
@@ -74,46 +74,46 @@ TEST_F(ScreenshotTest, TellsThatThereIsNoServer) {
     EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST_F(ScreenshotTest, TellsThatThereIsNoSuchWorld) {
-    PlayingServer server{known_picture()};
+TEST_F(ScreenshotTest, ReportsAMissingWorld) {
+    PlayingServer server{known_snapshot()};
     const Ran ran = run_evoview("--server " + server.address() + " --world mars --screenshot " + path);
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("No world \"mars\""), std::string::npos) << ran.output;
 }
 
-TEST_F(ScreenshotTest, TellsThatTheWorldStandsStillBeforeTheTick) {
-    auto picture = known_picture();
-    picture.set_state(evod::v1::RUN_STATE_PAUSED);
+TEST_F(ScreenshotTest, ReportsAWorldThatIsPausedBeforeTheTick) {
+    auto snapshot = known_snapshot();
+    snapshot.set_state(evod::v1::RUN_STATE_PAUSED);
     Ran ran;
-    // On a slow machine evoview knows nothing of the world yet after a second.
+    // On a slow machine no snapshot has arrived after a second.
     for (int timeout_s = 1; timeout_s < 60 && ran.output.find("is paused at tick 36034; waiting") == std::string::npos;
          timeout_s *= 3) {
-        PlayingServer server{picture};
+        PlayingServer server{snapshot};
         ran = run_evoview("--server " + server.address() + " --screenshot " + path + " --at-tick 50000 --timeout " +
                           std::to_string(timeout_s));
         EXPECT_EQ(ran.status, 1);
-        EXPECT_NE(ran.output.find("no picture of tick 50000"), std::string::npos) << ran.output;
+        EXPECT_NE(ran.output.find("no snapshot of tick 50000"), std::string::npos) << ran.output;
     }
     EXPECT_NE(ran.output.find("is paused at tick 36034; waiting"), std::string::npos) << ran.output;
 }
 
-TEST_F(ScreenshotTest, TellsAtOnceThatTheRunHasEndedBeforeTheTick) {
-    auto picture = known_picture();
-    picture.set_state(evod::v1::RUN_STATE_TERMINATED);
-    PlayingServer server{picture};
+TEST_F(ScreenshotTest, ReportsAtOnceARunThatEndedBeforeTheTick) {
+    auto snapshot = known_snapshot();
+    snapshot.set_state(evod::v1::RUN_STATE_TERMINATED);
+    PlayingServer server{snapshot};
     const Ran ran = run_evoview("--server " + server.address() + " --screenshot " + path + " --at-tick 50000");
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("before tick 50000"), std::string::npos) << ran.output;
 }
 
-TEST_F(ScreenshotTest, TellsThatTheFileCannotBeWritten) {
-    PlayingServer server{known_picture()};
+TEST_F(ScreenshotTest, ReportsAFileThatCannotBeWritten) {
+    PlayingServer server{known_snapshot()};
     const Ran ran = run_evoview("--server " + server.address() + " --screenshot " + path + "/nowhere.png");
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("could not write"), std::string::npos) << ran.output;
 }
 
-TEST_F(ScreenshotTest, AWrongCommandLineIsRefusedWithStatus2) {
+TEST_F(ScreenshotTest, AnInvalidCommandLineEndsWithStatus2) {
     for (const char* arguments : {"--size 12by4", "--size 1280x9999999", "--server :x", "--at-tick 5", "--island -1"}) {
         EXPECT_EQ(run_evoview(arguments).status, 2) << arguments;
     }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs a command on a screen of its own; status 77, "skipped", where that cannot be had.
-# The server takes a free number by itself and tells it when it is ready, so any number of these may run at once.
+# Runs a command on a virtual display of its own. Exit status 77, "skipped", if Xvfb is not installed.
+# Xvfb chooses a free display number and reports it when it is ready, so any number of these may run at once.
 if ! command -v Xvfb >/dev/null; then
     echo "skipped: Xvfb is not installed (Debian's package xvfb)"
     exit 77
@@ -12,5 +12,5 @@ server=$!
 trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -rf "$folder"' EXIT
 trap 'exit 143' TERM INT
 read -r number <"$folder/display" || { echo "Xvfb did not start:"; cat "$folder/errors"; exit 1; }
-# What evoview remembers is the test's own, too.
+# evoview's recent servers are stored in the folder of the test.
 DISPLAY=:$number XDG_STATE_HOME=$folder/state "$@"

@@ -4,7 +4,7 @@
 #include "client/viewer/panels/breeding/caption.h"
 #include "client/viewer/panels/breeding/drawing.h"
 #include "client/viewer/panels/breeding/selection_drawing.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -33,12 +33,12 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
 }
 
 /// The past stays as it was, and who only watches holds nothing.
-bool may_hold(const Watch& watch) {
-    return watch.may_command() && watch.replay() == nullptr;
+bool may_hold(const ViewedWorld& world) {
+    return world.commands.may_command() && world.replay.info() == nullptr;
 }
 
-GenerationHold::Run run_of(const Watch& watch) {
-    return {watch.control().world(), watch.control().run_id()};
+GenerationHold::Run run_of(const ViewedWorld& world) {
+    return {world.feed.control().world(), world.feed.control().run_id()};
 }
 
 bool pressed(ImGuiKey key) {
@@ -59,19 +59,19 @@ std::span<const Panel::Key> BreedingPanel::keys() const {
 }
 
 void BreedingPanel::build(Context& context) {
-    if (context.watch.picture() == nullptr) {
+    if (context.world.feed.snapshot() == nullptr) {
         ImGui::TextUnformatted("Waiting for the first picture …");
         return;
     }
     choose(context);
     ask(context);
-    hold_world(context.watch);
+    hold_world(context.world);
     build_generation(context);
     if (!error_.empty()) {
         widgets::say(error_, palette::text);
         if (widgets::button("Ask again")) {
             error_.clear();
-            inquiry_.hurry();
+            poll_.hurry();
         }
     }
     if (!shown_) {
@@ -105,7 +105,7 @@ void BreedingPanel::build(Context& context) {
 // ---- what is looked at, and what has to be asked ---------------------------------------------------------------
 
 void BreedingPanel::choose(const Context& context) {
-    const evod::v1::SnapshotFrame& picture = context.watch.picture()->about;
+    const evod::v1::SnapshotFrame& picture = context.world.feed.snapshot()->about;
     BreedingRecord::Key key{picture.world(), picture.run_id(), picture.island(), 0};
     newest_ = picture.generation() - std::min<std::uint64_t>(picture.generation(), 1);
     const auto is_of = [&](const std::optional<BreedingRecord>& record) {
@@ -137,7 +137,7 @@ void BreedingPanel::choose(const Context& context) {
     const auto& looked_at = coming_ ? coming_ : shown_;
     if (!looked_at || looked_at->key() != key) {
         coming_.emplace(key);
-        inquiry_.forget();
+        poll_.reset();
         error_.clear();
         next_look_ = context.now + shown_min;
     }
@@ -145,17 +145,17 @@ void BreedingPanel::choose(const Context& context) {
 
 void BreedingPanel::ask(const Context& context) {
     auto& record = coming_ ? coming_ : shown_;
-    if (!inquiry_.due(context.watch, context.now) || !record || !error_.empty()) {
+    if (!poll_.due(context.world, context.now) || !record || !error_.empty()) {
         return;
     }
     if (auto wanted = record->wanted(coming_ ? Moment{} : stepper_.moment())) {
         evod::v1::Request request;
         *request.mutable_get_breeding() = std::move(*wanted);
-        inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+        poll_.send(context.world, std::move(request), context.now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 take(response->breeding());
             } else {
-                error_ = inquiry_.trouble();
+                error_ = poll_.problem();
             }
         });
     }
@@ -190,18 +190,18 @@ void BreedingPanel::show_coming() {
     }
 }
 
-void BreedingPanel::hold_world(Watch& watch) {
-    if (!may_hold(watch)) {
+void BreedingPanel::hold_world(ViewedWorld& world) {
+    if (!may_hold(world)) {
         hold_.let_go();
     }
-    switch (hold_.update(run_of(watch), watch.control().state(), watch.control().stepping())) {
+    switch (hold_.update(run_of(world), world.feed.control().state(), world.feed.control().stepping())) {
     case GenerationHold::Ask::Nothing:
         break;
     case GenerationHold::Ask::RunOneGeneration:
-        watch.run_generations(1);
+        world.commands.run_generations(1);
         break;
     case GenerationHold::Ask::RunOneTick:
-        watch.step(1);
+        world.commands.step(1);
         break;
     }
 }
@@ -230,18 +230,18 @@ void BreedingPanel::build_generation(const Context& context) {
     ImGui::Checkbox("play each", &play_each_);
     widgets::mark("play each");
     widgets::explain("Begins to play when another breeding is shown");
-    if (may_hold(context.watch)) {
+    if (may_hold(context.world)) {
         ImGui::SameLine();
         bool held = hold_.on();
         if (ImGui::Checkbox("hold the world", &held)) {
-            held ? hold_.hold(run_of(context.watch)) : hold_.let_go();
+            held ? hold_.hold(run_of(context.world)) : hold_.let_go();
         }
         widgets::mark("hold the world");
         widgets::explain(
             "Pauses the world after each generation, one tick into the next, as long as this is shown. Going on runs "
             "the next one.");
     }
-    if (const auto selected = context.watch.selected();
+    if (const auto selected = context.world.feed.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
         ImGui::SameLine();
         if (widgets::button("birth of the selected")) {
@@ -354,7 +354,7 @@ void BreedingPanel::build_stage(const Context& context) {
             widgets::say(
                 "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or "
                 "clamped");
-            const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.gene_names());
+            const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
             ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
         break;

@@ -10,7 +10,7 @@
 #include "client/viewer/panels/breeding/generation_hold.h"
 #include "client/viewer/panels/breeding/stepper.h"
 #include "client/viewer/panels/panel.h"
-#include "client/viewer/watch/inquiry.h"
+#include "client/viewer/world/poll.h"
 
 #include <optional>
 #include <string>
@@ -32,7 +32,7 @@ class BreedingPanel : public Panel {
     void ask(const Context& context);
     void take(const evod::v1::Breeding& breeding);
     void show_coming();
-    void hold_world(Watch& watch);
+    void hold_world(ViewedWorld& world);
 
     void build_generation(const Context& context);
     void build_transport(const Gui& gui);
@@ -44,7 +44,7 @@ class BreedingPanel : public Panel {
     std::optional<Comparison> comparison_;         // of what is shown; nullopt until all of it is known
     Stepper stepper_;
     std::string error_; // why there is no more to be shown
-    Inquiry inquiry_;
+    Poll poll_;
 
     std::uint64_t newest_ = 0; // generation that was bred from; 0: none yet
     std::uint64_t chosen_ = 0;

@@ -2,7 +2,7 @@
 
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -48,18 +48,18 @@ void PhysicsPanel::build(Context& context) {
 }
 
 void PhysicsPanel::ask(Context& context) {
-    Watch& watch = context.watch;
-    if (watch.place_number() != place_number_) {
-        place_number_ = watch.place_number();
+    ViewedWorld& world = context.world;
+    if (world.feed.place_number() != place_number_) {
+        place_number_ = world.feed.place_number();
         history_.clear();
     }
-    if (!inquiry_.due(watch, context.now)) {
+    if (!poll_.due(world, context.now)) {
         return;
     }
     evod::v1::Request request;
-    request.mutable_get_motion()->set_world(watch.world());
-    request.mutable_get_motion()->set_island(watch.island());
-    inquiry_.ask(watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+    request.mutable_get_motion()->set_world(world.feed.world());
+    request.mutable_get_motion()->set_island(world.feed.island());
+    poll_.send(world, std::move(request), context.now, [this](const evod::v1::Response* response) {
         if (response != nullptr) {
             history_.add(response->motion());
         }
@@ -67,8 +67,8 @@ void PhysicsPanel::ask(Context& context) {
 }
 
 void PhysicsPanel::build_motion() {
-    if (!inquiry_.trouble().empty()) {
-        widgets::say(inquiry_.trouble(), palette::warning);
+    if (!poll_.problem().empty()) {
+        widgets::say(poll_.problem(), palette::warning);
     }
     if (history_.empty()) {
         ImGui::TextUnformatted("…");

@@ -7,7 +7,7 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/physics/motion_history.h"
 #include "client/viewer/panels/physics/time_step_demo.h"
-#include "client/viewer/watch/inquiry.h"
+#include "client/viewer/world/poll.h"
 
 #include <vector>
 
@@ -26,7 +26,7 @@ class PhysicsPanel : public Panel {
     void take_curves(const TimeStepDemo& demo);
 
     std::uint64_t place_number_ = 0; // that the history is of
-    Inquiry inquiry_{std::chrono::milliseconds{250}};
+    Poll poll_{std::chrono::milliseconds{250}};
     MotionHistory history_;
 
     // The demonstration, as it was last worked out.

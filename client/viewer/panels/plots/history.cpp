@@ -31,7 +31,7 @@ void History::set_gene_names(const std::vector<std::string>& names) {
 void History::see_event(const evod::v1::Event& event) {
     using Kind = evod::v1::Event::KindCase;
     if (event.kind_case() == Kind::kEventsDropped) {
-        look_again();
+        poll_interval();
     }
     if (event.world() != world_ || world_.empty()) {
         return;

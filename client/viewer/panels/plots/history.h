@@ -30,7 +30,7 @@ class History {
     void see_ended(std::uint64_t generation);
 
     /// Events may have been missed.
-    void look_again() { missing_ = again_ = true; }
+    void poll_interval() { missing_ = again_ = true; }
 
     struct Question {
         std::uint64_t number; // for take()

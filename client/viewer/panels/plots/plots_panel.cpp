@@ -2,7 +2,7 @@
 
 #include "client/viewer/drawing/png.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
@@ -63,28 +63,28 @@ std::vector<float> gene_of(const Population& population, std::size_t gene, std::
 // ---- what is known ---------------------------------------------------------------------------------------------
 
 void PlotsPanel::ask_history(const Context& context, TrackedHistory& tracked) {
-    if (!tracked.inquiry.due(context.watch, context.now)) {
+    if (!tracked.poll.due(context.world, context.now)) {
         return;
     }
     if (tracked.history.waits()) { // for what was forgotten
         tracked.history.give_up();
     }
     if (auto question = tracked.history.question()) {
-        tracked.inquiry.ask(context.watch, std::move(question->request), context.now,
-                            [&tracked, number = question->number](const evod::v1::Response* response) {
-                                tracked.history.take(number, response != nullptr ? &response->history() : nullptr);
-                            });
+        tracked.poll.send(context.world, std::move(question->request), context.now,
+                          [&tracked, number = question->number](const evod::v1::Response* response) {
+                              tracked.history.take(number, response != nullptr ? &response->history() : nullptr);
+                          });
     }
 }
 
 void PlotsPanel::ask_worlds(const Context& context) {
-    if (!worlds_inquiry_.due(context.watch, context.now) || !(worlds_stale_ || worlds_inquiry_.under_way())) {
+    if (!worlds_poll_.due(context.world, context.now) || !(worlds_stale_ || worlds_poll_.pending())) {
         return;
     }
     worlds_stale_ = false;
     evod::v1::Request request;
     request.mutable_list_worlds();
-    worlds_inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+    worlds_poll_.send(context.world, std::move(request), context.now, [this](const evod::v1::Response* response) {
         if (response != nullptr) {
             worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
         } else {
@@ -94,12 +94,12 @@ void PlotsPanel::ask_worlds(const Context& context) {
 }
 
 void PlotsPanel::listen(Context& context) {
-    Watch& watch = context.watch;
+    ViewedWorld& world = context.world;
     const int frame = ImGui::GetFrameCount();
-    const std::uint64_t connected_count = watch.connection_status().connected_count;
+    const std::uint64_t connected_count = world.server.status().connected_count;
     const bool may_have_missed =
-        heard_place_ != watch.place_number() || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
-    heard_place_ = watch.place_number();
+        heard_place_ != world.feed.place_number() || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
+    heard_place_ = world.feed.place_number();
     heard_in_frame_ = frame;
     connected_count_ = connected_count;
     worlds_stale_ = worlds_stale_ || may_have_missed;
@@ -109,21 +109,21 @@ void PlotsPanel::listen(Context& context) {
         }
         History& history = tracked->history;
         if (may_have_missed) {
-            history.look_again();
+            history.poll_interval();
         }
-        for (const evod::v1::Event& event : watch.events()) {
+        for (const evod::v1::Event& event : world.feed.events()) {
             history.see_event(event);
         }
     }
-    if (watch.control().known()) {
-        own_.history.see_run(watch.control().world(), watch.control().run_id());
+    if (world.feed.control().known()) {
+        own_.history.see_run(world.feed.control().world(), world.feed.control().run_id());
     }
-    const codec::DecodedSnapshot* picture = watch.picture();
+    const codec::DecodedSnapshot* picture = world.feed.snapshot();
     if (picture != nullptr && picture->about.run_id() == own_.history.run_id() && picture->about.generation() > 0) {
         own_.history.see_ended(picture->about.generation() - 1);
     }
-    own_.history.set_gene_names(watch.gene_names());
-    for (const evod::v1::Event& event : watch.events()) {
+    own_.history.set_gene_names(world.feed.gene_names());
+    for (const evod::v1::Event& event : world.feed.events()) {
         worlds_stale_ = worlds_stale_ || event.has_world_created() || event.has_world_deleted() ||
                         event.has_world_reset() || event.has_events_dropped();
     }
@@ -145,11 +145,11 @@ void PlotsPanel::build(Context& context) {
     listen(context);
     build_choices();
     build_comparison();
-    if (!own_.inquiry.trouble().empty()) {
-        widgets::say(own_.inquiry.trouble(), palette::warning);
+    if (!own_.poll.problem().empty()) {
+        widgets::say(own_.poll.problem(), palette::warning);
     }
-    if (other_world_ && !other_world_->inquiry.trouble().empty()) {
-        widgets::say(other_name_ + ": " + other_world_->inquiry.trouble(), palette::warning);
+    if (other_world_ && !other_world_->poll.problem().empty()) {
+        widgets::say(other_name_ + ": " + other_world_->poll.problem(), palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -284,14 +284,14 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
     widgets::checkbox("only the living", only_the_living_);
     ImGui::SameLine();
-    const Population* population = population_.whole();
-    if (const std::string trouble = population_.trouble(); !trouble.empty()) {
+    const Population* population = population_.complete();
+    if (const std::string trouble = population_.problem(); !trouble.empty()) {
         widgets::say(trouble, palette::warning);
     } else if (population == nullptr) {
         widgets::say("…");
     } else {
         widgets::say("generation " + with_separators(population->generation()) + ", island " +
-                     std::to_string(island_.value_or(context.watch.island())) + shown_of_population_);
+                     std::to_string(island_.value_or(context.world.feed.island())) + shown_of_population_);
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -322,15 +322,15 @@ void PlotsPanel::update_histogram(Context& context) {
     }
     const History& history = own_.history;
     const auto& names = history.table().gene_names();
-    const PopulationInquiry::Of whose{history.world(), history.run_id(), island_.value_or(context.watch.island()),
-                                      names.size()};
-    population_.update(context.watch, whose, !history.run_id().empty(), context.now);
-    const HistogramOf of{gene_, whose, population_.whole_count(), only_the_living_};
+    const PopulationPoll::Of whose{history.world(), history.run_id(), island_.value_or(context.world.feed.island()),
+                                   names.size()};
+    population_.update(context.world, whose, !history.run_id().empty(), context.now);
+    const HistogramOf of{gene_, whose, population_.complete_count(), only_the_living_};
     if (of == histogram_of_) { // populations may be large
         return;
     }
     histogram_of_ = of;
-    const Population* population = population_.whole();
+    const Population* population = population_.complete();
     shown_of_population_.clear();
     histogram_ = histogram_of(gene_, {});
     const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
@@ -338,7 +338,7 @@ void PlotsPanel::update_histogram(Context& context) {
         return;
     }
     if (only_the_living_) {
-        const codec::DecodedSnapshot* picture = context.watch.picture_of(whose.island);
+        const codec::DecodedSnapshot* picture = context.world.feed.snapshot_of(whose.island);
         const bool of_this_run = picture != nullptr && picture->about.run_id() == whose.run_id;
         const auto ids = living(*population, of_this_run ? picture : nullptr);
         if (ids && !ids->empty()) {

@@ -6,7 +6,7 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/plots/figures.h"
 #include "client/viewer/panels/plots/history.h"
-#include "client/viewer/watch/population_inquiry.h"
+#include "client/viewer/world/population_poll.h"
 
 #include <array>
 #include <memory>
@@ -28,7 +28,7 @@ class PlotsPanel : public Panel {
 
     struct TrackedHistory {
         History history;
-        Inquiry inquiry{ask_again};
+        Poll poll{ask_again};
     };
 
     void listen(Context& context);
@@ -54,10 +54,10 @@ class PlotsPanel : public Panel {
     std::unique_ptr<TrackedHistory> other_world_; // null: another world is not compared
     std::optional<HistoryTable> file_;            // an earlier run that is compared
     std::string other_name_;                      // of what is compared
-    PopulationInquiry population_{look_at_population};
+    PopulationPoll population_{look_at_population};
 
     std::vector<evod::v1::WorldInfo> worlds_;
-    Inquiry worlds_inquiry_;
+    Poll worlds_poll_;
     bool worlds_stale_ = true;
     std::vector<std::string> files_; // CSV files of the working folder
 
@@ -73,7 +73,7 @@ class PlotsPanel : public Panel {
     Figure figure_, histogram_;
     struct HistogramOf {
         std::string gene;
-        PopulationInquiry::Of of;
+        PopulationPoll::Of of;
         std::uint64_t whole_count = 0;
         bool only_the_living = false;
         bool operator==(const HistogramOf&) const = default;

@@ -1,4 +1,4 @@
-// PanelHost: widgets alone, drawn off the screen, with the mouse and the keys of a person.
+// PanelHost: draws widgets off the screen, and sends them mouse and key events.
 //
 // Needs        an X server.
 #pragma once
@@ -18,11 +18,11 @@ namespace evod::viewer {
 
 class PanelHost {
   public:
-    /// build  makes the widgets of a frame
+    /// build  builds the widgets of a frame
     PanelHost(unsigned width_pixels, unsigned height_pixels, std::function<void(Gui&)> build)
         : width_{width_pixels}, height_{height_pixels}, build_{std::move(build)} {}
 
-    /// A frame, with what was done before it.
+    /// Draws a frame after the events before it.
     sf::Image draw() {
         return draw_off_screen(width_, height_, [this] {
             glClearColor(1, 1, 1, 1);
@@ -47,7 +47,7 @@ class PanelHost {
         event.mouseMove = {x, y};
         give(event);
     }
-    /// Presses or releases the left button where the mouse is.
+    /// Presses or releases the left button at the position of the mouse.
     void button(sf::Event::EventType type) {
         sf::Event event{};
         event.type = type;

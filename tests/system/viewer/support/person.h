@@ -1,4 +1,4 @@
-// Person: somebody at the window of evoview, who looks, presses keys and moves the mouse.
+// Person: reads the pixels of evoview's window, presses keys and moves the mouse, by Xlib.
 #pragma once
 
 #include "tests/support/waiting.h"
@@ -8,7 +8,7 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/keysym.h>
-// Words that others need as names.
+// Macros of Xlib that other headers use as names.
 #undef Bool
 #undef ClientMessage
 #undef None
@@ -19,11 +19,10 @@
 
 namespace evod::viewer {
 
-/// A person at the window of evoview.
 class Person {
   public:
     Person() : display_{XOpenDisplay(nullptr)} {
-        // A look at a window that is just being moved or drawn anew fails; whoever looks then looks again.
+        // Reading a window fails while it is moved or redrawn; then looks_until() tries again.
         XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
     }
     ~Person() { XCloseDisplay(display_); }
@@ -43,7 +42,7 @@ class Person {
             if (children != nullptr) {
                 XFree(children);
             }
-            // It has its name before it is on the screen, and only there can it be looked at.
+            // The window has its name before it is mapped; only a mapped window can be read.
             XWindowAttributes attributes{};
             return window_ != 0 && XGetWindowAttributes(display_, window_, &attributes) != 0 &&
                    attributes.map_state == IsViewable;
@@ -71,13 +70,13 @@ class Person {
         return looks_until([&] { return count(looks(), colour) > 50; });
     }
 
-    /// Looks again and again until the condition holds, and leaves time to draw in between; false if it does not.
+    /// Checks the condition until it holds, with pauses for drawing; false if it does not hold in time.
     template <class Condition>
     static bool looks_until(Condition condition) {
         return wait_until(condition, [] { std::this_thread::sleep_for(std::chrono::milliseconds{20}); });
     }
 
-    /// What the window shows; of no size if it cannot be looked at just now.
+    /// The pixels of the window; an empty image if they cannot be read now.
     sf::Image looks() {
         sf::Image seen;
         XWindowAttributes size{};
@@ -121,10 +120,10 @@ class Person {
     }
 
   private:
-    /// Of the left button, or without any.
+    /// Sends a press or release of the left button, or a movement.
     void send_mouse(int type, int x, int y) {
         XEvent event{};
-        event.xbutton.type = type; // what moves is told in the same places, but for the button
+        event.xbutton.type = type; // XMotionEvent has the same layout, without the button
         event.xbutton.display = display_;
         event.xbutton.window = window_;
         event.xbutton.root = DefaultRootWindow(display_);

@@ -1,4 +1,4 @@
-// What there is in a picture, by the colours of its pixels.
+// Colours of the pixels of an image.
 #pragma once
 
 #include "client/viewer/drawing/palette.h"
@@ -14,7 +14,7 @@ inline Colour pixel_at(const sf::Image& image, unsigned x, unsigned y) {
     return {is.r, is.g, is.b};
 }
 
-/// How many pixels have exactly this colour.
+/// The number of pixels with exactly this colour.
 inline std::size_t count(const sf::Image& image, Colour colour) {
     std::size_t found = 0;
     for (unsigned y = 0; y < image.getSize().y; ++y) {

@@ -1,8 +1,8 @@
-// PlayingServer: answers evoview as a server would, and shows it the one picture that a test has made.
+// PlayingServer: answers evoview like a server, and sends one snapshot that a test made.
 #pragma once
 
 #include "tests/unit/core/fake_server.h"
-#include "tests/unit/viewer/watch/population_pages.h"
+#include "tests/unit/viewer/world/population_pages.h"
 
 #include <atomic>
 #include <string>
@@ -13,16 +13,16 @@ namespace evod::viewer {
 
 class PlayingServer {
   public:
-    explicit PlayingServer(evod::v1::SnapshotFrame picture) : picture_{std::move(picture)} {
+    explicit PlayingServer(evod::v1::SnapshotFrame snapshot) : snapshot_{std::move(snapshot)} {
         thread_ = std::thread{[this] {
             try {
                 serve(server_.accept_and_welcome(0, evod::v1::ROLE_VIEWER));
             } catch (const boost::system::system_error&) {
-                // The client left while it was being written to, as it may.
+                // The client disconnected during a write, which is allowed.
             }
         }};
     }
-    /// Waits for the client to leave; it must have come.
+    /// Waits for the client to disconnect; it must have connected.
     ~PlayingServer() { thread_.join(); }
 
     std::string address() const { return core::to_text(server_.endpoint()); }
@@ -36,14 +36,14 @@ class PlayingServer {
             answer.mutable_response()->set_request_id(request.request_id());
             if (request.has_subscribe_snapshots()) {
                 const auto& wanted = request.subscribe_snapshots();
-                if (!wanted.world().empty() && wanted.world() != picture_.world()) {
+                if (!wanted.world().empty() && wanted.world() != snapshot_.world()) {
                     session.refuse(request.request_id(), evod::v1::CODE_NOT_FOUND,
                                    "no world \"" + wanted.world() + "\"");
                     continue;
                 }
                 session.answer_subscription(request, 7);
-                picture_.set_subscription_id(7);
-                session.send(picture_);
+                snapshot_.set_subscription_id(7);
+                session.send(snapshot_);
                 continue;
             }
             if (request.has_subscribe_events()) {
@@ -51,24 +51,24 @@ class PlayingServer {
                 continue;
             }
             if (request.has_get_population()) {
-                // Ten of them: those that the picture shows, and dead ones.
-                *answer.mutable_response()->mutable_population() = page_of(0, 10, 10, picture_.generation());
+                // Ten organisms: those of the snapshot, and dead ones.
+                *answer.mutable_response()->mutable_population() = page_of(0, 10, 10, snapshot_.generation());
                 session.send(answer);
                 continue;
             }
             command_count_ += !request.has_get_statistics();
             auto& statistics = *answer.mutable_response()->mutable_statistics();
             auto& world = *statistics.mutable_world();
-            world.set_name(picture_.world());
-            world.set_run_id("00112233445566778899aabbccddeeff"); // of every picture that the tests show
-            world.set_tick(picture_.tick());
-            world.set_state(picture_.state());
-            *world.mutable_speed() = picture_.speed();
+            world.set_name(snapshot_.world());
+            world.set_run_id("00112233445566778899aabbccddeeff"); // of every snapshot in these tests
+            world.set_tick(snapshot_.tick());
+            world.set_state(snapshot_.state());
+            *world.mutable_speed() = snapshot_.speed();
             world.add_gene_names("impulse");
             world.add_gene_names("food_radius");
             auto& last = *statistics.add_last();
-            last.set_island(picture_.island());
-            last.set_generation(picture_.generation() - 1);
+            last.set_island(snapshot_.island());
+            last.set_generation(snapshot_.generation() - 1);
             last.set_fitness_best(251.34);
             last.set_fitness_mean(160.2);
             session.send(answer);
@@ -76,7 +76,7 @@ class PlayingServer {
     }
 
     core::FakeServer server_;
-    evod::v1::SnapshotFrame picture_;
+    evod::v1::SnapshotFrame snapshot_;
     std::atomic<unsigned> command_count_ = 0;
     std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// The real programs, as children of a test. EVOD and EVOVIEW are their paths.
+// Runs the real programs as child processes of a test. EVOD and EVOVIEW are their paths.
 #pragma once
 
 #include "client/core/connection.h"
@@ -38,7 +38,7 @@ class TemporaryFolder {
 
 struct Ran {
     int status = -1;
-    std::string output; // both of them
+    std::string output; // standard output and error
 };
 
 /// Runs evoview to its end.
@@ -53,7 +53,7 @@ inline Ran run_evoview(const std::string& arguments) {
     return ran;
 }
 
-/// A program that runs beside the test; its end is waited for.
+/// A child process. The destructor ends it and waits for its end.
 class Process {
   public:
     Process(std::string program, std::vector<std::string> arguments) {
@@ -86,7 +86,7 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    /// The next line of what it says; empty at its end.
+    /// The next line of its output; empty at its end.
     std::string read_line() {
         std::array<char, 512> line{};
         return std::fgets(line.data(), line.size(), output_) == nullptr ? "" : line.data();
@@ -121,14 +121,14 @@ inline evod::v1::ParameterValue real(double number) {
     return value;
 }
 
-/// What is other than by default in a world that a test makes.
+/// A world to make: its name, seed, and the parameters that differ from the defaults.
 struct NewWorld {
     std::string name;
     std::uint64_t seed = 7;
     std::vector<std::pair<std::string, evod::v1::ParameterValue>> parameters;
 };
 
-/// evod on a port of its own, with a connection of the test's own. It keeps nothing unless it is told --data.
+/// evod on a free port, with a connection of the test. It writes no run files unless the arguments contain --data.
 class RealServer {
   public:
     explicit RealServer(std::vector<std::string> arguments) : process_{EVOD, with_port(std::move(arguments))} {
@@ -157,7 +157,7 @@ class RealServer {
         return ask(request);
     }
 
-    /// A world that waits, and will go as fast as it can.
+    /// Makes a world that waits, with maximum speed.
     void make_world(const NewWorld& wanted) {
         evod::v1::Request create, speed;
         auto& world = *create.mutable_create_world();
@@ -173,7 +173,7 @@ class RealServer {
         speed.mutable_set_speed()->mutable_speed()->set_max(true);
         ask(speed);
     }
-    /// Until it is paused at this tick.
+    /// Runs a world until it is paused at this tick.
     void run_to(const std::string& world, std::uint64_t tick) {
         evod::v1::Request run;
         run.mutable_run_until_tick()->set_world(world);
@@ -184,7 +184,7 @@ class RealServer {
             return now.tick() == tick && now.state() == evod::v1::RUN_STATE_PAUSED;
         }));
     }
-    /// Until so many more have ended and it waits.
+    /// Runs a number of generations, until the world waits.
     void run_generations(const std::string& world, std::uint64_t generations) {
         evod::v1::Request run;
         run.mutable_run()->set_world(world);
@@ -198,15 +198,15 @@ class RealServer {
         request.mutable_get_parameters();
         return connection->request(request, hang).value().parameters();
     }
-    /// Ends it; everything that it has said since it began to listen.
+    /// Ends evod. Returns its output since it began to listen.
     std::string end() {
         connection.reset();
         process_.terminate();
-        std::string said;
+        std::string output;
         for (std::string line = process_.read_line(); !line.empty(); line = process_.read_line()) {
-            said += line;
+            output += line;
         }
-        return said;
+        return output;
     }
 
     std::optional<core::Connection> connection;

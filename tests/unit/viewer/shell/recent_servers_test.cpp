@@ -31,7 +31,7 @@ struct RecentServersTest : testing::Test {
     std::filesystem::path folder, file;
 };
 
-TEST_F(RecentServersTest, TheLastOneIsFirstAndNoneIsThereTwice) {
+TEST_F(RecentServersTest, ListsTheNewestFirstAndEachOnce) {
     RecentServers recent{file};
     EXPECT_TRUE(recent.addresses().empty());
     for (const char* host : {"a", "b", "a"}) {
@@ -42,14 +42,14 @@ TEST_F(RecentServersTest, TheLastOneIsFirstAndNoneIsThereTwice) {
     EXPECT_EQ(read(), "a:7744\nb:7744\n");
 }
 
-TEST_F(RecentServersTest, OnlyItsOwnerCanReadTheFile) {
+TEST_F(RecentServersTest, OnlyTheOwnerCanReadTheFile) {
     RecentServers{file}.add({.host = "a", .port = 1});
     struct stat about {};
     ASSERT_EQ(stat(file.c_str(), &about), 0);
     EXPECT_EQ(about.st_mode & 0777, 0600u);
 }
 
-TEST_F(RecentServersTest, TheOldestAreForgotten) {
+TEST_F(RecentServersTest, DropsTheOldest) {
     RecentServers recent{file};
     for (std::uint16_t port = 1; port <= 12; ++port) {
         recent.add({.host = "a", .port = port});
@@ -60,19 +60,19 @@ TEST_F(RecentServersTest, TheOldestAreForgotten) {
     EXPECT_EQ(again.addresses().back(), "a:3");
 }
 
-TEST_F(RecentServersTest, ABadFileIsToldOfAndLeftAlone) {
+TEST_F(RecentServersTest, ReportsAnInvalidFileAndKeepsIt) {
     const std::string bad = "lab:7744\nthis is no address\n";
     write(bad);
     RecentServers recent{file};
     EXPECT_TRUE(recent.addresses().empty());
     EXPECT_THAT(recent.problem(), HasSubstr("recent_servers:2: "));
     recent.add({.host = "a", .port = 1});
-    EXPECT_THAT(recent.addresses(), ElementsAre("a:1")) << "for as long as the program runs";
+    EXPECT_THAT(recent.addresses(), ElementsAre("a:1")) << "until the program ends";
     EXPECT_EQ(read(), bad);
 }
 
-TEST_F(RecentServersTest, WhereItCannotBeWrittenThatIsTold) {
-    std::ofstream{folder / "evod"} << "a file, where the folder would be";
+TEST_F(RecentServersTest, ReportsAFileThatCannotBeWritten) {
+    std::ofstream{folder / "evod"} << "a file in place of the folder";
     RecentServers recent{file};
     recent.add({.host = "a", .port = 1});
     EXPECT_NE(recent.problem(), "");

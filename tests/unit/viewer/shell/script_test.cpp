@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Writes down what is done to it.
+/// Records what the script does.
 struct Actor : Script::Host {
     void send(const sf::Event& event) override {
         switch (event.type) {
@@ -46,7 +46,7 @@ struct Actor : Script::Host {
         const auto found = drop_downs.find(widget);
         return found == drop_downs.end() ? nullptr : &found->second;
     }
-    const Watch* watched() const override { return nullptr; }
+    const ViewedWorld* world() const override { return nullptr; }
     std::string save(const std::string& path) override {
         done.push_back("save " + path);
         return writable ? "" : "could not write " + path;
@@ -67,7 +67,7 @@ std::string fault(std::string_view text) {
 struct ScriptTest : testing::Test {
     Script::Clock::time_point now{};
     Actor actor;
-    /// Advances so often; the text of a refusal, or nothing.
+    /// Advances `times` steps. Returns the text of an error, or an empty text.
     std::string advance(Script& script, int times) {
         for (int i = 0; i < times; ++i) {
             if (const auto advanced = script.advance(actor, now); !advanced) {
@@ -78,24 +78,25 @@ struct ScriptTest : testing::Test {
     }
 };
 
-TEST_F(ScriptTest, FaultsNameLineAndWordAndWhatIsAllowed) {
+TEST_F(ScriptTest, ErrorsNameLineWordAndAllowedWords) {
     EXPECT_EQ(fault("\n# well\nkey Space # fine\n"), "");
-    EXPECT_THAT(fault("key Space\nclik Apply"), testing::StartsWith("2: word 1: \"clik\"; allowed: key, "));
-    EXPECT_THAT(fault("key Spade"), testing::StartsWith("1: word 2: \"Spade\"; allowed: a key"));
+    EXPECT_THAT(fault("key Space\nclik Apply"), testing::StartsWith("2: word 1: got \"clik\", allowed key, "));
+    EXPECT_THAT(fault("key Spade"), testing::StartsWith("1: word 2: got \"Spade\", allowed a key"));
     EXPECT_THAT(fault("key F13"), HasSubstr("word 2"));
     EXPECT_EQ(fault("set mutation_chance"), "1: word 3 is missing: set NAME TEXT");
-    EXPECT_THAT(fault("click mutation chance"), testing::StartsWith("1: word 3: \"chance\"; allowed: no more words"));
-    EXPECT_THAT(fault("wait genration 2"), HasSubstr("word 2: \"genration\"; allowed: connected, "));
-    EXPECT_EQ(fault("wait generation two"), "1: word 3: \"two\"; allowed: a whole number");
+    EXPECT_THAT(fault("click mutation chance"),
+                testing::StartsWith("1: word 3: got \"chance\", allowed no more words"));
+    EXPECT_THAT(fault("wait genration 2"), HasSubstr("word 2: got \"genration\", allowed connected, "));
+    EXPECT_EQ(fault("wait generation two"), "1: word 3: got \"two\", allowed a whole number");
     EXPECT_EQ(fault("wait generation"), "1: word 3 is missing: wait generation N");
-    EXPECT_THAT(fault("wait state asleep"), HasSubstr("allowed: waiting, running, paused, ended"));
-    EXPECT_THAT(fault("wait picture now"), HasSubstr("word 3: \"now\""));
-    EXPECT_THAT(fault("click \"Apply"), testing::StartsWith("1: word 2: its quote is not closed"));
-    EXPECT_THAT(fault("timeout 0"), HasSubstr("word 2: \"0\"; allowed: more than 0"));
+    EXPECT_THAT(fault("wait state asleep"), HasSubstr("allowed waiting, running, paused, ended"));
+    EXPECT_THAT(fault("wait snapshot now"), HasSubstr("word 3: got \"now\""));
+    EXPECT_THAT(fault("click \"Apply"), testing::StartsWith("1: word 2: the quote is not closed"));
+    EXPECT_THAT(fault("timeout 0"), HasSubstr("word 2: got \"0\", allowed more than 0"));
     EXPECT_THAT(fault("quit now"), HasSubstr("word 2"));
 }
 
-TEST_F(ScriptTest, AKeyIsPressedAndReleasedWithItsModifiersAndASignIsText) {
+TEST_F(ScriptTest, SendsKeysWithTheirModifiersAndSignsAsText) {
     auto script = Script::parse("key F4\nkey Ctrl+A\nkey +").value();
     EXPECT_EQ(advance(script, 3), "");
     using Key = sf::Keyboard;
@@ -107,7 +108,7 @@ TEST_F(ScriptTest, AKeyIsPressedAndReleasedWithItsModifiersAndASignIsText) {
     EXPECT_TRUE(script.done());
 }
 
-TEST_F(ScriptTest, AClickWaitsForItsWidgetAndGoesThereFirst) {
+TEST_F(ScriptTest, AClickWaitsForItsWidgetAndMovesThereFirst) {
     auto script = Script::parse("click \"Run generations\"").value();
     EXPECT_EQ(advance(script, 3), "");
     EXPECT_TRUE(actor.done.empty());
@@ -118,16 +119,16 @@ TEST_F(ScriptTest, AClickWaitsForItsWidgetAndGoesThereFirst) {
     EXPECT_THAT(actor.done, ElementsAre("to 30 40", "down", "up"));
 }
 
-TEST_F(ScriptTest, WhatDoesNotComeInTimeEndsItWithItsLine) {
+TEST_F(ScriptTest, ATimeoutNamesTheLine) {
     auto script = Script::parse("timeout 5\n\nclick Apply").value();
     EXPECT_EQ(advance(script, 1), "");
     now += std::chrono::seconds{5};
     EXPECT_EQ(advance(script, 1), "");
     now += std::chrono::seconds{1};
-    EXPECT_EQ(advance(script, 1), "3: click Apply: it did not come to that within 5 s");
+    EXPECT_EQ(advance(script, 1), "3: click Apply: not done within 5 s");
 }
 
-TEST_F(ScriptTest, SettingReplacesWhatAFieldSays) {
+TEST_F(ScriptTest, SettingReplacesTheTextOfAField) {
     actor.widgets["seed"] = {1, 2};
     auto script = Script::parse("set seed é").value();
     for (std::size_t steps = 0; !script.done(); ++steps) {
@@ -135,7 +136,7 @@ TEST_F(ScriptTest, SettingReplacesWhatAFieldSays) {
         ASSERT_EQ(advance(script, 1), "");
     }
     ASSERT_EQ(actor.done.size(), 12u);
-    EXPECT_EQ(actor.done[9], "text 233") << "one character, after all was selected";
+    EXPECT_EQ(actor.done[9], "text 233") << "one character, after Ctrl+A";
     EXPECT_EQ(actor.done[10], "press " + std::to_string(sf::Keyboard::Enter));
 }
 
@@ -144,32 +145,32 @@ TEST_F(ScriptTest, SettingADropDownOpensItAndChooses) {
     actor.drop_downs["selection"] = {};
     auto script = Script::parse("timeout 5\nset selection tournament\nquit").value();
     EXPECT_EQ(advance(script, 4), "");
-    EXPECT_THAT(actor.done, ElementsAre("to 1 2", "down", "up")) << "waits for what it offers";
+    EXPECT_THAT(actor.done, ElementsAre("to 1 2", "down", "up")) << "waits for its choices";
     actor.drop_downs["selection"] = {"roulette", "tournament"};
     actor.widgets["selection: tournament"] = {1, 40};
     EXPECT_EQ(advance(script, 2), "");
-    actor.drop_downs.clear(); // what was chosen may take it away
+    actor.drop_downs.clear(); // a choice may remove the drop-down
     EXPECT_EQ(advance(script, 2), "");
     EXPECT_THAT(actor.done, ElementsAre("to 1 2", "down", "up", "to 1 40", "down", "up", "close"));
 }
 
-TEST_F(ScriptTest, WhatADropDownDoesNotOfferEndsItWithWhatItDoes) {
+TEST_F(ScriptTest, AMissingChoiceEndsWithTheChoices) {
     actor.widgets["selection"] = {1, 2};
     actor.drop_downs["selection"] = {"roulette", "tournament"};
     auto script = Script::parse("timeout 5\nset selection turnament").value();
     EXPECT_EQ(advance(script, 3), "");
     now += std::chrono::seconds{6};
-    EXPECT_EQ(advance(script, 1), "2: set selection turnament: it did not come to that within 5 s; "
+    EXPECT_EQ(advance(script, 1), "2: set selection turnament: not done within 5 s; "
                                   "\"selection\" offers roulette, tournament");
 }
 
-TEST_F(ScriptTest, APictureThatCannotBeWrittenEndsIt) {
+TEST_F(ScriptTest, AFailedScreenshotEndsTheScript) {
     actor.writable = false;
     auto script = Script::parse("screenshot /no/such/out.png").value();
     EXPECT_EQ(advance(script, 1), "1: screenshot /no/such/out.png: could not write /no/such/out.png");
 }
 
-TEST_F(ScriptTest, WaitsForWidgetsToComeAndGo) {
+TEST_F(ScriptTest, WaitsForWidgetsToAppearAndDisappear) {
     actor.widgets["Apply"] = {1, 1};
     auto script = Script::parse("wait widget Apply\nwait gone Apply\nquit").value();
     EXPECT_EQ(advance(script, 4), "");
@@ -179,7 +180,7 @@ TEST_F(ScriptTest, WaitsForWidgetsToComeAndGo) {
     EXPECT_THAT(actor.done, ElementsAre("close"));
 }
 
-TEST_F(ScriptTest, TheDocumentationHasEveryVerbAndCondition) {
+TEST_F(ScriptTest, TheDocumentationListsEveryVerbAndCondition) {
     std::ifstream file{EVOD_SOURCE_FOLDER "/docs/VIEWER.md"};
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     EXPECT_THAT(text, HasSubstr(Script::reference()));

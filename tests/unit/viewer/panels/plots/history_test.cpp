@@ -134,7 +134,7 @@ TEST_F(HistoryTest, DroppedEventsAndPicturesTellThatSomethingIsMissing) {
     dropped.mutable_events_dropped()->set_dropped_count(2);
     history.see_event(dropped);
     EXPECT_EQ(ask(), 4u);
-    history.look_again(); // once more, while it is under way
+    history.poll_interval(); // once more, while it is under way
     answer(page(4, 5));
     EXPECT_EQ(ask(), 6u);
     answer({});

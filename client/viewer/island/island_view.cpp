@@ -1,0 +1,218 @@
+#include "client/viewer/island/island_view.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr double dots_radius_pixels = 2; // organisms smaller than this are streamed as dots
+
+} // namespace
+
+// ---- the region ------------------------------------------------------------------------------------------------
+
+std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod::v1::Detail detail,
+                                                     Clock::time_point now) {
+    const Rectangle visible = camera.visible();
+    const bool covered = region_ && region_->contains({visible.left, visible.top}) &&
+                         region_->contains({visible.left + visible.width, visible.top + visible.height});
+    const bool is_far_too_large = region_ && region_->width > 6 * visible.width;
+    if ((covered && !is_far_too_large && detail == detail_) || (region_ && now - changed_ < interval)) {
+        return std::nullopt;
+    }
+    region_ = {visible.left - visible.width / 2, visible.top - visible.height / 2, 2 * visible.width,
+               2 * visible.height};
+    detail_ = detail;
+    changed_ = now;
+    evod::v1::View view;
+    view.mutable_region()->set_left_px(region_->left);
+    view.mutable_region()->set_top_px(region_->top);
+    view.mutable_region()->set_width_px(region_->width);
+    view.mutable_region()->set_height_px(region_->height);
+    view.set_detail(detail);
+    return view;
+}
+
+void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
+    if (world.feed.all_islands()) { // a view would apply to all islands
+        region_.forget();
+        return;
+    }
+    const auto& about = snapshot_->about;
+    in_part_ = in_part_ || std::max(about.organism_count(), about.live().organism_count()) >= streamed_in_part_min;
+    if (!in_part_) {
+        return;
+    }
+    const bool no_single_organism_matters = options.colour_by == ColourBy::Nothing && !options.radii &&
+                                            !options.forces && !options.trails && !world.feed.selected();
+    const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
+    const auto detail = shows_density(camera)                 ? evod::v1::DETAIL_DENSITY
+                        : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
+                                                              : evod::v1::DETAIL_FULL;
+    if (auto view = region_.update(camera, detail, now)) {
+        world.feed.set_view(std::move(view));
+    }
+}
+
+// ---- requests --------------------------------------------------------------------------------------------------
+
+PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
+    return {world.feed.world(), shown_.run_id, world.feed.island(), gene_names_.size()};
+}
+
+bool IslandView::needs_population() const {
+    const bool current_needed =
+        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || options.radii ||
+        options.forces ||
+        (organism_history_ && (organism_history_->waits_for_children() ||
+                               (!organism_history_->ended() && organism_history_->ranges().empty())));
+    if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
+        return false;
+    }
+    return population() == nullptr || (options.forces && population_tick_ != tick_);
+}
+
+void IslandView::take_population() {
+    const Population* complete = population_poll_.complete();
+    if (complete == nullptr) {
+        return;
+    }
+    if (taken_count_ != population_poll_.complete_count()) {
+        taken_count_ = population_poll_.complete_count();
+        family_colours_.update(*complete);
+    }
+    if (organism_history_) {
+        organism_history_->add(*complete);
+    }
+}
+
+void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
+    organism_tick_ = tick_;
+    evod::v1::Request request;
+    request.mutable_get_organism()->set_world(world.feed.world());
+    request.mutable_get_organism()->set_island(world.feed.island());
+    request.mutable_get_organism()->set_organism(organism_history_->id());
+    organism_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
+        if (response != nullptr && organism_history_) {
+            organism_history_->add(response->organism());
+        }
+    });
+}
+
+// ---- snapshots -------------------------------------------------------------------------------------------------
+
+void IslandView::forget() {
+    IslandView fresh;
+    fresh.options = options;
+    *this = std::move(fresh);
+}
+
+void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::DecodedSnapshot>& snapshot) {
+    const auto& about = snapshot->about;
+    if (shown_.run_id != about.run_id()) {
+        if (!shown_.run_id.empty()) { // the world was reset
+            world.feed.select(std::nullopt);
+            world.feed.set_view(std::nullopt);
+            forget();
+        }
+        shown_ = {world.feed.place_number(), about.run_id()};
+    }
+    snapshot_ = snapshot;
+    generation_ = about.generation();
+    tick_ = about.tick();
+    if (organism_history_) {
+        organism_history_->add(*snapshot);
+        if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
+            world.feed.select(std::nullopt); // the id belongs to another organism now
+        }
+    }
+    trails_.add(snapshot);
+}
+
+void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
+    if (shown_.number != world.feed.place_number()) {
+        forget();
+        shown_.number = world.feed.place_number();
+    }
+    const auto& snapshot = world.feed.view().latest();
+    if (!snapshot) {
+        return;
+    }
+    if (snapshot != snapshot_) {
+        take_snapshot(world, snapshot);
+    }
+    if (gene_names_ != world.feed.gene_names()) {
+        gene_names_ = world.feed.gene_names();
+    }
+    if (const auto selected = world.feed.selected();
+        selected && (!organism_history_ || organism_history_->id() != *selected || organism_history_->ended())) {
+        organism_history_.emplace(*selected, generation_);
+        organism_history_->add(*snapshot);
+        organism_poll_.reset();
+        organism_tick_ = ~std::uint64_t{0};
+    }
+    take_population();
+    if (population_poll_.update(world, population_of(world), needs_population(), now)) {
+        population_tick_ = tick_;
+    }
+    const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();
+    if (organism_poll_.due(world, now) && alive && organism_tick_ != tick_) {
+        request_organism(world, now);
+    }
+    update_stream(world, camera, now);
+}
+
+void IslandView::next_colouring() {
+    switch (options.colour_by) {
+    case ColourBy::Nothing:
+        options.colour_by = gene_names_.empty() ? ColourBy::Health : ColourBy::Gene;
+        options.gene = 0;
+        break;
+    case ColourBy::Gene:
+        if (++options.gene >= gene_names_.size()) {
+            options.gene = 0;
+            options.colour_by = ColourBy::Health;
+        }
+        break;
+    case ColourBy::Health:
+        options.colour_by = ColourBy::Lineage;
+        break;
+    case ColourBy::Lineage:
+        options.colour_by = ColourBy::Nothing;
+        break;
+    }
+}
+
+// ---- following -------------------------------------------------------------------------------------------------
+
+void IslandView::toggle_following(ViewedWorld& world) {
+    if (followed_) {
+        followed_.reset();
+    } else if (world.feed.selected()) {
+        followed_ = Followed{.id = *world.feed.selected()};
+    }
+}
+
+void IslandView::follow(ViewedWorld& world, Camera& camera, double blend) {
+    if (!followed_) {
+        return;
+    }
+    const bool moved = followed_->centre && camera.zoom() == followed_->zoom && camera.centre() != *followed_->centre;
+    if (world.feed.selected() != followed_->id || moved || (followed_->centre && camera.fitted())) {
+        followed_.reset();
+        return;
+    }
+    const auto& ids = world.feed.snapshot()->organisms.id;
+    const auto place = std::ranges::lower_bound(ids, followed_->id);
+    if (place != ids.end() && *place == followed_->id) {
+        const auto index = static_cast<std::size_t>(place - ids.begin());
+        const auto& at = world.feed.view().organisms_at(blend);
+        camera.look_at({at.x_px[index], at.y_px[index]});
+    }
+    followed_->centre = camera.centre();
+    followed_->zoom = camera.zoom();
+}
+
+} // namespace evod::viewer

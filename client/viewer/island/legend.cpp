@@ -1,0 +1,125 @@
+#include "client/viewer/island/legend.h"
+
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/text/numbers.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+void add_families(const IslandView& island_view, const Population& population, Legend& legend) {
+    if (population.families().empty()) {
+        legend.entries.push_back({palette::unknown, "lineages unknown: not sent by the server"});
+        return;
+    }
+    std::size_t others = population.size();
+    for (std::uint8_t family = 0; family < population.families().size(); ++family) {
+        const auto& [founder, size] = population.families()[family];
+        legend.entries.push_back({island_view.family_colours().of(family),
+                                  "of organism " + std::to_string(founder) + ": " + with_separators(size)});
+        others -= size;
+    }
+    if (others > 0) {
+        legend.entries.push_back(
+            {palette::unknown, with_separators(population.family_count() - population.families().size()) +
+                                   " smaller lineages: " + with_separators(others)});
+    }
+}
+
+} // namespace
+
+std::string gene_title(const std::string& name) {
+    return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
+}
+
+Legend legend_of(const IslandView& island_view, const codec::DecodedSnapshot& snapshot,
+                 const std::optional<ColourScale>& density, double density_cell_px) {
+    Legend legend;
+    const Population* population = island_view.population();
+    if (density) {
+        const std::string side = shown_number(density_cell_px);
+        legend.ramp = {"organisms in " + side + " × " + side + " px", *density};
+        return legend;
+    }
+    switch (island_view.options.colour_by) {
+    case ColourBy::Nothing:
+        break;
+    case ColourBy::Health:
+        legend.ramp = {"health, points", health_scale(snapshot.organisms, island_view.options.ramp)};
+        break;
+    case ColourBy::Gene:
+        if (population != nullptr && island_view.options.gene < population->gene_count()) {
+            legend.ramp = {gene_title(island_view.gene_names()[island_view.options.gene]),
+                           gene_scale(*population, island_view.options.gene, island_view.options.ramp)};
+        }
+        break;
+    case ColourBy::Lineage:
+        if (population != nullptr) {
+            add_families(island_view, *population, legend);
+        }
+        break;
+    }
+    const bool needs_population = island_view.options.colour_by == ColourBy::Gene ||
+                                  island_view.options.colour_by == ColourBy::Lineage || island_view.options.radii ||
+                                  island_view.options.forces;
+    if (needs_population && population == nullptr && !island_view.problem().empty()) {
+        legend.entries.push_back({palette::unknown, island_view.problem()});
+    }
+    if (island_view.options.radii && population != nullptr) {
+        legend.entries.push_back({palette::food_radius, "perception radius for food"});
+        legend.entries.push_back({palette::poison_radius, "perception radius for poison"});
+    }
+    if (island_view.options.forces && population != nullptr) {
+        legend.entries.push_back({palette::seeks, "seeks food"});
+        legend.entries.push_back({palette::flees, "flees from poison"});
+        legend.entries.push_back({palette::wanders, "wanders; an arrow of 30 px is 100 kg px/s²"});
+    }
+    return legend;
+}
+
+void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
+    if (legend.empty()) {
+        return;
+    }
+    const float pixel = gui.scale();
+    const float inside = 8 * pixel, line = 18 * pixel, bar_width = 200 * pixel, bar_height = 12 * pixel,
+                swatch = 12 * pixel, gap = 6 * pixel;
+    const ImFont& font = gui.label();
+    float width = legend.ramp ? std::max(bar_width, size_of(legend.ramp->title, font).x) : 0;
+    for (const Legend::Entry& entry : legend.entries) {
+        width = std::max(width, size_of(entry.text, font).x + swatch + gap);
+    }
+    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) +
+                         static_cast<float>(legend.entries.size()) * line + 2 * inside;
+    const Rectangle& viewport = camera.viewport();
+    const ImVec2 corner{std::floor(static_cast<float>(viewport.left)) + 12 * pixel,
+                        std::floor(static_cast<float>(viewport.top + viewport.height) - height - 12 * pixel)};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip), 4 * pixel);
+    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4 * pixel);
+    const float left = corner.x + inside;
+    float top = corner.y + inside;
+    if (legend.ramp) {
+        const ColourScale& scale = legend.ramp->scale;
+        write(list, font, {left, top}, palette::text, legend.ramp->title);
+        top += line;
+        draw_ramp(list, {left, top}, {bar_width, bar_height}, scale.ramp);
+        top += bar_height + 4 * pixel;
+        write(list, font, {left, top}, palette::text, shown_number(scale.low));
+        write_to_the_left(list, font, {left + bar_width, top}, palette::text, shown_number(scale.high));
+        top += line;
+    }
+    for (const Legend::Entry& entry : legend.entries) {
+        list.AddRectFilled({left, top + 2 * pixel}, {left + swatch, top + 2 * pixel + swatch}, ink(entry.colour),
+                           2 * pixel);
+        write(list, font, {left + swatch + gap, top}, palette::text, entry.text);
+        top += line;
+    }
+}
+
+} // namespace evod::viewer

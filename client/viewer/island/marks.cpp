@@ -1,0 +1,273 @@
+#include "client/viewer/island/marks.h"
+
+#include "client/viewer/text/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+/// A colour scale as a table of 256 colours: faster to look up, and as fine as 8-bit colours are.
+class Table {
+  public:
+    explicit Table(const ColourScale& scale) : scale_{scale} {
+        for (int i = 0; i <= last; ++i) {
+            colours_[static_cast<std::size_t>(i)] = palette::at(scale.ramp, i / double{last});
+        }
+    }
+    Colour operator()(float value) const {
+        const double share = std::clamp(scale_.share(value), 0.0, 1.0);
+        return colours_[static_cast<std::size_t>(share * last + 0.5)];
+    }
+
+  private:
+    static constexpr int last = 255;
+    ColourScale scale_;
+    std::array<Colour, last + 1> colours_;
+};
+
+/// Whether a circle may overlap a rectangle. True for some that miss its corners.
+bool may_touch(const Rectangle& rectangle, float x, float y, float radius) {
+    return x + radius >= rectangle.left && x - radius <= rectangle.left + rectangle.width &&
+           y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
+}
+
+Colour colour_of(evod::v1::Choice choice) {
+    return choice == evod::v1::CHOICE_SEEK   ? palette::seeks
+           : choice == evod::v1::CHOICE_FLEE ? palette::flees
+                                             : palette::wanders;
+}
+
+} // namespace
+
+ColourScale health_scale(const codec::DecodedOrganisms& organisms, palette::Ramp ramp) {
+    float most = 100;
+    for (const float health : organisms.health) {
+        most = std::max(most, health);
+    }
+    return {ramp, 0, 100 * std::ceil(most / 100.0)};
+}
+
+ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp) {
+    const Population::Range range = population.range(gene);
+    return {ramp, range.min, range.max};
+}
+
+void FamilyColours::update(const Population& population) {
+    const auto& families = population.families();
+    for (auto& place : places_) {
+        if (place && std::ranges::find(families, *place, &Population::Family::founder) == families.end()) {
+            place.reset();
+        }
+    }
+    for (std::size_t i = 0; i < families.size(); ++i) {
+        auto place = std::ranges::find(places_, std::optional{families[i].founder});
+        if (place == places_.end()) {
+            place = std::ranges::find_if(places_, [](const auto& founder) { return !founder; });
+            *place = families[i].founder;
+        }
+        colours_[i] = static_cast<std::uint8_t>(place - places_.begin());
+    }
+}
+
+Colour FamilyColours::of(std::uint8_t family) const {
+    return family < colours_.size() ? palette::kinds[colours_[family]] : palette::unknown;
+}
+
+void add_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes) {
+    const std::size_t begin = shapes.size();
+    shapes.resize(begin + at.x_px.size());
+    for (std::size_t i = 0; i < at.x_px.size(); ++i) {
+        shapes[begin + i] = {at.x_px[i], at.y_px[i], radius_px[i], radius_px[i]};
+    }
+}
+
+void add_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
+                        std::vector<Colour>& colours) {
+    const Table table{scale};
+    for (const float health : organisms.health) {
+        colours.push_back(table(health));
+    }
+}
+
+void add_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
+                      const ColourScale& scale, std::vector<Colour>& colours) {
+    const Table table{scale};
+    const auto values = population.gene(gene);
+    for (const std::uint32_t id : organisms.id) {
+        colours.push_back(id < values.size() ? table(values[id]) : palette::unknown);
+    }
+}
+
+void add_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,
+                        const FamilyColours& families, std::vector<Colour>& colours) {
+    for (const std::uint32_t id : organisms.id) {
+        colours.push_back(id < population.size() ? families.of(population.family(id)) : palette::unknown);
+    }
+}
+
+void add_radii(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+               std::size_t gene, const Rectangle& visible, std::vector<Shape>& shapes) {
+    const auto radii = population.gene(gene);
+    for (std::size_t i = 0; i < organisms.id.size(); ++i) {
+        const std::uint32_t id = organisms.id[i];
+        if (id < radii.size() && may_touch(visible, at.x_px[i], at.y_px[i], radii[id])) {
+            shapes.push_back({at.x_px[i], at.y_px[i], radii[id], radii[id]});
+        }
+    }
+}
+
+void add_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+                const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets) {
+    constexpr float reach_px = 200; // no organism perceives further
+    for (std::size_t i = 0; i < organisms.id.size(); ++i) {
+        const std::uint32_t id = organisms.id[i];
+        const float x = at.x_px[i], y = at.y_px[i];
+        if (id >= population.size() || !may_touch(visible, x, y, reach_px)) {
+            continue;
+        }
+        const evod::v1::Choice choice = population.choice(id);
+        if (choice == evod::v1::CHOICE_UNSPECIFIED) {
+            continue;
+        }
+        const Colour colour = colour_of(choice);
+        arrows.lines.push_back({x, y, x + arrow_px_per_force * population.force_x()[id],
+                                y + arrow_px_per_force * population.force_y()[id]});
+        arrows.colours.push_back(colour);
+        if (choice != evod::v1::CHOICE_WANDER) {
+            targets.lines.push_back({x, y, population.target_x_px()[id], population.target_y_px()[id]});
+            targets.colours.push_back(colour);
+        }
+    }
+}
+
+// ---- trails ----------------------------------------------------------------------------------------------------
+
+void Trails::add(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot) {
+    if (!snapshots_.empty()) {
+        const auto& last = snapshots_.back()->about;
+        const auto& next = snapshot->about;
+        if (next.world() != last.world() || next.run_id() != last.run_id() || next.island() != last.island() ||
+            next.generation() != last.generation() || next.tick() < last.tick()) {
+            snapshots_.clear();
+        } else if (next.simulated_s() - last.simulated_s() < interval_s - 1e-6) {
+            return;
+        }
+    }
+    snapshots_.push_back(snapshot);
+    std::erase_if(snapshots_, [&](const auto& kept) {
+        return kept->about.simulated_s() < snapshot->about.simulated_s() - kept_s - 1e-6;
+    });
+}
+
+void add_paths(const codec::DecodedOrganisms& from, const codec::DecodedOrganisms& to, std::span<const float> to_x_px,
+               std::span<const float> to_y_px, std::vector<Line>& lines) {
+    for (std::size_t i = 0, j = 0; i < from.id.size() && j < to.id.size();) {
+        if (from.id[i] < to.id[j]) {
+            ++i;
+        } else if (to.id[j] < from.id[i]) {
+            ++j;
+        } else {
+            lines.push_back({from.x_px[i], from.y_px[i], to_x_px[j], to_y_px[j]});
+            ++i, ++j;
+        }
+    }
+}
+
+// ---- density ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+DensityGrid grid_of(const Rectangle& part, double cell_px) {
+    DensityGrid grid;
+    grid.cell_px = cell_px;
+    grid.left_px = std::floor(part.left / cell_px) * cell_px;
+    grid.top_px = std::floor(part.top / cell_px) * cell_px;
+    grid.columns = static_cast<std::size_t>(std::ceil((part.left + part.width - grid.left_px) / cell_px));
+    grid.rows = static_cast<std::size_t>(std::ceil((part.top + part.height - grid.top_px) / cell_px));
+    grid.counts.resize(grid.columns * grid.rows);
+    return grid;
+}
+
+void count(DensityGrid& grid, double x, double y, std::uint32_t amount) {
+    const double column = (x - grid.left_px) / grid.cell_px, row = (y - grid.top_px) / grid.cell_px;
+    if (column >= 0 && row >= 0 && column < static_cast<double>(grid.columns) && row < static_cast<double>(grid.rows)) {
+        grid.counts[static_cast<std::size_t>(row) * grid.columns + static_cast<std::size_t>(column)] += amount;
+    }
+}
+
+void count(DensityGrid& grid, std::span<const float> x, std::span<const float> y) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        count(grid, x[i], y[i], 1);
+    }
+}
+
+} // namespace
+
+double density_cell_px(const Camera& camera, double cell_pixels) {
+    return std::exp2(std::ceil(std::log2(cell_pixels / camera.zoom())));
+}
+
+DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_px) {
+    DensityGrid grid = grid_of(part, cell_px);
+    count(grid, at.x_px, at.y_px);
+    return grid;
+}
+
+DensityGrid overview_of(const codec::DecodedSnapshot& snapshot, std::size_t cells_max) {
+    const double width = snapshot.about.width_px(), height = snapshot.about.height_px();
+    DensityGrid grid = grid_of({0, 0, width, height}, std::max(width, height) / static_cast<double>(cells_max));
+    count(grid, snapshot.organisms.x_px, snapshot.organisms.y_px);
+    for (const codec::DecodedTile& tile : snapshot.tiles) {
+        count(grid, tile.dots.organisms.x_px, tile.dots.organisms.y_px);
+    }
+    for (const DensityGrid& tile : densities_of(snapshot)) {
+        for (std::size_t i = 0; i < tile.counts.size(); ++i) {
+            count(grid, tile.left_px + (static_cast<double>(i % tile.columns) + 0.5) * tile.cell_px,
+                  tile.top_px + (static_cast<double>(i / tile.columns) + 0.5) * tile.cell_px, tile.counts[i]);
+        }
+    }
+    return grid;
+}
+
+void add_density(const DensityGrid& grid, Point island, const ColourScale& scale, std::vector<Shape>& shapes,
+                 std::vector<Colour>& colours) {
+    for (std::size_t i = 0; i < grid.counts.size(); ++i) {
+        if (grid.counts[i] > 0) {
+            const double left = grid.left_px + static_cast<double>(i % grid.columns) * grid.cell_px;
+            const double top = grid.top_px + static_cast<double>(i / grid.columns) * grid.cell_px;
+            const double half_width = std::min(grid.cell_px, island.x - left) / 2;
+            const double half_height = std::min(grid.cell_px, island.y - top) / 2;
+            shapes.push_back({static_cast<float>(left + half_width), static_cast<float>(top + half_height),
+                              static_cast<float>(half_width), static_cast<float>(half_height)});
+            colours.push_back(scale(grid.counts[i]));
+        }
+    }
+}
+
+std::vector<DensityGrid> densities_of(const codec::DecodedSnapshot& snapshot) {
+    std::vector<DensityGrid> grids;
+    for (const codec::DecodedTile& tile : snapshot.tiles) {
+        if (tile.detail == evod::v1::DETAIL_DENSITY) {
+            const std::size_t cells = tile.density.cells_per_side;
+            grids.push_back({tile.left_px, tile.top_px,
+                             static_cast<double>(snapshot.about.tile_px()) / static_cast<double>(cells), cells, cells,
+                             tile.density.organisms});
+        }
+    }
+    return grids;
+}
+
+ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp) {
+    std::uint32_t most = 0;
+    for (const DensityGrid& grid : grids) {
+        for (const std::uint32_t count : grid.counts) {
+            most = std::max(most, count);
+        }
+    }
+    return {ramp, 0, nice_step(most)};
+}
+
+} // namespace evod::viewer

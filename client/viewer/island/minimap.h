@@ -1,0 +1,55 @@
+// Minimap: the whole island in a corner of the viewport, with a rectangle around the visible part. It is drawn while part
+// of the island is out of sight. A press on it moves the camera there.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/island/marks.h"
+#include "client/viewer/world/viewed_world.h"
+
+#include <memory>
+#include <utility>
+
+namespace evod::viewer {
+
+/// The position of the minimap on the screen, and its coordinates.
+struct MinimapPlace {
+    static constexpr double side_pixels_max = 180, margin_pixels = 12; // at scale 1
+
+    Rectangle screen;
+    double zoom = 1; // pixels per px of the world
+
+    Point to_world(Point on_screen) const {
+        return {(on_screen.x - screen.left) / zoom, (on_screen.y - screen.top) / zoom};
+    }
+    Point to_screen(Point world) const { return {screen.left + world.x * zoom, screen.top + world.y * zoom}; }
+    /// The visible part on the screen, clipped at the walls.
+    Rectangle visible_part(const Rectangle& visible) const;
+};
+
+/// In the lower right corner of the viewport.
+///
+/// scale  of its pixels
+MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height, double scale = 1);
+
+/// Whether the whole island is visible.
+bool sees_all(const Camera& camera, double island_width, double island_height);
+
+class Minimap {
+  public:
+    /// Draws the minimap, and moves the camera to where it is pressed. Call between Gui::begin() and Gui::draw().
+    ///
+    /// number  unique among the minimaps of a window
+    void build(ViewedWorld& world, Camera& camera, const Gui& gui, int number);
+    /// Whether a mouse button was pressed on it since the last call.
+    bool take_press() { return std::exchange(pressed_, false); }
+
+  private:
+    std::shared_ptr<const codec::DecodedSnapshot> counted_; // the snapshot that grid_ counts
+    DensityGrid grid_;
+    bool pressed_ = false;
+};
+
+} // namespace evod::viewer

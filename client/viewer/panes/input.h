@@ -1,0 +1,45 @@
+// Input: translates key and mouse events into actions of the window, and moves the camera.
+//
+// keys.h defines which key means which action.
+//
+// Owner        Window.
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/panes/keys.h"
+
+#include <SFML/Window/Event.hpp>
+
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace evod::viewer {
+
+class Input {
+  public:
+    /// Pans and zooms the camera at once; returns any other action. A key that is held down acts once; + − and the step
+    /// keys repeat.
+    std::optional<Action> handle(const sf::Event& event, Captured captured, Camera& camera);
+
+    /// Pans the camera by the arrow keys that are held down.
+    void move(Camera& camera, double seconds) const;
+
+    /// The position of the mouse; nullopt if it is outside the window or drags.
+    std::optional<Point> pointed_at() const { return dragging_ ? std::nullopt : mouse_; }
+
+    /// The position of a click since the last call: a press and release without a drag.
+    std::optional<Point> take_click() { return std::exchange(clicked_, std::nullopt); }
+
+  private:
+    std::optional<Action> press(const sf::Event::KeyEvent& key);
+
+    std::set<sf::Keyboard::Key> held_;
+    std::optional<Point> mouse_;
+    std::optional<Point> pressed_at_, clicked_;
+    bool dragging_ = false;
+};
+
+} // namespace evod::viewer

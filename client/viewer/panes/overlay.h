@@ -1,0 +1,56 @@
+// Overlay: the texts over and around the islands: status strips, help, notices, and the state of the connection.
+//
+// Owner        WindowRenderer.
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/panels/panels.h"
+#include "client/viewer/world/viewed_world.h"
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <string>
+
+namespace evod::viewer {
+
+class Overlay {
+  public:
+    using Clock = core::WorldView::Clock;
+
+    static constexpr std::chrono::seconds notice_shown{6};
+    /// Shows a sentence for `notice_shown`.
+    void notice(std::string text, Clock::time_point now);
+    void toggle_help() { help_ = !help_; }
+    bool help() const { return help_; }
+    void close_help() { help_ = false; }
+
+    // Call the following between Gui::begin() and Gui::draw().
+
+    /// Notices and help, over the whole window.
+    void build(const Gui& gui, const Panels& panels, Clock::time_point now);
+    /// The strips of a world in its part of the window, and the state of its connection.
+    void build_world(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
+    /// The number of the island that a tile shows.
+    void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
+    /// The data of one organism, beside it.
+    void build_organism(const codec::DecodedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
+
+  private:
+    struct Notice {
+        std::string text;
+        Clock::time_point until;
+    };
+
+    void build_strips(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
+    void build_connection(const ViewedWorld& world, const Gui& gui, Rectangle place);
+    void build_notices(const Gui& gui, Clock::time_point now);
+    void build_help(const Gui& gui, const Panels& panels);
+
+    bool help_ = false;
+    std::deque<Notice> notices_;
+};
+
+} // namespace evod::viewer

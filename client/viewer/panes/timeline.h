@@ -1,0 +1,47 @@
+// Timeline: the strip below a replay: a line of all its ticks to drag along, and buttons to play it, to go from generation
+// to generation, to fork a world from the shown moment, and to return to the live world.
+//
+// Owner        Pane.
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/world/viewed_world.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace evod::viewer {
+
+class Timeline {
+  public:
+    static constexpr double height_pixels = 62; // at scale 1
+
+    /// Draws the time line of a replay; nothing for a live world. Call between Gui::begin() and Gui::draw().
+    ///
+    /// number  unique among the time lines of a window
+    void build(ViewedWorld& world, const Gui& gui, Rectangle place, int number);
+    /// Whether a mouse button was pressed on it since the last call.
+    bool take_press() { return std::exchange(pressed_, false); }
+
+  private:
+    void build_line(ViewedWorld& world, const Gui& gui, Rectangle place);
+    void build_buttons(ViewedWorld& world, float pixel);
+    void build_fork(ViewedWorld& world);
+    void find_first_ticks(ViewedWorld& world, const evod::v1::Replay& replay, std::size_t count_max);
+
+    std::string world_, run_id_;                        // of the replay that the members below describe
+    std::map<std::uint64_t, std::uint64_t> first_tick_; // first tick by generation
+    std::set<std::uint64_t> requested_;                 // generations whose first tick was requested
+    std::uint64_t shown_generation_ = 0;
+    int typed_generation_ = 1;
+    bool pressed_ = false;
+    std::array<char, 65> fork_name_{};
+};
+
+} // namespace evod::viewer

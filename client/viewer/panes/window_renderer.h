@@ -1,0 +1,71 @@
+// WindowRenderer: draws one frame of the window: all panes with their islands, panels and overlay.
+//
+// Owner        Screen, or the code that saves screenshots and recordings without a window.
+// Needs        a current OpenGL 3.3 context on the calling thread, from construction to destruction.
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/island/island_renderer.h"
+#include "client/viewer/panels/panels.h"
+#include "client/viewer/panes/overlay.h"
+#include "client/viewer/panes/pane.h"
+
+#include <SFML/Graphics/Image.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace evod::viewer {
+
+class WindowRenderer {
+  public:
+    using Clock = core::WorldView::Clock;
+
+    /// scale  of all text and widgets
+    explicit WindowRenderer(double scale = 1) : gui_{scale} {}
+
+    struct Frame {
+        unsigned width_pixels = 1, height_pixels = 1;
+        Clock::time_point now;
+        bool interpolate = false;          // between the two newest snapshots; else draw the newest
+        bool interactive = false;          // with panels, time lines and the mark of the focus
+        std::optional<Point> pointed_at{}; // by the mouse, in pixels
+    };
+
+    /// Draws to the current framebuffer. A pane whose time line or minimap is pressed gets the focus.
+    void draw(Panes& panes, const Frame& frame);
+
+    /// Draws only widgets, without panes.
+    void draw(const std::function<void(const Gui&)>& build, const Frame& frame);
+
+    /// Returns what `draw` draws. Draws off the screen, so the window may be covered or small.
+    sf::Image capture(const Frame& frame, const std::function<void()>& draw);
+    sf::Image capture(Panes& panes, const Frame& frame) {
+        return capture(frame, [&] { draw(panes, frame); });
+    }
+
+    /// Whether widgets or panels use the event.
+    Captured captured(const sf::Event& event) const;
+
+    Gui& gui() { return gui_; }
+    Overlay& overlay() { return overlay_; }
+    Panels& panels() { return panels_; }
+
+    /// Selects the organism at a point of the chosen island, as the last frame showed it, and shows the organism panel.
+    /// Without an organism there, clears the selection.
+    void select_at(Pane& pane, Point screen);
+
+  private:
+    void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
+
+    Gui gui_;
+    std::vector<std::unique_ptr<IslandRenderer>> island_renderers_; // one per tile
+    Overlay overlay_;
+    Panels panels_;
+    Clock::time_point drawn_{};
+};
+
+} // namespace evod::viewer

@@ -1,0 +1,189 @@
+#include "client/viewer/shell/frame_writer.h"
+
+#include "client/viewer/drawing/png.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+extern char** environ;
+
+namespace evod::viewer {
+
+namespace {
+
+class FolderWriter final : public FrameWriter {
+  public:
+    explicit FolderWriter(const std::string& path) : path_{path} {
+        std::error_code error;
+        std::filesystem::create_directories(path_, error);
+        if (error) {
+            throw std::runtime_error{"could not make the folder " + path + ": " + error.message()};
+        }
+        for (const auto& entry : std::filesystem::directory_iterator{path_, error}) {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with("frame-") && name.ends_with(".png")) {
+                throw std::runtime_error{path + " contains frames of an earlier recording, such as " + name +
+                                         ": name another folder"};
+            }
+        }
+        if (error) {
+            throw std::runtime_error{"could not read the folder " + path + ": " + error.message()};
+        }
+    }
+
+    void add(const sf::Image& frame, std::uint64_t tick) override {
+        write_file((path_ / frame_file_name(frame_count_, tick)).string(), png_of(frame));
+        ++frame_count_;
+    }
+
+    void finish() override {}
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// Sends raw frames through a pipe to ffmpeg.
+class FilmWriter final : public FrameWriter {
+  public:
+    FilmWriter(std::string path, unsigned width_pixels, unsigned height_pixels, double fps)
+        : path_{std::move(path)}, output_{std::tmpfile()} {
+        std::array<int, 2> ends{-1, -1};
+        if (output_ == nullptr || pipe2(ends.data(), O_CLOEXEC) != 0) {
+            throw std::runtime_error{std::string{"could not start ffmpeg: "} + std::strerror(errno)};
+        }
+        std::signal(SIGPIPE, SIG_IGN); // if ffmpeg ends early, the next write fails
+        std::vector<std::string> words{"ffmpeg",    "-y",
+                                       "-loglevel", "error",
+                                       "-f",        "rawvideo",
+                                       "-pix_fmt",  "rgba",
+                                       "-s",        std::to_string(width_pixels) + "x" + std::to_string(height_pixels),
+                                       "-r",        std::to_string(fps),
+                                       "-i",        "-",
+                                       "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2"}; // common codecs need even sizes
+        if (!path_.ends_with(".gif")) {
+            words.insert(words.end(), {"-pix_fmt", "yuv420p"}); // every player supports it
+        }
+        words.push_back("file:" + path_);
+        std::vector<char*> arguments;
+        for (std::string& word : words) {
+            arguments.push_back(word.data());
+        }
+        arguments.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        posix_spawnattr_t attributes;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawnattr_init(&attributes);
+        posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, fileno(output_.get()), STDOUT_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, fileno(output_.get()), STDERR_FILENO);
+        // In its own process group: Ctrl+C in a terminal interrupts only evoview, which then completes the film.
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        const int error = posix_spawnp(&process_, "ffmpeg", &actions, &attributes, arguments.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        posix_spawnattr_destroy(&attributes);
+        close(ends[0]);
+        pipe_ = ends[1];
+        if (error != 0) {
+            process_ = 0;
+            stop();
+            throw std::runtime_error{"could not start ffmpeg to make " + path_ + " (" + std::strerror(error) +
+                                     "): install ffmpeg, or name a folder for single frames"};
+        }
+    }
+    ~FilmWriter() override { stop(); }
+    FilmWriter(const FilmWriter&) = delete;
+    FilmWriter& operator=(const FilmWriter&) = delete;
+
+    void add(const sf::Image& frame, std::uint64_t) override {
+        const std::uint8_t* pixels = frame.getPixelsPtr();
+        std::size_t left = std::size_t{4} * frame.getSize().x * frame.getSize().y;
+        while (left > 0) {
+            const ssize_t written = ::write(pipe_, pixels, left);
+            if (written < 0 && errno == EINTR) {
+                continue;
+            }
+            if (written < 0) {
+                finish(); // throws with the message of ffmpeg
+                throw std::runtime_error{"could not write " + path_ + ": ffmpeg ended too early"};
+            }
+            pixels += written;
+            left -= static_cast<std::size_t>(written);
+        }
+        ++frame_count_;
+    }
+
+    void finish() override {
+        const int status = stop();
+        if (status == 0) {
+            return;
+        }
+        std::string output(2000, '\0');
+        std::rewind(output_.get());
+        output.resize(std::fread(output.data(), 1, output.size(), output_.get()));
+        output.erase(std::find_if(output.rbegin(), output.rend(), [](char c) { return c != '\n'; }).base(),
+                     output.end());
+        throw std::runtime_error{"could not write " + path_ + ": ffmpeg " +
+                                 (WIFSIGNALED(status) ? "was ended by signal " + std::to_string(WTERMSIG(status))
+                                                      : "ended with status " + std::to_string(WEXITSTATUS(status))) +
+                                 (output.empty() ? "" : ": " + output)};
+    }
+
+  private:
+    /// Closes the pipe and waits for ffmpeg to end. Returns its wait status; 0 if it was stopped before.
+    int stop() {
+        if (pipe_ >= 0) {
+            close(pipe_);
+            pipe_ = -1;
+        }
+        int status = 0;
+        if (process_ > 0) {
+            while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+            }
+            process_ = 0;
+        }
+        return status;
+    }
+
+    std::string path_;
+    struct Close {
+        void operator()(FILE* file) const { std::fclose(file); }
+    };
+    std::unique_ptr<FILE, Close> output_; // standard output and error of ffmpeg
+    int pipe_ = -1;
+    pid_t process_ = 0;
+};
+
+} // namespace
+
+std::string frame_file_name(std::size_t number, std::uint64_t tick) {
+    std::string digits = std::to_string(number);
+    digits.insert(0, digits.size() < 6 ? 6 - digits.size() : 0, '0');
+    return "frame-" + digits + "-tick-" + std::to_string(tick) + ".png";
+}
+
+bool is_film(const std::string& path) {
+    static constexpr const char* endings[] = {".mp4", ".mkv", ".webm", ".mov", ".avi", ".gif"};
+    return std::ranges::any_of(endings, [&](const char* ending) { return path.ends_with(ending); });
+}
+
+std::unique_ptr<FrameWriter> open_frame_writer(const std::string& path, unsigned width_pixels, unsigned height_pixels,
+                                               double fps) {
+    if (is_film(path)) {
+        return std::make_unique<FilmWriter>(path, width_pixels, height_pixels, fps);
+    }
+    return std::make_unique<FolderWriter>(path);
+}
+
+} // namespace evod::viewer

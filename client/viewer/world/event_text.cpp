@@ -1,0 +1,57 @@
+#include "client/viewer/world/event_text.h"
+
+#include "client/core/actor.h"
+
+namespace evod::viewer {
+
+namespace {
+
+/// "a, b, c" of the items' names.
+template <class Items, class NameOf>
+std::string name_list(const Items& items, NameOf name_of) {
+    std::string names;
+    for (const auto& item : items) {
+        names += (names.empty() ? "" : ", ") + name_of(item);
+    }
+    return names;
+}
+
+constexpr auto name_of_item = [](const auto& item) -> std::string { return item.name(); };
+
+std::string planned_text(const evod::v1::Event& event) {
+    const bool planned = event.has_change_planned();
+    const auto& change = planned ? event.change_planned().change() : event.change_cancelled().change();
+    return core::to_text(planned ? change.by() : event.change_cancelled().by()) +
+           (planned ? " plans to change " : " cancelled the change of ") +
+           name_list(change.parameters(), name_of_item) +
+           (change.has_tick() ? " after tick " + std::to_string(change.tick())
+                              : " from generation " + std::to_string(change.generation()));
+}
+
+} // namespace
+
+std::string event_text(const evod::v1::Event& event) {
+    switch (event.kind_case()) {
+    case evod::v1::Event::kServerGoingAway:
+        return "The server is shutting down";
+    case evod::v1::Event::kWorldReset:
+        return core::to_text(event.world_reset().by()) + " reset the world";
+    case evod::v1::Event::kWorldDeleted:
+        return core::to_text(event.world_deleted().by()) + " deleted the world " + event.world();
+    case evod::v1::Event::kParametersChanged:
+        return core::to_text(event.parameters_changed().by()) + " changed " +
+               name_list(event.parameters_changed().changed(), name_of_item);
+    case evod::v1::Event::kChangePlanned:
+    case evod::v1::Event::kChangeCancelled:
+        return planned_text(event);
+    case evod::v1::Event::kChangeDropped:
+        return "The change of " +
+               name_list(event.change_dropped().name(), [](const std::string& name) { return name; }) + " that " +
+               core::to_text(event.change_dropped().by()) +
+               " planned conflicts with the other parameters and was not made";
+    default:
+        return "";
+    }
+}
+
+} // namespace evod::viewer

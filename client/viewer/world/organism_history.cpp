@@ -1,0 +1,61 @@
+#include "client/viewer/world/organism_history.h"
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+void OrganismHistory::add(const codec::DecodedSnapshot& snapshot) {
+    if (snapshot.about.generation() != generation_) {
+        ended_ = true;
+        // Only the next generation contains its children.
+        too_late_ = too_late_ || snapshot.about.generation() != generation_ + 1;
+        return;
+    }
+    const double s = snapshot.about.simulated_s();
+    const auto& ids = snapshot.organisms.id;
+    const auto place = std::ranges::lower_bound(ids, id_);
+    if (ended_ || place == ids.end() || *place != id_ || (!health_.empty() && s <= health_.back().s)) {
+        return;
+    }
+    if (health_.size() == points_max) {
+        for (std::size_t i = 0; i < points_max / 2; ++i) {
+            health_[i] = health_[2 * i];
+        }
+        health_.resize(points_max / 2);
+    }
+    health_.push_back({s, snapshot.organisms.health[static_cast<std::size_t>(place - ids.begin())]});
+}
+
+void OrganismHistory::add(const evod::v1::OrganismInfo& info) {
+    if (info.generation() == generation_ && info.id() == id_) {
+        info_ = info;
+    }
+}
+
+void OrganismHistory::add(const Population& population) {
+    if (population.generation() == generation_ && ranges_.empty()) {
+        for (std::size_t gene = 0; gene < population.gene_count(); ++gene) {
+            ranges_.push_back(population.range(gene));
+        }
+    }
+    if (population.generation() != generation_ + 1 || children_) {
+        return;
+    }
+    children_.emplace();
+    for (const std::uint32_t id : population.children_of(id_)) {
+        const std::uint32_t first = population.first_parent(id), second = population.second_parent(id);
+        Child child{.id = id};
+        if (first != second) {
+            child.other_parent = first == id_ ? second : first;
+        } else if (info_ && static_cast<std::size_t>(info_->genes_size()) == population.gene_count()) {
+            child.same_genes = true;
+            for (std::size_t gene = 0; gene < population.gene_count(); ++gene) {
+                child.same_genes =
+                    child.same_genes && population.gene(gene)[id] == info_->genes(static_cast<int>(gene));
+            }
+        }
+        children_->push_back(child);
+    }
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,382 @@
+#include "client/viewer/world/parameter_edits.h"
+
+#include "client/core/actor.h"
+#include "client/viewer/world/status_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace evod::viewer {
+
+namespace {
+
+using evod::v1::ParameterDescription;
+using evod::v1::ParameterValue;
+
+constexpr double decades_min = 100; // ratio of max to min above which a slider is logarithmic
+constexpr std::size_t transactions_kept = 100;
+
+// The first parameter of each topic, in the order of the registry.
+struct Topic {
+    std::string_view first, title;
+};
+constexpr Topic topics[] = {
+    {"fitness", "Experiment"},
+    {"island_count", "Islands"},
+    {"food_count", "Food and poison"},
+    {"obstacle_count", "Obstacles and crates"},
+    {"item_radius_px", "Items"},
+    {"health_loss_per_s", "Health and behaviour"},
+    {"damping", "Physics"},
+    {"radius_per_unit_px", "From genes to bodies"},
+    {"normal_speed_cost", "Costs of genes"},
+    {"population_size", "Population"},
+    {"fitness_scaling", "Selection"},
+    {"crossover", "Crossover"},
+    {"rearranging", "Mutation"},
+    {"initial_gene_min", "Bounds of genes"},
+    {"generation_limit", "End of the run"},
+    {"migration", "Migration"},
+};
+
+std::string plain(std::string_view text) {
+    std::string lower{text};
+    for (char& sign : lower) {
+        sign = sign == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(sign)));
+    }
+    return lower;
+}
+
+std::string number_text(double number) {
+    return print("%.10g", number);
+}
+
+constexpr std::string_view field_prefix = "set_parameters.";
+
+} // namespace
+
+// ---- values ----------------------------------------------------------------------------------------------------
+
+bool same(const ParameterValue& a, const ParameterValue& b) {
+    if (a.kind_case() != b.kind_case()) {
+        return false;
+    }
+    switch (a.kind_case()) {
+    case ParameterValue::kReal:
+        return a.real() == b.real();
+    case ParameterValue::kCount:
+        return a.count() == b.count();
+    case ParameterValue::kFlag:
+        return a.flag() == b.flag();
+    case ParameterValue::kChoice:
+        return a.choice() == b.choice();
+    case ParameterValue::KIND_NOT_SET:
+        break;
+    }
+    return true;
+}
+
+std::string to_text(const ParameterValue& value) {
+    switch (value.kind_case()) {
+    case ParameterValue::kReal:
+        return number_text(value.real());
+    case ParameterValue::kCount:
+        return with_separators(value.count());
+    case ParameterValue::kFlag:
+        return value.flag() ? "on" : "off";
+    default:
+        return value.choice();
+    }
+}
+
+double number_of(const ParameterValue& value) {
+    return value.has_real() ? value.real() : value.count();
+}
+
+ParameterValue value_of(const ParameterDescription& parameter, double number) {
+    ParameterValue value;
+    if (parameter.kind() == evod::v1::PARAMETER_KIND_COUNT) {
+        constexpr double most = std::numeric_limits<std::uint32_t>::max();
+        value.set_count(static_cast<std::uint32_t>(std::clamp(std::round(number), 0.0, most)));
+    } else {
+        value.set_real(number);
+    }
+    return value;
+}
+
+bool spans_decades(const ParameterDescription& parameter) {
+    const bool count = parameter.kind() == evod::v1::PARAMETER_KIND_COUNT;
+    const double least = count || parameter.min() <= 0 ? std::max(parameter.min(), 1.0) : parameter.min();
+    return parameter.max() / least > decades_min;
+}
+
+std::string allowed_text(const ParameterDescription& parameter) {
+    switch (parameter.kind()) {
+    case evod::v1::PARAMETER_KIND_FLAG:
+        return "on or off";
+    case evod::v1::PARAMETER_KIND_CHOICE: {
+        std::string names;
+        for (const std::string& name : parameter.choices()) {
+            names += (names.empty() ? "" : ", ") + name;
+        }
+        return names;
+    }
+    default:
+        return number_text(parameter.min()) + " to " + number_text(parameter.max());
+    }
+}
+
+bool matches(const ParameterDescription& parameter, std::string_view search) {
+    const std::string text = plain(parameter.name() + " " + parameter.unit() + " " + parameter.help());
+    const std::string words = plain(search);
+    for (std::size_t begin = 0; begin < words.size();) {
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        if (text.find(words.substr(begin, end - begin)) == std::string::npos) {
+            return false;
+        }
+        begin = end + 1;
+    }
+    return true;
+}
+
+std::vector<ParameterGroup> group(std::span<const ParameterDescription> registry) {
+    std::vector<ParameterGroup> groups;
+    for (std::size_t i = 0; i < registry.size(); ++i) {
+        const auto* topic = std::ranges::find(topics, registry[i].name(), &Topic::first);
+        if (topic != std::end(topics)) {
+            groups.push_back({topic->title, i, i + 1});
+        } else if (groups.empty()) {
+            groups.push_back({"General", i, i + 1});
+        } else {
+            groups.back().end = i + 1;
+        }
+    }
+    return groups;
+}
+
+// ---- what the server reports -----------------------------------------------------------------------------------
+
+void ParameterEdits::describe(std::vector<ParameterDescription> registry) {
+    registry_ = std::move(registry);
+    index_.clear();
+    for (std::size_t i = 0; i < registry_.size(); ++i) {
+        index_.emplace(registry_[i].name(), i);
+    }
+    forget();
+}
+
+void ParameterEdits::forget() {
+    states_.assign(registry_.size(), {});
+    for (std::size_t i = 0; i < registry_.size(); ++i) {
+        states_[i].value = registry_[i].default_value();
+    }
+    revision_ = 0;
+    sent_ = {};
+    done_.clear();
+    undone_.clear();
+    problem_.clear();
+}
+
+void ParameterEdits::take(const evod::v1::ParameterState& reported) {
+    const auto found = index_.find(reported.name());
+    if (found == index_.end()) {
+        return;
+    }
+    State& state = states_[found->second];
+    state.value = reported.value();
+    state.pending = reported.has_pending() ? std::optional{reported.pending()} : std::nullopt;
+    if (state.edit && same(*state.edit, asked_for(found->second))) {
+        state.edit.reset();
+        state.violation.reset();
+    }
+}
+
+void ParameterEdits::update(const evod::v1::ParameterSet& set) {
+    if (set.revision() < revision_) {
+        return; // older than the set known
+    }
+    for (const evod::v1::ParameterState& state : set.parameters()) {
+        take(state);
+    }
+    revision_ = set.revision();
+}
+
+bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
+    if (changed.revision() <= revision_) {
+        return true; // contained in the set known
+    }
+    for (const evod::v1::ParameterState& state : changed.changed()) {
+        take(state);
+        if (const auto found = index_.find(state.name()); found != index_.end()) {
+            states_[found->second].changed_by = core::to_text(changed.by());
+        }
+    }
+    const bool next = changed.revision() == revision_ + 1;
+    revision_ = changed.revision();
+    return next;
+}
+
+bool ParameterEdits::has_pending() const {
+    return std::ranges::any_of(states_, [](const State& state) { return state.pending.has_value(); });
+}
+
+// ---- one parameter ---------------------------------------------------------------------------------------------
+
+const ParameterValue& ParameterEdits::asked_for(std::size_t i) const {
+    return states_[i].pending ? *states_[i].pending : states_[i].value;
+}
+
+const ParameterValue& ParameterEdits::shown(std::size_t i) const {
+    return states_[i].edit ? *states_[i].edit : asked_for(i);
+}
+
+const evod::v1::Violation* ParameterEdits::violation(std::size_t i) const {
+    return states_[i].violation ? &*states_[i].violation : nullptr;
+}
+
+void ParameterEdits::forget_refusal() {
+    for (State& state : states_) {
+        state.violation.reset();
+    }
+    problem_.clear();
+}
+
+void ParameterEdits::edit(std::size_t i, ParameterValue value) {
+    revert(i);
+    if (!same(value, asked_for(i))) {
+        states_[i].edit = std::move(value);
+    }
+}
+
+void ParameterEdits::revert(std::size_t i) {
+    states_[i].edit.reset();
+    forget_refusal();
+}
+
+void ParameterEdits::revert_all() {
+    for (State& state : states_) {
+        state.edit.reset();
+    }
+    forget_refusal();
+}
+
+std::size_t ParameterEdits::edit_count() const {
+    return static_cast<std::size_t>(std::ranges::count_if(states_, [](const State& state) { return !!state.edit; }));
+}
+
+// ---- transactions ----------------------------------------------------------------------------------------------
+
+std::optional<evod::v1::Request> ParameterEdits::send(const std::string& world, Kind kind,
+                                                      std::vector<Change> changes) {
+    evod::v1::Request request;
+    evod::v1::SetParameters& set = *request.mutable_set_parameters();
+    set.set_world(world);
+    set.set_expected_revision(revision_);
+    for (const Change& change : changes) {
+        evod::v1::ParameterAssignment& assignment = *set.add_parameters();
+        assignment.set_name(registry_[change.parameter].name());
+        *assignment.mutable_value() = change.after;
+    }
+    sent_ = {kind, std::move(changes)};
+    return request;
+}
+
+std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world) {
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        if (states_[i].edit) {
+            changes.push_back({i, asked_for(i), *states_[i].edit});
+        }
+    }
+    return busy() || changes.empty() ? std::nullopt : send(world, Kind::Apply, std::move(changes));
+}
+
+std::optional<evod::v1::Request> ParameterEdits::send_back(const std::string& world, Kind kind,
+                                                           std::vector<std::vector<Change>>& from) {
+    while (!busy() && !from.empty()) {
+        std::vector<Change> changes;
+        for (const Change& change : from.back()) {
+            if (same(asked_for(change.parameter), change.after)) {
+                changes.push_back({change.parameter, change.after, change.before});
+            }
+        }
+        from.pop_back();
+        if (!changes.empty()) {
+            return send(world, kind, std::move(changes));
+        } // other clients have changed all of it since
+    }
+    return std::nullopt;
+}
+
+std::optional<evod::v1::Request> ParameterEdits::undo(const std::string& world) {
+    return send_back(world, Kind::Undo, done_);
+}
+
+std::optional<evod::v1::Request> ParameterEdits::redo(const std::string& world) {
+    return send_back(world, Kind::Redo, undone_);
+}
+
+void ParameterEdits::take_done() {
+    for (const Change& change : sent_.changes) {
+        State& state = states_[change.parameter];
+        state.changed_by.clear();
+        if (state.edit && same(*state.edit, change.after)) {
+            state.edit.reset(); // else it was edited again meanwhile
+        }
+    }
+    if (sent_.kind == Kind::Apply) {
+        undone_.clear();
+    }
+    auto& kept = sent_.kind == Kind::Undo ? undone_ : done_;
+    kept.push_back(std::move(sent_.changes));
+    if (kept.size() > transactions_kept) {
+        kept.erase(kept.begin());
+    }
+}
+
+void ParameterEdits::take_refusal(const evod::v1::Status& status) {
+    bool marked = false, is_stale = false;
+    for (const evod::v1::Violation& violation : status.violations()) {
+        const std::string_view field = violation.field();
+        const std::string_view name = field.substr(field.starts_with(field_prefix) ? field_prefix.size() : 0);
+        is_stale = is_stale || name == "expected_revision";
+        if (const auto found = index_.find(name); found != index_.end()) {
+            states_[found->second].violation = violation;
+            marked = true;
+        }
+    }
+    problem_ = marked     ? "Nothing was changed: see the marked parameters"
+               : is_stale ? "Another client changed parameters at the same time: check the values and apply again"
+                          : refusal_text(status);
+}
+
+bool ParameterEdits::answered(const evod::v1::Response* response) {
+    if (!busy()) {
+        return false;
+    }
+    forget_refusal();
+    const bool done = response != nullptr && response->status().code() == evod::v1::CODE_UNSPECIFIED;
+    if (done) {
+        take_done();
+        if (response->has_parameters()) {
+            update(response->parameters());
+        }
+    } else if (response != nullptr) {
+        take_refusal(response->status());
+    } else {
+        problem_ = "No answer arrived: the change may or may not have been made";
+    }
+    if (!done && sent_.kind != Kind::Apply) { // it can still be undone, or redone
+        for (Change& change : sent_.changes) {
+            std::swap(change.before, change.after);
+        }
+        (sent_.kind == Kind::Undo ? done_ : undone_).push_back(std::move(sent_.changes));
+    }
+    sent_ = {};
+    return !done;
+}
+
+} // namespace evod::viewer

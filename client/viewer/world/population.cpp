@@ -1,0 +1,185 @@
+#include "client/viewer/world/population.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string_view>
+#include <unordered_map>
+
+namespace evod::viewer {
+
+namespace {
+
+std::uint32_t number_at(std::string_view bytes, std::size_t index) {
+    std::uint32_t number = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+        number |= std::uint32_t{static_cast<std::uint8_t>(bytes[4 * index + i])} << (8 * i);
+    }
+    return number;
+}
+
+void append(std::string_view bytes, std::size_t column, std::size_t count, std::vector<std::uint32_t>& to) {
+    for (std::size_t i = 0; i < count; ++i) {
+        to.push_back(number_at(bytes, column * count + i));
+    }
+}
+
+void append(std::string_view bytes, std::size_t column, std::size_t count, std::vector<float>& to) {
+    for (std::size_t i = 0; i < count; ++i) {
+        to.push_back(std::bit_cast<float>(number_at(bytes, column * count + i)));
+    }
+}
+
+bool all_finite(std::string_view floats) {
+    for (std::size_t i = 0; i < floats.size() / 4; ++i) {
+        if (!std::isfinite(std::bit_cast<float>(number_at(floats, i)))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string wrong(const char* field, std::size_t got, std::size_t allowed) {
+    return std::string{"population."} + field + " has " + std::to_string(got) + " bytes, not " +
+           std::to_string(allowed);
+}
+
+} // namespace
+
+std::optional<std::string> Population::add(const evod::v1::Population& page) {
+    const std::size_t count = page.count();
+    if (page.first() != next()) {
+        return "population.first is " + std::to_string(page.first()) + ", not " + std::to_string(next());
+    }
+    if (begun_ && (page.generation() != generation_ || page.organism_count() != organism_count_)) {
+        return "population.generation is " + std::to_string(page.generation()) + ", not " + std::to_string(generation_);
+    }
+    if (count > page.organism_count() - std::min<std::size_t>(page.first(), page.organism_count()) ||
+        (count == 0 && page.first() < page.organism_count())) {
+        return "population.count is " + std::to_string(count) + " of " + std::to_string(page.organism_count()) +
+               " from " + std::to_string(page.first());
+    }
+    if (page.genes().size() != 4 * count * gene_count()) {
+        return wrong("genes", page.genes().size(), 4 * count * gene_count());
+    }
+    if (page.choices().size() != count) {
+        return wrong("choices", page.choices().size(), count);
+    }
+    if (page.forces().size() != 8 * count) {
+        return wrong("forces", page.forces().size(), 8 * count);
+    }
+    if (page.targets().size() != 8 * count) {
+        return wrong("targets", page.targets().size(), 8 * count);
+    }
+    // All pages contain parents and founders, or none does.
+    const bool parents_expected = begun_ ? has_parents() : !page.parents().empty();
+    if (page.parents().size() != (parents_expected ? 8 * count : 0)) {
+        return wrong("parents", page.parents().size(), parents_expected ? 8 * count : 0);
+    }
+    const bool founders_expected = begun_ ? !founders_.empty() : !page.founders().empty();
+    if (page.founders().size() != (founders_expected ? 4 * count : 0)) {
+        return wrong("founders", page.founders().size(), founders_expected ? 4 * count : 0);
+    }
+    for (const auto& [field, floats] : {std::pair<const char*, const std::string&>{"genes", page.genes()},
+                                        {"forces", page.forces()},
+                                        {"targets", page.targets()}}) {
+        if (!all_finite(floats)) {
+            return std::string{"population."} + field + " contains a value that is not a finite number";
+        }
+    }
+    if (!std::ranges::all_of(page.choices(), [](char choice) { return evod::v1::Choice_IsValid(choice); })) {
+        return "population.choices contains an unknown choice";
+    }
+    begun_ = true;
+    generation_ = page.generation();
+    generation_tick_ = page.generation_tick();
+    organism_count_ = page.organism_count();
+    for (std::size_t gene = 0; gene < genes_.size(); ++gene) {
+        append(page.genes(), gene, count, genes_[gene]);
+    }
+    for (std::size_t column = 0; column < 2; ++column) {
+        append(page.forces(), column, count, forces_[column]);
+        append(page.targets(), column, count, targets_[column]);
+        if (parents_expected) {
+            append(page.parents(), column, count, parents_[column]);
+        }
+    }
+    if (founders_expected) {
+        append(page.founders(), 0, count, founders_);
+    }
+    choices_.insert(choices_.end(), page.choices().begin(), page.choices().end());
+    if (complete()) {
+        finish();
+    }
+    return std::nullopt;
+}
+
+void Population::finish() {
+    for (const std::vector<float>& gene : genes_) {
+        Range range;
+        if (!gene.empty()) {
+            const auto [min, max] = std::ranges::minmax(gene);
+            double sum = 0;
+            for (const float value : gene) {
+                sum += value;
+            }
+            range = {min, static_cast<float>(sum / static_cast<double>(gene.size())), max};
+        }
+        ranges_.push_back(range);
+    }
+    std::unordered_map<std::uint32_t, std::size_t> sizes;
+    for (const std::uint32_t founder : founders_) {
+        ++sizes[founder];
+    }
+    for (const auto& [founder, size] : sizes) {
+        families_.push_back({founder, size});
+    }
+    std::ranges::sort(families_, [](const Family& a, const Family& b) {
+        return a.size != b.size ? a.size > b.size : a.founder < b.founder;
+    });
+    family_count_ = families_.size();
+    families_.resize(std::min(families_.size(), shown_families_max));
+    std::unordered_map<std::uint32_t, std::uint8_t> shown;
+    for (std::size_t i = 0; i < families_.size(); ++i) {
+        shown[families_[i].founder] = static_cast<std::uint8_t>(i);
+    }
+    family_.reserve(founders_.size());
+    for (const std::uint32_t founder : founders_) {
+        const auto place = shown.find(founder);
+        family_.push_back(place == shown.end() ? no_family : place->second);
+    }
+}
+
+std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
+    std::vector<std::uint32_t> children;
+    for (std::uint32_t id = 0; id < parents_[0].size(); ++id) {
+        if (parents_[0][id] == parent || parents_[1][id] == parent) {
+            children.push_back(id);
+        }
+    }
+    return children;
+}
+
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* snapshot) {
+    std::vector<std::uint32_t> ids;
+    for (std::uint32_t id = 0; id < population.size(); ++id) {
+        if (population.choice(id) != evod::v1::CHOICE_UNSPECIFIED) {
+            ids.push_back(id);
+        }
+    }
+    if (!ids.empty()) {
+        return ids;
+    }
+    if (snapshot == nullptr || snapshot->about.generation() != population.generation() ||
+        snapshot->organisms.id.size() != snapshot->about.live().alive_count()) {
+        return std::nullopt;
+    }
+    for (const std::uint32_t id : snapshot->organisms.id) {
+        if (id < population.size()) {
+            ids.push_back(id);
+        }
+    }
+    return ids;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,180 @@
+#include "client/viewer/world/replay_control.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace evod::viewer {
+
+namespace {
+
+// The server may have to simulate from a checkpoint far before the moment.
+constexpr std::chrono::minutes seek_timeout{10};
+// A replay of a live world grows: how often its range is asked for.
+constexpr std::chrono::seconds range_interval{1};
+
+} // namespace
+
+ReplayControl::ReplayControl(ServerConnection& server, WorldFeed& feed, const WantedWorld& wanted)
+    : server_{server}, feed_{feed}, opening_at_start_{wanted.replay_generation.has_value()} {
+    if (wanted.replay_generation) {
+        evod::v1::RunMoment at;
+        at.set_generation(*wanted.replay_generation);
+        open(at);
+    }
+}
+
+// ---- opening and closing ---------------------------------------------------------------------------------------
+
+void ReplayControl::open(evod::v1::RunMoment at) {
+    if (info() != nullptr || opening()) {
+        return;
+    }
+    open_refusal_.reset();
+    evod::v1::Request request;
+    request.mutable_open_replay()->set_world(feed_.world());
+    *request.mutable_open_replay()->mutable_at() = std::move(at);
+    opening_of_ = feed_.world();
+    opening_ = server_.connection().send(std::move(request), seek_timeout);
+}
+
+void ReplayControl::take_opened() {
+    if (!opening() || opening_.wait_for(std::chrono::seconds{0}) != std::future_status::ready) {
+        return;
+    }
+    const auto response = opening_.get();
+    const bool at_start = std::exchange(opening_at_start_, false);
+    if (!server_.accepted_or_noticed(response)) {
+        if (at_start) {
+            open_refusal_ = refusal_of(response);
+        }
+    } else if (feed_.world() != opening_of_) { // another world is shown by now
+        close(response->world().name());
+    } else {
+        const evod::v1::WorldInfo& world = response->world();
+        show(world.name());
+        present_ = world.replay().replay_of();
+        feed_.take_info(world);
+        evod::v1::SubscribeEvents subscription;
+        subscription.set_world(world.name());
+        own_events_ = server_.connection().subscribe(subscription);
+    }
+}
+
+void ReplayControl::close(const std::string& world) {
+    evod::v1::Request request;
+    request.mutable_close_replay()->set_world(world);
+    // The answer does not matter: the server closes the replay with the session at the latest.
+    server_.connection().send(std::move(request));
+}
+
+void ReplayControl::leave(const std::string& next_world) {
+    if (next_world != present_) {
+        forked_.clear();
+    }
+    seeks_.clear();
+    open_refusal_.reset();
+    if (present_) {
+        server_.connection().unsubscribe(own_events_);
+        close(feed_.world());
+        present_.reset();
+    }
+}
+
+void ReplayControl::show(std::string world) {
+    leave(world);
+    feed_.show(std::move(world), feed_.island());
+}
+
+void ReplayControl::return_to_present() {
+    if (present_) {
+        show(std::string{*present_});
+    }
+}
+
+void ReplayControl::update(WorldFeed::Clock::time_point now) {
+    take_opened();
+    if (present_ && now - range_requested_ > range_interval) {
+        range_requested_ = now;
+        feed_.request_statistics();
+    }
+}
+
+void ReplayControl::apply(const evod::v1::Event& event) {
+    if (event.has_world_deleted() && event.world() == forked_) {
+        forked_.clear();
+    }
+}
+
+bool ReplayControl::at_end() const {
+    const RunControl& control = feed_.control();
+    const bool stopped =
+        control.state() == evod::v1::RUN_STATE_WAITING || control.state() == evod::v1::RUN_STATE_PAUSED;
+    return info() != nullptr && info()->replay_of().empty() && stopped && control.tick() >= info()->last_tick();
+}
+
+// ---- seeking ---------------------------------------------------------------------------------------------------
+
+void ReplayControl::seek(evod::v1::RunMoment to) {
+    if (info() == nullptr) {
+        return;
+    }
+    if (server_.read_only() && !is_own()) {
+        server_.notice(std::string{read_only_text});
+    } else {
+        send_seek(seeks_.add(std::move(to)));
+    }
+}
+
+void ReplayControl::send_seek(std::optional<evod::v1::RunMoment> to) {
+    if (!to) {
+        return;
+    }
+    evod::v1::Request request;
+    request.mutable_seek()->set_world(feed_.name());
+    *request.mutable_seek()->mutable_to() = *std::move(to);
+    const auto take_answer = [this](const core::Result<evod::v1::Response>& response) {
+        if (server_.accepted_or_noticed(response)) {
+            feed_.take_info(response->world());
+        }
+        if (auto next = seeks_.answered()) {
+            send_seek(std::move(next));
+        } else {
+            feed_.request_statistics(); // another generation is the last one now
+        }
+    };
+    server_.send(std::move(request), take_answer, seek_timeout);
+}
+
+void ReplayControl::seek_generations(int by) {
+    const bool sought_generation = target() != nullptr && target()->has_generation();
+    if (info() == nullptr || (feed_.snapshot() == nullptr && !sought_generation)) {
+        return;
+    }
+    const std::uint64_t from = sought_generation ? target()->generation() : feed_.snapshot()->about.generation();
+    const std::int64_t to = std::max<std::int64_t>(static_cast<std::int64_t>(from) + by, 1);
+    evod::v1::RunMoment moment;
+    moment.set_generation(
+        std::clamp(static_cast<std::uint64_t>(to), info()->first_generation(), info()->last_generation()));
+    seek(std::move(moment));
+}
+
+// ---- forking ---------------------------------------------------------------------------------------------------
+
+void ReplayControl::fork(const std::string& name) {
+    if (!server_.may_create()) {
+        server_.notice("Only the role admin may make worlds");
+        return;
+    }
+    evod::v1::Request request;
+    request.mutable_fork_world()->set_world(feed_.name());
+    request.mutable_fork_world()->set_name(name);
+    server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
+        if (server_.accepted_or_noticed(response)) {
+            forked_ = name;
+            server_.notice("Forked the world " + name + " from this moment; B shows it beside");
+        }
+    });
+}
+
+} // namespace evod::viewer

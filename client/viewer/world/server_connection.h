@@ -1,0 +1,80 @@
+// ServerConnection: the connection of a viewed world to its server, the requests under way on it, and the notices that
+// the window shows.
+//
+// Nothing here blocks: send() returns at once, and take_answers() calls the handlers of the answers that have arrived.
+//
+// Owner        ViewedWorld.
+// Threads      used by the thread that draws; core::Connection has its own.
+#pragma once
+
+#include "client/core/connection.h"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evod::viewer {
+
+class ServerConnection {
+  public:
+    using AnswerHandler = std::function<void(const core::Result<evod::v1::Response>&)>;
+
+    explicit ServerConnection(core::Options options);
+
+    /// Sends a request. A later take_answers() calls the handler, unless drop_answers() is called before. The handler
+    /// reports refusals itself.
+    void send(evod::v1::Request request, AnswerHandler handler,
+              std::chrono::milliseconds timeout = core::Connection::default_timeout);
+    void take_answers();
+    /// The handlers of all requests under way will not be called.
+    void drop_answers() { unanswered_.clear(); }
+    /// Whether no request is unanswered. False until the first connection.
+    bool all_answered() const { return connected_count_ > 0 && unanswered_.empty(); }
+
+    /// The server's welcome, once after each time that the connection was made.
+    std::optional<evod::v1::Welcome> take_welcome();
+    bool was_connected() const { return connected_count_ > 0; }
+    core::ConnectionStatus status() const { return connection_.status(); }
+    bool connected() const { return status().state == core::State::Connected; }
+    /// Why there is no connection, as a sentence; empty while connected, and before the first attempt has failed.
+    std::string problem() const;
+    const core::Endpoint& endpoint() const { return options_.server; }
+    /// For subscriptions.
+    core::Connection& connection() { return connection_; }
+    const core::Connection& connection() const { return connection_; }
+
+    /// Whether the role of this session forbids commands. False until the server has sent the role.
+    bool read_only() const { return role_ == evod::v1::ROLE_VIEWER; }
+    /// Whether this session may make worlds. True until the server has sent the role.
+    bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
+
+    /// Adds a notice: one sentence, which the window shows for some seconds.
+    void notice(std::string text) { notices_.push_back(std::move(text)); }
+    /// Adds a notice if the request was refused or not answered. Returns whether it was accepted.
+    bool accepted_or_noticed(const core::Result<evod::v1::Response>& response);
+    /// The notices since the last call, oldest first.
+    std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
+
+  private:
+    struct Unanswered {
+        AnswerHandler handler;
+        std::future<core::Result<evod::v1::Response>> response;
+    };
+
+    core::Options options_;
+    core::Connection connection_;
+    std::vector<Unanswered> unanswered_;
+    std::uint64_t connected_count_ = 0; // as of the last take_welcome()
+    evod::v1::Role role_ = evod::v1::ROLE_UNSPECIFIED;
+    std::vector<std::string> notices_;
+};
+
+/// Why a request was refused or not answered, as a sentence; empty if it was accepted.
+std::string refusal_of(const core::Result<evod::v1::Response>& response);
+
+} // namespace evod::viewer

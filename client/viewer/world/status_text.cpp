@@ -1,0 +1,135 @@
+#include "client/viewer/world/status_text.h"
+
+#include "client/core/duration.h"
+
+#include <cctype>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+std::string capitalised(std::string text) {
+    if (!text.empty()) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    }
+    return text;
+}
+
+/// Without the name of the request: "fork_world.name" → "name".
+std::string own_name(const std::string& field) {
+    return field.substr(field.rfind('.') + 1);
+}
+
+} // namespace
+
+std::string speed_text(const evod::v1::Speed& speed) {
+    if (speed.max()) {
+        return "max";
+    }
+    const double factor = speed.real_time_factor();
+    // Halvings are shown as fractions: 1/8× is easier to read than 0.125×.
+    const double inverse = factor > 0 ? 1 / factor : 0;
+    return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse) : print("%g×", factor);
+}
+
+std::string storage_text(const evod::v1::Storage& storage) {
+    switch (storage.state()) {
+    case evod::v1::STORAGE_STATE_FAILING:
+        return "Commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_STALLED:
+        return "Worlds wait for the disk, commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_BEHIND:
+        return "Worlds wait for the disk: " + storage.reason();
+    default:
+        return "";
+    }
+}
+
+const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage) {
+    return state == evod::v1::RUN_STATE_WAITING ? "waiting – Space runs" : state_word(state, storage);
+}
+
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage) {
+    switch (state) {
+    case evod::v1::RUN_STATE_WAITING:
+        return "waiting";
+    case evod::v1::RUN_STATE_RUNNING:
+        return core::worlds_wait(storage) ? "waits for the disk" : "running";
+    case evod::v1::RUN_STATE_PAUSED:
+        return "paused";
+    case evod::v1::RUN_STATE_TERMINATED:
+        return "ended";
+    default:
+        return "…";
+    }
+}
+
+std::string refusal_text(const evod::v1::Status& status) {
+    const auto& violations = status.violations();
+    if (violations.size() == 1) {
+        const evod::v1::Violation& only = violations[0];
+        if (!only.field().empty() && status.message().starts_with(only.field())) { // the message says what is allowed
+            return capitalised(own_name(only.field()) + status.message().substr(only.field().size()));
+        }
+        return capitalised(status.message()) + (only.got().empty() ? "" : " (" + only.got() + ")") +
+               "; allowed: " + only.allowed();
+    }
+    std::string text = capitalised(status.message());
+    for (int i = 0; i < violations.size(); ++i) {
+        text += (i == 0 ? ": " : "; ") + own_name(violations[i].field()) + " must be " + violations[i].allowed() +
+                (violations[i].got().empty() ? "" : ", not " + violations[i].got());
+    }
+    return text;
+}
+
+std::string connection_loss_text(const core::ConnectionStatus& status, bool has_token) {
+    if (status.token_needed && !has_token) { // the server's message names options of evoctl
+        return "The server requires a token: ask its administrator for one";
+    }
+    return status.refusal ? refusal_text(*status.refusal) : capitalised(status.reason);
+}
+
+std::string generation_title(const evod::v1::SnapshotFrame& snapshot) {
+    return "Generation " + with_separators(snapshot.generation());
+}
+
+std::string replay_label(const evod::v1::Replay& replay) {
+    return replay.replay_of().empty() ? "REPLAY" : "PAST of " + replay.replay_of();
+}
+
+std::string place_text(const evod::v1::SnapshotFrame& snapshot) {
+    std::string text = snapshot.world();
+    if (snapshot.island_count() > 1) {
+        text += print(" · island %u of 0–%u", snapshot.island(), snapshot.island_count() - 1);
+    }
+    return text;
+}
+
+std::string place_and_speed_text(const evod::v1::SnapshotFrame& snapshot, const RunControl& control) {
+    std::string text = place_text(snapshot) + " · " + speed_text(control.speed());
+    if (control.state() == evod::v1::RUN_STATE_RUNNING && snapshot.ticks_per_s() > 0) {
+        text += " (" + with_separators(static_cast<std::uint64_t>(std::llround(snapshot.ticks_per_s()))) + " ticks/s)";
+    }
+    return text;
+}
+
+std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapshot,
+                                          const evod::v1::GenerationStatistics* last_generation) {
+    const evod::v1::LiveStatistics& live = snapshot.live();
+    std::vector<std::string> pieces{
+        "alive " + with_separators(live.alive_count()) + " of " + with_separators(live.organism_count()),
+        print("mean health %.1f", live.health_mean()),
+        "food eaten " + with_separators(live.food_eaten()),
+        "poison eaten " + with_separators(live.poison_eaten()),
+        "tick " + with_separators(snapshot.tick()) + " (" + core::duration(snapshot.simulated_s()) + ")",
+    };
+    if (last_generation != nullptr) {
+        pieces.push_back(print("fitness of generation %llu: best %.1f, mean %.1f",
+                               static_cast<unsigned long long>(last_generation->generation()),
+                               last_generation->fitness_best(), last_generation->fitness_mean()));
+    }
+    return pieces;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,45 @@
+// Status texts: what the strips of the window, notices and messages say about a world, its server and its run.
+//
+// Threads      none; pure functions.
+#pragma once
+
+#include "client/core/connection.h"
+#include "client/viewer/text/numbers.h"
+#include "client/viewer/world/run_control.h"
+
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+std::string speed_text(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
+/// "running", "waiting – Space runs". A running world may have to wait for the server's disk, which `storage` says.
+const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage);
+/// The same without the key: "waiting".
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage);
+
+/// The problem with the server's run files: "Commands are refused: …", "Worlds wait for the disk: …"; empty if none.
+std::string storage_text(const evod::v1::Storage& storage);
+
+/// A refusal as a sentence: "There is no such island (9); allowed: 0 to 7".
+std::string refusal_text(const evod::v1::Status& status);
+
+/// Why there is no connection, as a sentence beside fields for server and token; empty if nothing is wrong.
+std::string connection_loss_text(const core::ConnectionStatus& status, bool has_token);
+
+/// "Generation 12".
+std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
+
+/// The label of a replay: "PAST of default" for one of a live world, "REPLAY" for one of a run file.
+std::string replay_label(const evod::v1::Replay& replay);
+
+/// "default · island 2 of 0–7"
+std::string place_text(const evod::v1::SnapshotFrame& snapshot);
+/// "default · island 2 of 0–7 · 4× (240 ticks/s)".
+std::string place_and_speed_text(const evod::v1::SnapshotFrame& snapshot, const RunControl& control);
+
+/// The parts of the statistics line, the most important first; a narrow window omits the last ones.
+std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapshot,
+                                          const evod::v1::GenerationStatistics* last_generation);
+
+} // namespace evod::viewer

@@ -1,0 +1,125 @@
+#include "client/viewer/world/viewed_world.h"
+
+#include "client/viewer/world/event_text.h"
+#include "client/viewer/world/status_text.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace evod::viewer {
+
+ViewedWorld::ViewedWorld(const WantedWorld& wanted)
+    : server{wanted.connection}, feed{server, wanted}, replay{server, feed, wanted}, commands{server, feed, replay} {}
+
+bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
+    if (const auto welcome = server.take_welcome()) {
+        feed.take_storage(welcome->storage());
+        if (replay.is_own()) {
+            server.notice("The connection was lost, and the replay was closed with it");
+            replay.return_to_present();
+        } else {
+            feed.request_statistics();
+        }
+        if (std::exchange(next_world_wanted_, false)) {
+            show_next_world();
+        }
+    }
+    // Answers before events: an event may report what happened after an answer.
+    server.take_answers();
+    replay.update(now);
+    feed.take_events();
+    for (const evod::v1::Event& event : feed.events()) {
+        take_event(event);
+    }
+    return feed.take_snapshots(now);
+}
+
+void ViewedWorld::take_event(const evod::v1::Event& event) {
+    feed.apply(event);
+    replay.apply(event);
+    if (event.has_world_created() && refusal()) {
+        show(feed.world(), feed.island()); // the new world may be the missing one
+    }
+    const bool of_this_world = feed.control().known() && event.world() == feed.control().world();
+    if (!of_this_world && !event.has_server_going_away()) {
+        return;
+    }
+    if (std::string text = event_text(event); !text.empty()) {
+        server.notice(std::move(text));
+    }
+    if (event.has_world_deleted() && of_this_world) {
+        feed.control().forget();
+        show(event.world(), 0); // a world of this name may be created again
+    }
+}
+
+void ViewedWorld::show(std::string world, std::uint32_t island) {
+    if (world != feed.world()) {
+        replay.leave(world);
+    }
+    feed.show(std::move(world), island);
+}
+
+void ViewedWorld::show_next_world() {
+    if (!server.was_connected()) {
+        next_world_wanted_ = true; // the request is sent once the server has answered the hello
+        return;
+    }
+    find_next_world([this](const std::string& world) { show(world, 0); });
+}
+
+void ViewedWorld::find_next_world(std::function<void(const std::string& world)> found) {
+    if (!server.was_connected()) {
+        server.notice("The worlds are not known yet: not connected to the server");
+        return;
+    }
+    evod::v1::Request request;
+    request.mutable_list_worlds();
+    server.send(std::move(request), [this, found = std::move(found)](const core::Result<evod::v1::Response>& response) {
+        if (!server.accepted_or_noticed(response)) {
+            return;
+        }
+        if (const auto world = world_after_this(response->worlds())) {
+            found(*world);
+        }
+    });
+}
+
+/// Nullopt, and a notice, if there is none.
+std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) {
+    const auto& list = worlds.worlds();
+    if (list.empty()) {
+        server.notice("This server has no world yet: make one with evoctl create NAME");
+        return std::nullopt;
+    }
+    const std::string shown = replay.present().value_or(feed.name());
+    const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
+    const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
+    if (next == here) {
+        server.notice("This is the only world: make another with evoctl create NAME");
+        return std::nullopt;
+    }
+    return next->name();
+}
+
+std::optional<std::string> ViewedWorld::refusal() const {
+    return replay.open_refusal() ? replay.open_refusal() : feed.refusal();
+}
+
+std::string ViewedWorld::state_text() const {
+    if (!server.connected()) {
+        return "no connection";
+    }
+    if (replay.at_end()) {
+        return "at the end of the replay";
+    }
+    const RunControl& control = feed.control();
+    const bool waiting = control.state() == evod::v1::RUN_STATE_WAITING;
+    if (waiting && replay.info() != nullptr && control.tick() >= replay.info()->last_tick()) {
+        return "waiting for the live world";
+    }
+    return viewer::state_text(control.state(), feed.storage());
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,49 @@
+// WorldCommands: the commands of a person at the window to the viewed world.
+//
+// A command that the session's role forbids is not sent; a notice says why. The effect of a command that was sent is
+// assumed until its answer arrives (run_control.h).
+//
+// Owner        ViewedWorld.
+// Threads      used by the thread that draws.
+#pragma once
+
+#include "client/viewer/world/replay_control.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace evod::viewer {
+
+class WorldCommands {
+  public:
+    WorldCommands(ServerConnection& server, WorldFeed& feed, const ReplayControl& replay)
+        : server_{server}, feed_{feed}, replay_{replay} {}
+
+    void pause_or_resume();
+    void step(std::uint64_t ticks);
+    void run_generations(std::uint64_t generations);
+    void faster();
+    void slower();
+    void real_time();
+    void max_speed();
+    void at_factor(double factor);
+    void reset(std::optional<std::uint64_t> seed);
+
+    /// Whether this session may command the viewed world. A viewer may command the replay that it opened itself.
+    bool may_command() const { return !server_.read_only() || replay_.is_own(); }
+    /// Why it may not, as a sentence without a full stop; empty if it may.
+    std::string_view read_only_reason() const { return may_command() ? "" : read_only_text; }
+
+  private:
+    template <class MakeRequest>
+    void command(MakeRequest make_request);
+    bool is_over();
+    void send(std::optional<evod::v1::Request> request);
+
+    ServerConnection& server_;
+    WorldFeed& feed_;
+    const ReplayControl& replay_;
+};
+
+} // namespace evod::viewer

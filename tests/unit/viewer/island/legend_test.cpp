@@ -1,0 +1,52 @@
+#include "client/viewer/island/legend.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::viewer {
+namespace {
+
+codec::DecodedSnapshot snapshot_with_health(float health) {
+    codec::DecodedSnapshot snapshot;
+    snapshot.organisms.id = {0};
+    snapshot.organisms.x_px = snapshot.organisms.y_px = snapshot.organisms.radius_px = {1};
+    snapshot.organisms.health = {health};
+    return snapshot;
+}
+
+TEST(Legend, IsEmptyWithoutAColouring) {
+    EXPECT_TRUE(legend_of(IslandView{}, snapshot_with_health(80), std::nullopt, 1).empty());
+}
+
+TEST(Legend, ShowsTheScaleOfHealth) {
+    IslandView view;
+    view.options.colour_by = ColourBy::Health;
+    const Legend legend = legend_of(view, snapshot_with_health(180), std::nullopt, 1);
+    ASSERT_TRUE(legend.ramp);
+    EXPECT_EQ(legend.ramp->title, "health, points");
+    EXPECT_EQ(legend.ramp->scale.high, 200);
+}
+
+TEST(Legend, ShowsTheScaleOfDrawnDensities) {
+    IslandView view;
+    view.options.colour_by = ColourBy::Health;
+    const ColourScale density{palette::Ramp::Viridis, 0, 50};
+    const Legend legend = legend_of(view, snapshot_with_health(80), density, 64);
+    ASSERT_TRUE(legend.ramp);
+    EXPECT_EQ(legend.ramp->title, "organisms in 64 × 64 px");
+    EXPECT_EQ(legend.ramp->scale.high, 50);
+}
+
+TEST(Legend, ExplainsNothingThatNeedsAMissingPopulation) {
+    IslandView view;
+    view.options.colour_by = ColourBy::Lineage;
+    view.options.radii = view.options.forces = true;
+    EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
+}
+
+TEST(Legend, NamesGenesWithTheirUnits) {
+    EXPECT_EQ(gene_title("food_radius"), "food_radius, px");
+    EXPECT_EQ(gene_title("impulse"), "impulse, gene units");
+}
+
+} // namespace
+} // namespace evod::viewer

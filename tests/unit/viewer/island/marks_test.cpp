@@ -1,0 +1,235 @@
+#include "client/viewer/island/marks.h"
+
+#include "tests/unit/viewer/world/population_pages.h"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+namespace evod::viewer {
+
+bool operator==(const Shape& a, const Shape& b) {
+    return a.x == b.x && a.y == b.y && a.half_width == b.half_width && a.half_height == b.half_height;
+}
+bool operator==(const Line& a, const Line& b) {
+    return a.x == b.x && a.y == b.y && a.end_x == b.end_x && a.end_y == b.end_y;
+}
+
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr palette::Ramp ramp = palette::Ramp::Viridis;
+
+struct MarksTest : testing::Test {
+    MarksTest() {
+        organisms.id = {0, 2, 9}; // 9 is not in the population
+        organisms.radius_px = {10, 11, 12};
+        organisms.health = {0, 50, 200};
+        at = {{100, 200, 300}, {10, 20, 30}};
+        EXPECT_EQ(population.add(page_of(0, 3, 3)), std::nullopt);
+    }
+    codec::DecodedOrganisms organisms;
+    Positions at;
+    Population population{2};
+    const Rectangle everything{0, 0, 1000, 1000};
+};
+
+TEST_F(MarksTest, HealthScalesFromZeroToTheRoundedMaximum) {
+    const ColourScale scale = health_scale(organisms, ramp);
+    EXPECT_EQ(scale.low, 0);
+    EXPECT_EQ(scale.high, 200);
+    std::vector<Colour> colours;
+    add_health_colours(organisms, scale, colours);
+    ASSERT_EQ(colours.size(), 3u);
+    EXPECT_EQ(colours[0], palette::at(ramp, 0));
+    EXPECT_EQ(colours[1], palette::at(ramp, 64.0 / 255)); // a quarter, to 1/255
+    EXPECT_EQ(colours[2], palette::at(ramp, 1));
+    organisms.health = {1, 2, 3};
+    EXPECT_EQ(health_scale(organisms, ramp).high, 100) << "low health is not shown as high";
+}
+
+TEST_F(MarksTest, AGeneScalesFromItsMinimumToItsMaximum) {
+    std::vector<Colour> colours;
+    const ColourScale scale = gene_scale(population, 1, ramp);
+    EXPECT_EQ(scale.low, 100);
+    EXPECT_EQ(scale.high, 102);
+    add_gene_colours(organisms, population, 1, scale, colours);
+    EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0), palette::at(ramp, 1), palette::unknown));
+    const ColourScale all_equal{ramp, 5, 5};
+    EXPECT_EQ(all_equal(5), palette::at(ramp, 0.5));
+}
+
+TEST_F(MarksTest, FamiliesKeepTheirColoursWhileAmongTheLargest) {
+    const auto population_of = [](std::initializer_list<std::uint32_t> founders) {
+        const auto count = static_cast<std::uint32_t>(founders.size());
+        auto page = page_of(0, count, count);
+        page.clear_founders();
+        for (const std::uint32_t founder : founders) {
+            put(*page.mutable_founders(), founder);
+        }
+        Population made{2};
+        EXPECT_EQ(made.add(page), std::nullopt);
+        return made;
+    };
+    FamilyColours colours;
+    colours.update(population_of({5, 5, 5, 6, 6, 7}));
+    EXPECT_EQ(colours.of(0), palette::kinds[0]);
+    EXPECT_EQ(colours.of(2), palette::kinds[2]);
+    EXPECT_EQ(colours.of(Population::no_family), palette::unknown);
+    colours.update(population_of({7, 7, 7, 5, 8, 8})); // 7, 8, 5: family 6 is gone, 8 is new
+    EXPECT_EQ(colours.of(0), palette::kinds[2]) << "7";
+    EXPECT_EQ(colours.of(1), palette::kinds[1]) << "8 gets the free colour";
+    EXPECT_EQ(colours.of(2), palette::kinds[0]) << "5";
+    const auto next = population_of({8, 8, 5, 7});
+    colours.update(next);
+    std::vector<Colour> of_organisms;
+    add_family_colours(organisms, next, colours, of_organisms);
+    EXPECT_THAT(of_organisms, ElementsAre(palette::kinds[1], palette::kinds[0], palette::unknown));
+}
+
+TEST_F(MarksTest, RadiiAreDrawnOfVisibleOrganismsOnly) {
+    std::vector<Shape> shapes;
+    add_radii(organisms, at, population, 1, everything, shapes);
+    EXPECT_THAT(shapes, ElementsAre(Shape{100, 10, 100, 100}, Shape{200, 20, 102, 102}));
+    shapes.clear();
+    add_radii(organisms, at, population, 1, {301, 0, 100, 100}, shapes);
+    EXPECT_THAT(shapes, ElementsAre(Shape{200, 20, 102, 102}));
+}
+
+TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
+    ColouredLines arrows, targets;
+    add_forces(organisms, at, population, everything, arrows, targets);
+    EXPECT_THAT(arrows.lines, ElementsAre(Line{100, 10, 100 + arrow_px_per_force, 10},
+                                          Line{200, 20, 200 + arrow_px_per_force, 20 + 2 * arrow_px_per_force}));
+    EXPECT_THAT(targets.lines, ElementsAre(Line{100, 10, 0, 0}, Line{200, 20, 2, 4}));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::seeks, palette::seeks));
+
+    auto page = page_of(0, 3, 3);
+    *page.mutable_choices() = {evod::v1::CHOICE_WANDER, evod::v1::CHOICE_SEEK, evod::v1::CHOICE_FLEE};
+    Population others{2};
+    ASSERT_EQ(others.add(page), std::nullopt);
+    arrows.clear();
+    targets.clear();
+    add_forces(organisms, at, others, everything, arrows, targets);
+    EXPECT_THAT(arrows.colours, ElementsAre(palette::wanders, palette::flees));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::flees)) << "a wandering organism has no target";
+    arrows.clear();
+    targets.clear();
+    add_forces(organisms, at, others, {5'000, 5'000, 10, 10}, arrows, targets);
+    EXPECT_THAT(arrows.lines, IsEmpty());
+}
+
+// ---- trails ----------------------------------------------------------------------------------------------------
+
+std::shared_ptr<codec::DecodedSnapshot> snapshot(double s, std::uint64_t generation = 1) {
+    auto made = std::make_shared<codec::DecodedSnapshot>();
+    made->about.set_simulated_s(s);
+    made->about.set_tick(static_cast<std::uint64_t>(s * 60));
+    made->about.set_generation(generation);
+    return made;
+}
+
+TEST(Trails, KeepAFewSnapshotsOfTheLastSeconds) {
+    Trails trails;
+    for (int tick = 0; tick <= 600; ++tick) {
+        trails.add(snapshot(tick / 60.0));
+    }
+    const auto& kept = trails.snapshots();
+    EXPECT_EQ(kept.size(), 13u); // from 7 s to 10 s
+    EXPECT_NEAR(kept.front()->about.simulated_s(), 7, 1e-9);
+    EXPECT_NEAR(kept.back()->about.simulated_s(), 10, 1e-9);
+}
+
+TEST(Trails, RestartWithEachGeneration) {
+    Trails trails;
+    trails.add(snapshot(1));
+    trails.add(snapshot(2));
+    trails.add(snapshot(2.5, 2));
+    EXPECT_EQ(trails.snapshots().size(), 1u);
+    trails.add(snapshot(3, 2));
+    trails.add(snapshot(1, 2)); // a replay
+    EXPECT_EQ(trails.snapshots().size(), 1u);
+    auto elsewhere = snapshot(1.5, 2);
+    elsewhere->about.set_island(1);
+    trails.add(elsewhere);
+    EXPECT_EQ(trails.snapshots().size(), 1u);
+}
+
+TEST(Trails, ConnectEachOrganismWithItself) {
+    codec::DecodedOrganisms from, to;
+    from.id = {1, 2, 5, 6};
+    from.x_px = {10, 20, 50, 60};
+    from.y_px = {1, 2, 5, 6};
+    to.id = {2, 3, 6};
+    const std::vector<float> x{21, 31, 61}, y{3, 4, 7};
+    std::vector<Line> lines;
+    add_paths(from, to, x, y, lines);
+    EXPECT_THAT(lines, ElementsAre(Line{20, 2, 21, 3}, Line{60, 6, 61, 7}));
+}
+
+// ---- density ---------------------------------------------------------------------------------------------------
+
+TEST(Density, CellsAreAlignedToTheIsland) {
+    const Positions places{{5, 15, 16, 95, 500}, {5, 5, 6, 95, 5}};
+    const DensityGrid grid = density_of(places, {0, 0, 100, 100}, 10);
+    EXPECT_EQ(grid.columns, 10u);
+    EXPECT_EQ(grid.rows, 10u);
+    EXPECT_EQ(grid.counts[0], 1u);
+    EXPECT_EQ(grid.counts[1], 2u);
+    EXPECT_EQ(grid.counts[99], 1u);
+    EXPECT_EQ(std::accumulate(grid.counts.begin(), grid.counts.end(), 0u), 4u) << "500 is outside";
+    const DensityGrid moved = density_of(places, {13, 3, 50, 50}, 10);
+    EXPECT_EQ(moved.left_px, 10);
+    EXPECT_EQ(moved.top_px, 0);
+    EXPECT_EQ(moved.counts[0], 2u);
+}
+
+TEST(Density, CellsAreAFewPixelsWideAtAnyZoom) {
+    Camera camera;
+    camera.set_viewport({0, 0, 1000, 1000});
+    camera.set_island(100'000, 100'000);
+    for (int i = 0; i < 40; ++i) {
+        const double pixels = density_cell_px(camera, 5) * camera.zoom();
+        EXPECT_GE(pixels, 5 * (1 - 1e-9));
+        EXPECT_LT(pixels, 10);
+        camera.zoom_at({500, 500}, 1.2);
+    }
+}
+
+TEST(Density, SquaresAreColouredByTheirCounts) {
+    const DensityGrid grid{.left_px = 100, .top_px = 0, .cell_px = 10, .columns = 2, .rows = 2, .counts = {0, 7, 3, 0}};
+    const ColourScale scale = density_scale(std::span{&grid, 1}, ramp);
+    EXPECT_EQ(scale.high, 10);
+    std::vector<Shape> shapes;
+    std::vector<Colour> colours;
+    add_density(grid, {1'000, 14}, scale, shapes, colours); // the lower wall is at 14
+    EXPECT_THAT(shapes, ElementsAre(Shape{115, 5, 5, 5}, Shape{105, 12, 5, 2}));
+    EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0.7), palette::at(ramp, 0.3)));
+}
+
+TEST(Density, AnOverviewCountsEveryDetail) {
+    codec::DecodedSnapshot snapshot;
+    snapshot.about.set_width_px(1024);
+    snapshot.about.set_height_px(512);
+    snapshot.about.set_tile_px(512);
+    snapshot.organisms.x_px = {10};
+    snapshot.organisms.y_px = {20};
+    codec::DecodedTile dots, density;
+    dots.detail = evod::v1::DETAIL_DOTS;
+    dots.dots.organisms = {{300, 310}, {20, 20}};
+    density.tile = 1;
+    density.detail = evod::v1::DETAIL_DENSITY;
+    density.left_px = 512;
+    density.density.cells_per_side = 2;
+    density.density.organisms = {1, 2, 3, 4};
+    snapshot.tiles = {dots, density};
+    const DensityGrid grid = overview_of(snapshot, 4);
+    EXPECT_EQ(grid.columns, 4u);
+    EXPECT_EQ(grid.rows, 2u);
+    EXPECT_THAT(grid.counts, ElementsAre(1, 2, 1, 2, 0, 0, 3, 4));
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,112 @@
+#include "client/viewer/world/status_text.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(StatusText, DescribesTheStateOfTheDisk) {
+    evod::v1::Storage storage;
+    EXPECT_EQ(storage_text(storage), "");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_FAILING);
+    storage.set_reason("it is full");
+    EXPECT_EQ(storage_text(storage), "Commands are refused: it is full");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_STALLED);
+    EXPECT_EQ(storage_text(storage), "Worlds wait for the disk, commands are refused: it is full");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_WAITING, storage), "waiting – Space runs");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage), "waiting");
+    storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
+    EXPECT_EQ(storage_text(storage), "Worlds wait for the disk: it is full");
+}
+
+TEST(StatusText, FormatsSpeedsAsMultiplesOfRealTime) {
+    evod::v1::Speed speed;
+    speed.set_real_time_factor(1);
+    EXPECT_EQ(speed_text(speed), "1×");
+    speed.set_real_time_factor(64);
+    EXPECT_EQ(speed_text(speed), "64×");
+    speed.set_real_time_factor(0.125);
+    EXPECT_EQ(speed_text(speed), "1/8×");
+    speed.set_real_time_factor(0.3);
+    EXPECT_EQ(speed_text(speed), "0.3×");
+    speed.set_max(true);
+    EXPECT_EQ(speed_text(speed), "max");
+}
+
+TEST(StatusText, FormatsARefusalAsASentence) {
+    evod::v1::Status status;
+    status.set_message("there is no such island");
+    auto& violation = *status.add_violations();
+    violation.set_field("subscribe_snapshots.island");
+    violation.set_got("9");
+    violation.set_allowed("0 to 7");
+    EXPECT_EQ(refusal_text(status), "There is no such island (9); allowed: 0 to 7");
+    status.set_message("fork_world.name must be 1 to 64 letters, not \"a b\"");
+    violation.set_field("fork_world.name");
+    violation.set_got("a b");
+    violation.set_allowed("1 to 64 letters");
+    EXPECT_EQ(refusal_text(status), "Name must be 1 to 64 letters, not \"a b\"") << "the field is named once";
+    status.set_message("2 fields are not as they must be");
+    status.add_violations()->set_field("fork_world.seed");
+    status.mutable_violations(1)->set_allowed("a number");
+    EXPECT_EQ(refusal_text(status), "2 fields are not as they must be: name must be 1 to 64 letters, not a b; "
+                                    "seed must be a number");
+}
+
+TEST(StatusText, DescribesALossWithoutCodesAndOptions) {
+    core::ConnectionStatus status;
+    EXPECT_EQ(connection_loss_text(status, true), "");
+    status.reason = "no server at localhost:1";
+    EXPECT_EQ(connection_loss_text(status, true), "No server at localhost:1");
+    status.reason = "the server at localhost:1 refused us: UNAUTHENTICATED: this server does not know the token";
+    status.refusal.emplace().set_message("this server does not know the token");
+    status.token_needed = true;
+    EXPECT_EQ(connection_loss_text(status, true), "This server does not know the token");
+    status.refusal->set_message("this server wants a token: --token-file gives it one");
+    EXPECT_EQ(connection_loss_text(status, false), "The server requires a token: ask its administrator for one");
+}
+
+TEST(StatusText, NamesTheIslandOnlyIfThereAreSeveral) {
+    evod::v1::SnapshotFrame snapshot;
+    snapshot.set_world("default");
+    snapshot.set_island_count(1);
+    snapshot.mutable_speed()->set_real_time_factor(2);
+    snapshot.set_state(evod::v1::RUN_STATE_RUNNING);
+    snapshot.set_ticks_per_s(119.7);
+    RunControl control;
+    control.update(snapshot);
+    EXPECT_EQ(place_and_speed_text(snapshot, control), "default · 2× (120 ticks/s)");
+    snapshot.set_island_count(8);
+    snapshot.set_island(2);
+    EXPECT_EQ(place_and_speed_text(snapshot, control), "default · island 2 of 0–7 · 2× (120 ticks/s)");
+    EXPECT_EQ(place_text(snapshot), "default · island 2 of 0–7");
+}
+
+TEST(StatusText, ListsTheStatisticsOfBothGenerations) {
+    evod::v1::SnapshotFrame snapshot;
+    snapshot.set_tick(36'034);
+    snapshot.set_simulated_s(600.56);
+    snapshot.mutable_live()->set_alive_count(43);
+    snapshot.mutable_live()->set_organism_count(50);
+    snapshot.mutable_live()->set_health_mean(78.25);
+    snapshot.mutable_live()->set_food_eaten(1312);
+    snapshot.mutable_live()->set_poison_eaten(45);
+    evod::v1::GenerationStatistics last;
+    last.set_generation(15);
+    last.set_fitness_best(251.34);
+    last.set_fitness_mean(160.2);
+    EXPECT_THAT(statistics_texts(snapshot, &last),
+                ElementsAre("alive 43 of 50", "mean health 78.2", "food eaten 1,312", "poison eaten 45",
+                            "tick 36,034 (10:01 min)", "fitness of generation 15: best 251.3, mean 160.2"));
+    EXPECT_EQ(statistics_texts(snapshot, nullptr).size(), 5u);
+}
+
+} // namespace
+} // namespace evod::viewer
