@@ -1,11 +1,11 @@
-"""What one client with the role viewer can cost the others: a world at real time, and another client's commands.
+"""Measures what one client with the role viewer can cost a world at real time and the commands of another client.
 
     hostile_viewer_cost.py EVOD MESSAGES [--organisms N] [--seconds S] [--only NAME] [--json]
 
-One world of N organisms runs at real time, and another of 4,096 small islands, too. In each of several runs the viewer does
-one thing all the time, in a process of its own: it keeps 30 requests of a kind unanswered, sends the longest frames,
-holds 32 subscriptions, or subscribes and unsubscribes. Meanwhile another client sends a command every 10 ms. It prints
-the world's ticks per second and how long the commands took, beside the same without the viewer.
+A world of N organisms and a world of 4,096 small islands run at real time. In each run the viewer, a separate process,
+does one thing without pause: it keeps 30 requests of a kind unanswered, sends the longest frames, holds 32
+subscriptions, or subscribes and unsubscribes. Meanwhile another client sends a command every 10 ms. The program
+prints the world's ticks per second and the duration of the commands, with and without the viewer.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ import time
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("evod", help="the program")
-parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("messages", help="folder of the Python message classes: build/release/tests/system")
 parser.add_argument("--organisms", type=int, default=50_000)
 parser.add_argument("--seconds", type=float, default=5, help="of each run")
 parser.add_argument("--only", help="the run of this name")
@@ -52,7 +52,7 @@ queries = {
 
 
 class Attacker:
-    """A session that never waits, but for room to send, and reads away what comes."""
+    """A session that sends without pause, blocks only on a full socket, and discards what it receives."""
 
     def __init__(self, port, token):
         self.port, self.token = port, token
@@ -76,7 +76,7 @@ class Attacker:
         self.send(session_pb2.ClientMessage(request=c.Request(request_id=self.id, client_key="attack", **request)))
 
     def read(self):
-        """Reads once; counts answers, and keeps the numbers of subscriptions."""
+        """Reads once; counts answers, and stores the ids of subscriptions."""
         data = self.socket.recv(1 << 20)
         if not data:
             raise EOFError
@@ -138,7 +138,7 @@ class Attacker:
             except (OSError, EOFError):
                 self.connect()
 
-    def pasts(self):
+    def replays(self):
         while True:
             before = self.answered
             for _ in range(4):
@@ -157,12 +157,12 @@ attacks = {name: (lambda attacker, request=request: attacker.flood(request)) for
     "subscribe_and_leave_islands": lambda attacker: attacker.subscribe_and_leave("islands"),
     "long_frames": lambda attacker: attacker.long_frames(64 << 10),
     "longer_frames": lambda attacker: attacker.long_frames(1 << 20),
-    "pasts": lambda attacker: attacker.pasts(),
+    "replays": lambda attacker: attacker.replays(),
 }
 
 
 def measure_run(server, commander):
-    """Ticks a second, and milliseconds of commands."""
+    """Ticks per second, and the duration of commands in milliseconds."""
     def tick():
         return next(x for x in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == "w").tick
     times = []

@@ -1,9 +1,9 @@
-"""What a viewer costs the simulation, and how long commands take, on a real evod.
+"""Measures what a viewer costs the simulation, and how long commands take, with a real evod.
 
     viewer_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
-The same ticks of the same run are simulated again and again at full speed on one thread, by turns with a subscriber at
-30 snapshots a second and without one; what is compared is the processor time of the simulation thread for those ticks.
+The server simulates the same ticks of the same run repeatedly at full speed on one thread, alternately with and without
+a subscriber at 30 snapshots per second. The program compares the processor time of the simulation thread for these ticks.
 """
 import argparse
 import socket
@@ -13,7 +13,7 @@ import time
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("evod", help="the program")
-parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("messages", help="folder of the Python message classes: build/release/tests/system")
 parser.add_argument("--organisms", type=int, default=10_000)
 parser.add_argument("--runs", type=int, default=11, help="pairs of runs")
 parser.add_argument("--json", action="store_true", help="print the figures as JSON")
@@ -32,7 +32,7 @@ def serve(*arguments):
 
 
 class Reader(threading.Thread):
-    """Reads what a viewer is sent, and counts it, until its connection is shut down."""
+    """Reads and counts the snapshots of a viewer until its connection is shut down."""
 
     def __init__(self, viewer):
         super().__init__()
@@ -55,7 +55,7 @@ class Reader(threading.Thread):
 
 
 def measure_starts():
-    """Seconds from exec to the first client's welcome, several times."""
+    """Seconds from exec to the first client's welcome, for several starts."""
     starts = []
     for _ in range(9):
         with serve() as server:
@@ -64,7 +64,7 @@ def measure_starts():
 
 
 def measure_memory():
-    """The most memory that a server with the default world at full speed takes, in bytes."""
+    """The peak memory of a server with the default world at full speed, in bytes."""
     with serve() as server:
         server.control.call(create_world=c.CreateWorld(name="w", seed=1))
         server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
@@ -74,7 +74,7 @@ def measure_memory():
 
 
 def measure_viewer(server):
-    """Seconds of the simulation thread per tick, by whether a viewer watched; how many snapshots, and bytes of one."""
+    """Seconds of the simulation thread per tick, without and with a viewer; snapshots received, and bytes of the last."""
     per_tick = {False: [], True: []}
     snapshots = 0
     control = server.control
