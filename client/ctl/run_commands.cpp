@@ -311,7 +311,7 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
 }
 
 /// Pauses the world for good; a step alone would only lease it.
-v1::WorldInfo stand(const Common& common, Caller& caller) {
+v1::WorldInfo pause_world(const Common& common, Caller& caller) {
     v1::Request request;
     request.mutable_pause()->set_world(common.world);
     return caller.call(std::move(request)).world();
@@ -335,10 +335,30 @@ void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) 
                     response.world());
 }
 
+/// Refuses a tick that the run has passed, and leaves the world as it was.
+void run_until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) {
+    const auto require_ahead = [tick](std::uint64_t now) {
+        if (tick < now) {
+            throw Stop{ExitCode::Refused, "until: the run is at tick " + std::to_string(now) + " already; got " +
+                                              std::to_string(tick) + ", allowed " + std::to_string(now) + " or more"};
+        }
+    };
+    const v1::WorldInfo before = caller.world(common.world);
+    require_ahead(before.tick());
+    const std::uint64_t paused_at = pause_world(common, caller).tick();
+    if (tick < paused_at && before.state() == v1::RUN_STATE_RUNNING) {
+        v1::Request request;
+        request.mutable_resume()->set_world(common.world);
+        caller.call(std::move(request));
+    }
+    require_ahead(paused_at);
+    until(common, caller, tick, wait);
+}
+
 void step(const Common& common, std::uint64_t ticks, bool wait) {
     Caller caller{common};
     // The goal is a tick, so that a step that is resent after a lost connection is not executed twice.
-    until(common, caller, stand(common, caller).tick() + ticks, wait);
+    until(common, caller, pause_world(common, caller).tick() + ticks, wait);
 }
 
 void pause(const Common& common) {
@@ -471,12 +491,7 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     until_command.add_flag("--wait", &until_wait, "Return when the tick is reached");
     until_command.action([&] {
         Caller caller{common};
-        if (const std::uint64_t now = caller.world(common.world).tick(); tick < now) {
-            throw Stop{ExitCode::Refused, "until: the run is at tick " + std::to_string(now) + " already; got " +
-                                              std::to_string(tick) + ", allowed " + std::to_string(now) + " or more"};
-        }
-        stand(common, caller);
-        until(common, caller, tick, until_wait);
+        run_until(common, caller, tick, until_wait);
     });
 
     auto& speed_command = app.add_command("speed", "Set the speed of a world").group(group);

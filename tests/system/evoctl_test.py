@@ -78,6 +78,20 @@ class Commands(WithServer):
         self.assertIn("until: the run is at tick ", self.evoctl("until", "5", status=1))
         self.assertEqual(self.answer("speed", "1")["world"]["state"], "RUN_STATE_RUNNING")
 
+    def test_until_stops_at_its_tick_or_changes_nothing(self):
+        self.evoctl("speed", "max")
+        for ahead in range(0, 40_000, 2_000):  # some of these ticks pass between the requests of `until`
+            self.evoctl("run")
+            tick = int(self.answer("stats")["world"]["tick"]) + ahead
+            done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, "until", str(tick), "--wait"],
+                               capture_output=True, text=True)
+            world = self.answer("stats")["world"]
+            if done.returncode == 0:
+                self.assertEqual((world["state"], int(world["tick"])), ("RUN_STATE_PAUSED", tick))
+            else:
+                self.assertIn(f"got {tick}, allowed ", done.stderr)
+                self.assertEqual(world["state"], "RUN_STATE_RUNNING")
+
     def test_with_json_errors_are_json(self):
         refused = json.loads(self.evoctl("--json", "--world", "no-such-world", "pause", status=1))
         self.assertEqual((refused["code"], refused["reason"], refused["violations"][0]["got"]),
