@@ -1,4 +1,4 @@
-// Column: one number of many entities.
+// Column: one number for each of many entities.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace evod::codec {
 
-/// Leaves numbers without a value where std::allocator would set them to 0.
+/// Leaves numbers uninitialised where std::allocator would set them to 0.
 template <class T>
-struct WithoutValue : std::allocator<T> {
+struct Uninitialised : std::allocator<T> {
     template <class U>
     struct rebind {
-        using other = WithoutValue<U>;
+        using other = Uninitialised<U>;
     };
     template <class U>
     void construct(U* at) noexcept {
@@ -27,9 +27,9 @@ struct WithoutValue : std::allocator<T> {
     }
 };
 
-/// With or without a sign; arithmetic is modulo 2^32. What Column(count) and resize() add has no value until it is
-/// written: of a picture nearly all is, at once.
-using Column = std::vector<std::uint32_t, WithoutValue<std::uint32_t>>;
+/// Signed or unsigned; arithmetic is modulo 2^32. Column(count) and resize() leave new numbers uninitialised, because the
+/// codecs write nearly all of them at once.
+using Column = std::vector<std::uint32_t, Uninitialised<std::uint32_t>>;
 using Numbers = std::span<const std::uint32_t>;
 
 } // namespace evod::codec

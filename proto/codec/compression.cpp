@@ -13,13 +13,13 @@ namespace evod::codec {
 
 namespace {
 
-// The fastest of the ordinary levels: a picture waits for it on the network thread.
+// The fastest of the ordinary levels, because the network thread waits for it.
 constexpr int level = 1;
-// Instead of 1: of a world at full speed a quarter less time and 1 % more bytes, by snapshot_bench.
-constexpr int bytes_between_looks = 16;
+// Instead of 1: a world at full speed takes a quarter less time and 1 % more bytes (snapshot_bench).
+constexpr int bytes_between_searches = 16;
 
-constexpr std::size_t block_bytes_min = 1024; // shorter ones would cost more than they save
-constexpr std::size_t block_bytes_more = 16;  // that a block can take beyond its content
+constexpr std::size_t block_bytes_min = 1024; // shorter blocks cost more than they save
+constexpr std::size_t block_bytes_more = 16;  // overhead of a block
 
 Damage not_zstd(const std::string& why) {
     return Damage{"a snapshot's body is not a zstd frame: " + why};
@@ -33,20 +33,20 @@ struct Compressor::Context {
             throw std::bad_alloc{};
         }
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_compressionLevel, level);
-        // Columns are noise or nearly all alike: short matches are chance there, and cost more than they save; and what
-        // there is to find is found with little memory.
+        // Columns are noise or nearly constant. Short matches there are accidental and cost more than they save, and a
+        // small hash table finds the others.
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_minMatch, 7);
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_hashLog, 8);
-        // For the same reason it looks for matches at every so many bytes only. By itself zstd would then leave out
-        // entropy coding too, which is what makes columns shorter; where it cannot be told not to, it looks everywhere.
+        // For the same reason zstd searches for matches only every few bytes. It would then also omit entropy coding, which
+        // makes columns shorter. If this version cannot keep entropy coding on, it searches at every byte.
         if (!ZSTD_isError(ZSTD_CCtx_setParameter(zstd, ZSTD_c_literalCompressionMode, ZSTD_ps_enable))) {
-            ZSTD_CCtx_setParameter(zstd, ZSTD_c_targetLength, bytes_between_looks);
+            ZSTD_CCtx_setParameter(zstd, ZSTD_c_targetLength, bytes_between_searches);
         }
     }
     ~Context() { ZSTD_freeCCtx(zstd); }
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
-    /// Room for so many bytes, whatever is in it.
+    /// Uninitialised memory.
     std::span<char> room(std::size_t bytes) {
         if (room_bytes < bytes) {
             room_memory = std::make_unique_for_overwrite<char[]>(bytes);
@@ -77,7 +77,7 @@ std::string Compressor::compress(std::string_view bytes, const Seams& seams) {
         do {
             left = ZSTD_compressStream2(zstd, &out, &in, then);
         } while (!ZSTD_isError(left) && left > 0 && out.pos < out.size);
-        if (ZSTD_isError(left) || left > 0) { // with room for the bound nothing but memory can be missing
+        if (ZSTD_isError(left) || left > 0) { // the output has room for the bound, so only memory can be missing
             throw std::bad_alloc{};
         }
         begin = end;
@@ -94,11 +94,11 @@ std::string Compressor::compress(std::string_view bytes, const Seams& seams) {
 Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max) {
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR) {
-        return not_zstd("it does not tell the size of its content");
+        return not_zstd("it does not contain the size of its content");
     }
     if (size > bytes_max) {
-        return Damage{"a snapshot's body holds " + std::to_string(size) + " bytes, not at most the " +
-                      std::to_string(bytes_max) + " of its counts"};
+        return Damage{"a snapshot's body has " + std::to_string(size) + " bytes of content, allowed by its counts " +
+                      std::to_string(bytes_max)};
     }
     std::string content(size, '\0');
     const std::size_t got = ZSTD_decompress(content.data(), content.size(), bytes.data(), bytes.size());
@@ -106,7 +106,7 @@ Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max) 
         return not_zstd(ZSTD_getErrorName(got));
     }
     if (got != size) {
-        return not_zstd("its content is shorter than it tells");
+        return not_zstd("its content is shorter than its size says");
     }
     return {boost::system::in_place_value, std::move(content)};
 }

@@ -1,4 +1,4 @@
-// Compression of the bodies of pictures by zstd, and the checksum over them.
+// Compression: bodies of snapshots to zstd frames and back, and their checksum.
 //
 // Threads      a Compressor is used by one thread at a time; the functions by any.
 #pragma once
@@ -13,10 +13,10 @@
 
 namespace evod::codec {
 
-/// Where in a body one column ends and the next begins, rising.
+/// The offsets in a body at which columns begin, rising.
 using Seams = std::vector<std::uint32_t>;
 
-/// One zstd frame after another, each by itself, with working memory that stays warm.
+/// Makes independent zstd frames, and reuses its working memory.
 class Compressor {
   public:
     Compressor();
@@ -24,9 +24,8 @@ class Compressor {
     Compressor(const Compressor&) = delete;
     Compressor& operator=(const Compressor&) = delete;
 
-    /// seams  where numbers of another kind begin: what is long enough becomes a block of zstd's of its own, with a
-    /// code
-    ///        that suits it. What many random bytes stand beside would hardly be shortened otherwise.
+    /// seams  where numbers of another kind begin. Each long enough part becomes a zstd block with its own entropy code.
+    ///        Otherwise a regular column beside many random bytes would hardly become shorter.
     std::string compress(std::string_view bytes, const Seams& seams = {});
 
   private:
@@ -34,10 +33,10 @@ class Compressor {
     std::unique_ptr<Context> context_;
 };
 
-/// The content of a zstd frame that tells its size; more than bytes_max is refused before memory is taken for it.
+/// The content of a zstd frame that contains its size. More than bytes_max is Damage, before memory is allocated.
 Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max);
 
-/// CRC-32 as zlib has it. before: the checksum of the bytes that `bytes` follow, to go on from.
+/// CRC-32, as in zlib. before: the checksum of the bytes that precede `bytes`.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
 } // namespace evod::codec

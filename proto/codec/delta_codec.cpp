@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // in a section's parts
 constexpr std::uint32_t size_bytes = 2;                       // of a radius, health, half width or half height
 
-/// What entities of a kind have, and what of it can change.
+/// The columns of a kind of entity, and which of them can change.
 struct Kind {
     const char* name;
     Entities QuantisedSnapshot::*entities;
@@ -37,24 +37,24 @@ const std::array<Kind, 5> kinds{{
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
-/// How far something moves in `ticks` that moved by `displacement` in base_ticks, if it goes on as it did.
-class Foretold {
+/// Predicts the movement in `ticks` of entities that moved by `displacement` in base_ticks, at constant velocity.
+class Prediction {
   public:
-    Foretold(std::uint16_t ticks, std::uint16_t base_ticks)
+    Prediction(std::uint16_t ticks, std::uint16_t base_ticks)
         : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {}
 
     std::uint32_t operator()(std::uint32_t displacement) const {
         if (ticks_ == base_ticks_) {
             return displacement;
         }
-        const std::int64_t way = std::int64_t{static_cast<std::int32_t>(displacement)} * ticks_;
-        const std::int64_t rounded_down = way / base_ticks_ - (way % base_ticks_ < 0 ? 1 : 0);
+        const std::int64_t product = std::int64_t{static_cast<std::int32_t>(displacement)} * ticks_;
+        const std::int64_t rounded_down = product / base_ticks_ - (product % base_ticks_ < 0 ? 1 : 0);
         return static_cast<std::uint32_t>(rounded_down);
     }
 
-    /// By how much that is wrong where things are `here` that were `there`; all of one length.
-    void corrections(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
-        if (ticks_ == base_ticks_) { // the usual case, which vectors do
+    /// The residuals of entities that are `here` and were `there`; all columns have one length.
+    void residuals(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
+        if (ticks_ == base_ticks_) { // the usual case; compiled to vector instructions
             for (std::size_t i = 0; i < here.size(); ++i) {
                 to[i] = here[i] - there[i] - displacements[i];
             }
@@ -64,10 +64,10 @@ class Foretold {
         for (const std::uint32_t displacement : displacements) {
             all_small &= unsigned{displacement + small_ <= 2 * small_};
         }
-        if (all_small) { // as at full speed, where no two pictures are equally far apart: vectors do this, too
-            const Foretold foretold = *this; // whose numbers `to` cannot be
+        if (all_small) {                        // at full speed the intervals vary; compiled to vector instructions too
+            const Prediction predicted = *this; // a copy, which `to` cannot alias
             for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - foretold.of_small(displacements[i]);
+                to[i] = here[i] - there[i] - predicted.of_small(displacements[i]);
             }
             return;
         }
@@ -77,47 +77,49 @@ class Foretold {
     }
 
   private:
-    /// The same of one that is not beyond small_ either way: as a multiplication, for of numbers below 2^31 the
-    /// quotient is exact so (Granlund and Montgomery, Division by Invariant Integers using Multiplication, 1994,
-    /// theorem 4.2).
+    /// The same for a displacement of at most small_ in either direction, by a multiplication instead of a division. The
+    /// quotient is exact for numbers below 2^31 (Granlund and Montgomery, Division by Invariant Integers using
+    /// Multiplication, 1994, theorem 4.2).
     std::uint32_t of_small(std::uint32_t displacement) const {
-        const std::uint32_t way = displacement * ticks_ + ahead_ * base_ticks_; // not below 0
-        return static_cast<std::uint32_t>(std::uint64_t{way} * reciprocal_ >> shift_) - ahead_;
+        const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // not below 0
+        return static_cast<std::uint32_t>(std::uint64_t{product} * reciprocal_ >> shift_) - ahead_;
     }
 
-    static constexpr std::uint32_t longest_way = 1U << 29; // of what is small
+    static constexpr std::uint32_t product_max = 1U << 29; // of a small displacement and ticks
     std::uint32_t ticks_, base_ticks_;
-    std::uint32_t small_ = longest_way / std::max(ticks_, 1U);
-    std::uint32_t ahead_ = longest_way / base_ticks_ + 1;
-    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1)); // 31 and log2, rounded up
+    std::uint32_t small_ = product_max / std::max(ticks_, 1U);
+    std::uint32_t ahead_ = product_max / base_ticks_ + 1;
+    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1)); // 31 + log2, rounded up
     std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
 };
 
-// ---- which entities of two pictures are the same ---------------------------------------------------------------
+// ---- which entities of two snapshots are the same --------------------------------------------------------------
 
 struct Pairing {
     Column gone; // indices in the base, rising
-    Column come; // indices in the next picture, rising
+    Column come; // indices in the next snapshot, rising
 };
 
 bool have_ids(const Kind& kind, bool of_tile) {
     return kind.ids || of_tile;
 }
 
-/// same  1 if those at two indices are the same, having equal ids; else 0. Many are looked at at once, for mostly they
-/// are; and where they are not, one by one without a branch, for which are is unpredictable.
+/// Pairs entities by id, a block at a time as long as all are the same, which is the usual case. Otherwise one by one and
+/// without a branch, because the outcome is unpredictable.
+///
+/// same  returns 1 if entities with equal ids at two indices are the same; else 0.
 template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
-    // With room for one more: the index of one that stays is written there, and written over.
+    // Room for one more: the index of an entity that stays is written there and overwritten.
     Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
     std::uint32_t i = 0, j = 0, gone = 0, come = 0;
     constexpr std::uint32_t block = 32;
     while (i < base_count && j < next_count) {
         while (base_count - i >= block && next_count - j >= block) {
             unsigned all_same = 1;
-            for (std::uint32_t k = 0; k < block; ++k) { // so that it is done with vectors
+            for (std::uint32_t k = 0; k < block; ++k) { // without a branch, for vector instructions
                 all_same &= unsigned{base.id[i + k] == next.id[j + k]} & same(i + k, j + k);
             }
             if (!all_same) {
@@ -148,8 +150,8 @@ Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Sam
     return pairing;
 }
 
-/// An organism stays the same while it has its id and its radius, an item while it lies where it lay, a crate while it
-/// has its size. Of a whole island boxes are the same where follows() holds.
+/// An organism is the same while its id and radius are, an item while its position is, a crate while its size is. Boxes of
+/// a whole island are the same if follows() holds.
 Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     if (!have_ids(kind, of_tile)) {
         return {};
@@ -181,11 +183,10 @@ Column indices(std::size_t count) {
     return all;
 }
 
-/// Whether of many of a kind that does not move so few have stayed that to tell all anew takes about as many bytes, and
-/// far less time than to find out which. The first of them are looked at, for where things are does not follow from
-/// ids.
+/// Whether so few of many entities of a kind that does not move have stayed that sending all of them again takes about as
+/// many bytes and far less time. Samples the first ones, because positions are independent of ids.
 bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
-    constexpr std::size_t many = 2048, looked_at = 256, stayed_max = looked_at / 4;
+    constexpr std::size_t many = 2048, sampled = 256, stayed_max = sampled / 4;
     if (kind.displacements || base.id.size() < many) {
         return false;
     }
@@ -193,12 +194,12 @@ bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesVie
         const auto part = [&](Numbers column) { return column.first(std::min(count, column.size())); };
         return EntitiesView{part(of.id), part(of.x), part(of.y), part(of.width), part(of.height)};
     };
-    const auto up_to_there = std::ranges::lower_bound(next.id, base.id[looked_at]) - next.id.begin();
-    const Pairing pairing = pair(kind, first(base, looked_at), first(next, up_to_there), of_tile);
-    return looked_at - pairing.gone.size() <= stayed_max;
+    const auto next_sampled = std::ranges::lower_bound(next.id, base.id[sampled]) - next.id.begin();
+    const Pairing pairing = pair(kind, first(base, sampled), first(next, next_sampled), of_tile);
+    return sampled - pairing.gone.size() <= stayed_max;
 }
 
-/// Calls stayed(base index, next index, count) for those that are in both, in their order: so many beside each other.
+/// Calls stayed(base index, next index, count) for each run of `count` adjacent entities that are in both.
 template <class Stayed>
 void each_that_stayed(const Pairing& pairing, std::size_t base_count, const Stayed& stayed) {
     auto gone = pairing.gone.begin();
@@ -228,7 +229,8 @@ Column at(Numbers column, Numbers indices) {
 
 // ---- encoding --------------------------------------------------------------------------------------------------
 
-/// gone  indices in the base; come: indices in `entities`; displacements: of `entities`, null: those that come stand.
+/// pairing        of the base and `entities`.
+/// displacements  of `entities`; null: all are 0.
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
                  const Pairing& pairing, const BaselineView::Displacements* displacements) {
     const Column& come = pairing.come;
@@ -260,7 +262,7 @@ void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entit
 
 // ---- decoding --------------------------------------------------------------------------------------------------
 
-/// `column` without what stands at the rising `indices`.
+/// `column` without the numbers at the rising `indices`.
 Column without(Column column, Numbers indices) {
     if (indices.empty() || column.empty()) {
         return column;
@@ -288,13 +290,13 @@ struct Section {
     Baseline::Displacements displacements;
 };
 
-/// Every column of a section that may hold something.
+/// All columns of a section.
 std::array<Column*, 7> columns_of(Section& section) {
     return {&section.entities.id,     &section.entities.x,      &section.entities.y,     &section.entities.width,
             &section.entities.height, &section.displacements.x, &section.displacements.y};
 }
 
-/// Puts `come` among `stayed`, by id or at the end.
+/// Inserts `come` into `stayed`, by id or at the end.
 void merge(BodyReader& reader, Section& stayed, Section& come) {
     const std::size_t stayed_count = stayed.entities.x.size(), come_count = come.entities.x.size();
     Column order;
@@ -303,7 +305,7 @@ void merge(BodyReader& reader, Section& stayed, Section& come) {
         const Column &a = stayed.entities.id, &b = come.entities.id;
         for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
             if (i < a.size() && j < b.size() && a[i] == b[j]) {
-                reader.refuse("lets id " + std::to_string(a[i]) + " come, which is there");
+                reader.refuse("adds id " + std::to_string(a[i]) + ", which its base has");
                 return;
             }
             const bool first = j == b.size() || (i < a.size() && a[i] < b[j]);
@@ -326,7 +328,8 @@ struct Step {
     bool of_tile;
 };
 
-/// base  what the section is told from; count: of the picture.
+/// base   the section of the baseline.
+/// count  entities of the kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
     if (parts & ~(some_are_gone | some_have_come)) {
@@ -338,7 +341,7 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
     if (parts & some_are_gone) {
         const auto gone_count = reader.number<std::uint32_t>();
         if (gone_count > base_count) {
-            reader.refuse("lets more go than there were");
+            reader.refuse("removes more entities than its base has");
             return {};
         }
         const Column gone = reader.rising_column(gone_count, base_count);
@@ -349,9 +352,9 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
     Section come;
     if (parts & some_have_come) {
         const auto come_count = reader.number<std::uint32_t>();
-        // Places are never told in fewer bytes, so that what is read bounds the memory for all columns.
+        // Each entity takes at least the bytes of its position, so the bytes that are left bound the memory.
         if (come_count > count || reader.rest_bytes() / (2 * std::size_t{step.position_bytes}) < come_count) {
-            reader.refuse("lets more come than there are");
+            reader.refuse("adds more entities than its count says");
             return {};
         }
         if (have_ids(kind, step.of_tile)) {
@@ -370,22 +373,22 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
     }
     const std::size_t stayed_count = section.entities.x.size();
     if (!reader.damage() && stayed_count + come.entities.x.size() != count) {
-        reader.refuse("comes to " + std::to_string(stayed_count + come.entities.x.size()) + " " + kind.name + ", not " +
+        reader.refuse("has " + std::to_string(stayed_count + come.entities.x.size()) + " " + kind.name + ", not " +
                       std::to_string(count));
     }
     if (stayed_count > 0 && kind.displacements) {
-        const Foretold foretold{step.ticks, step.base_ticks};
-        const auto move = [&](Column& places, Column& displacements) {
-            Column way = reader.column(stayed_count);
+        const Prediction predicted{step.ticks, step.base_ticks};
+        const auto move = [&](Column& positions, Column& displacements) {
+            Column moved = reader.column(stayed_count);
             if (reader.damage()) {
                 return;
             }
             for (std::size_t i = 0; i < stayed_count; ++i) {
-                way[i] += foretold(displacements[i]);
+                moved[i] += predicted(displacements[i]);
             }
-            add(places, way);
+            add(positions, moved);
             if (step.ticks > 0) {
-                displacements = std::move(way);
+                displacements = std::move(moved);
             }
         };
         move(section.entities.x, section.displacements.x);
@@ -397,11 +400,11 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
             add(section.entities.height, differences);
         }
     }
-    const auto fits_not = [](std::uint32_t value) { return value > 0xffff; };
+    const auto too_large = [](std::uint32_t value) { return value > 0xffff; };
     if ((step.position_bytes == 2 &&
-         (std::ranges::any_of(section.entities.x, fits_not) || std::ranges::any_of(section.entities.y, fits_not))) ||
-        std::ranges::any_of(section.entities.height, fits_not)) {
-        reader.refuse("takes a number out of its column's range");
+         (std::ranges::any_of(section.entities.x, too_large) || std::ranges::any_of(section.entities.y, too_large))) ||
+        std::ranges::any_of(section.entities.height, too_large)) {
+        reader.refuse("moves a number out of its range");
     }
     if (!reader.damage() && !come.entities.x.empty()) {
         merge(reader, section, come);
@@ -450,7 +453,7 @@ bool follows(const QuantisedView& next, const QuantisedView& base) {
 
 namespace {
 
-/// Where those of a kind that move write how they came to be where they are.
+/// The displacements of a kind that moves.
 const AdvancedColumns::Displacements& of_kind(const AdvancedColumns& to, const Kind& kind) {
     return kind.health ? to.organisms : to.crates;
 }
@@ -507,7 +510,7 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
                          const AdvancedColumns* moved, Seams* seams) {
     BodyWriter writer;
     writer.number(ticks);
-    const Foretold foretold{ticks, base.ticks};
+    const Prediction predicted{ticks, base.ticks};
     for (const Kind& kind : kinds) {
         const EntitiesView &from = base.snapshot.*kind.seen, &to = next.*kind.seen;
         const Pairing pairing = mostly_others(kind, from, to, next.of_tile)
@@ -519,20 +522,20 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
             continue;
         }
         const auto memory = std::make_unique_for_overwrite<std::uint32_t[]>(stayed_count);
-        const std::span corrections{memory.get(), stayed_count};
+        const std::span residuals{memory.get(), stayed_count};
         const BaselineView::Displacements& displacements = base.*kind.seen_displacements;
         const AdvancedColumns::Displacements* const now = moved ? &of_kind(*moved, kind) : nullptr;
         const auto write = [&](Numbers here, Numbers there, Numbers was, std::span<std::uint32_t> is) {
             std::size_t k = 0;
             each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
-                foretold.corrections({here.data() + j, count}, {there.data() + i, count}, {was.data() + i, count},
-                                     corrections.data() + k);
+                predicted.residuals({here.data() + j, count}, {there.data() + i, count}, {was.data() + i, count},
+                                    residuals.data() + k);
                 for (std::size_t n = 0; now && n < count; ++n) {
                     is[j + n] = ticks > 0 ? here[j + n] - there[i + n] : was[i + n];
                 }
                 k += count;
             });
-            writer.column(corrections);
+            writer.column(residuals);
         };
         write(to.x, from.x, displacements.x, now ? now->x : std::span<std::uint32_t>{});
         write(to.y, from.y, displacements.y, now ? now->y : std::span<std::uint32_t>{});
@@ -540,11 +543,11 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
             std::size_t k = 0;
             each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
                 for (std::size_t n = 0; n < count; ++n) {
-                    corrections[k + n] = to.height[j + n] - from.height[i + n];
+                    residuals[k + n] = to.height[j + n] - from.height[i + n];
                 }
                 k += count;
             });
-            writer.column(corrections);
+            writer.column(residuals);
         }
     }
     if (seams) {
@@ -584,7 +587,7 @@ Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, cons
         }
     }
     if (reader.rest_bytes() > 0) {
-        reader.refuse("has bytes at its end that mean nothing");
+        reader.refuse("has surplus bytes at its end");
     }
     if (reader.damage()) {
         return *reader.damage();
@@ -594,7 +597,7 @@ Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, cons
 }
 
 std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base) {
-    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // somewhat more than any can take
+    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // slightly more than the longest
     const Counts base_counts = base ? counts_of(*base) : Counts{};
     std::uint64_t bytes = sizeof(std::uint16_t);
     for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -603,14 +606,14 @@ std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base
     return std::min<std::uint64_t>(bytes, *client_limits.stream_bytes_max);
 }
 
-std::uint32_t checksum_of(const ChecksummedFields& told, std::string_view body, std::uint32_t before) {
+std::uint32_t checksum_of(const ChecksummedFields& fields, std::string_view body, std::uint32_t before) {
     std::array<char, 2 * 8 + 6 * 4> about;
-    store(told.sequence, &about[0]);
-    store(told.base_sequence, &about[8]);
-    for (std::size_t k = 0; k < told.counts.size(); ++k) {
-        store(told.counts[k], &about[16 + 4 * k]);
+    store(fields.sequence, &about[0]);
+    store(fields.base_sequence, &about[8]);
+    for (std::size_t k = 0; k < fields.counts.size(); ++k) {
+        store(fields.counts[k], &about[16 + 4 * k]);
     }
-    store(told.position_bytes, &about[36]);
+    store(fields.position_bytes, &about[36]);
     return crc32(body, crc32({about.data(), about.size()}, before));
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::byte, 3> prefix{std::byte{'E'}, std::byte{'V'}, std::byte{1}};
 
-/// What is wrong with the first bytes of a header, of which some may still be missing.
+/// What is wrong with the first bytes of a header, which may be incomplete.
 std::optional<Damage> damage_of_prefix(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < std::min<std::size_t>(2, bytes.size()); ++i) {
         if (bytes[i] != prefix[i]) {
@@ -37,12 +37,12 @@ Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
     if (number == static_cast<int>(Channel::Stream) && limits.stream_bytes_max) {
         return *limits.stream_bytes_max;
     }
-    return Damage{"a frame is on channel " + std::to_string(number) + ", which is not taken here"};
+    return Damage{"a frame is on channel " + std::to_string(number) + ", which is not used in this direction"};
 }
 
-/// Whether messages and groups stand more than `levels` deep within the rest of a message, up to where it is damaged.
+/// Whether the rest of a message, up to its first damage, nests messages and groups more than `levels` deep.
 ///
-/// of  the message, nullptr: unknown, so that of what it holds groups alone can be told from bytes.
+/// of  the type of the message; nullptr: unknown, so that only groups can be recognised in it.
 bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobuf::Descriptor* of, int levels) {
     using google::protobuf::internal::WireFormatLite;
     while (const std::uint32_t tag = in.ReadTag()) {
@@ -86,8 +86,7 @@ Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::D
     google::protobuf::io::CodedInputStream in{reinterpret_cast<const std::uint8_t*>(body.data()),
                                               static_cast<int>(body.size())};
     if (is_deeper(in, &message, message_depth_max)) {
-        return {.what =
-                    frame + "has messages within messages, more than " + std::to_string(message_depth_max) + " deep",
+        return {.what = frame + "nests messages more than " + std::to_string(message_depth_max) + " deep",
                 .beyond = Beyond::MessageDepth};
     }
     return {.what = frame + "is not a " + message.full_name()};
@@ -109,8 +108,8 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
     }
     const auto body_bytes = load<std::uint32_t>(bytes.data() + 4);
     if (body_bytes > *limit) {
-        return Damage{.what = "a frame declares " + std::to_string(body_bytes) + " bytes; at most " +
-                              std::to_string(*limit) + " are taken on its channel",
+        return Damage{.what = "a frame declares " + std::to_string(body_bytes) +
+                              " bytes, allowed on its channel: at most " + std::to_string(*limit),
                       .beyond = Beyond::FrameBytes};
     }
     return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
@@ -132,7 +131,7 @@ void FrameReader::feed(std::span<const std::byte> bytes) {
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
-    // One long picture should not keep its memory for the rest of the connection.
+    // One long snapshot should not occupy its memory for the rest of the connection.
     constexpr std::size_t kept_bytes = 1 << 20;
     if (buffer_.empty() && buffer_.capacity() > kept_bytes && bytes.size() < kept_bytes / 2) {
         buffer_ = std::vector<std::byte>{};

@@ -1,4 +1,4 @@
-// Framing: how messages follow one another in a byte stream.
+// Framing: messages in a byte stream.
 //
 // A frame is an 8-byte header and a body:
 //
@@ -7,11 +7,11 @@
 //   byte 3      channel: 1 control (ClientMessage, ServerMessage), 2 stream (SnapshotFrame)
 //   byte 4..7   length of the body in bytes, unsigned, least significant byte first
 //
-// The two letters, the version and the channel are checked in every header: a stream that has lost its place is noticed
-// at the next frame. There is no way back into step, so the connection ends. The length is checked against the limit of
-// its channel before any memory is taken for the body.
+// The reader checks the two letters, the version and the channel of every header, so it detects a stream that is out of
+// step at the next frame. It cannot resynchronise, so the connection ends. It checks the length against the limit of the
+// channel before it allocates memory for the body.
 //
-// Owner        each end of a connection has a FrameReader of its own.
+// Owner        each end of a connection has its own FrameReader.
 // Threads      none; nothing here is shared.
 #pragma once
 
@@ -43,30 +43,30 @@ struct FrameHeader {
     friend bool operator==(const FrameHeader&, const FrameHeader&) = default;
 };
 
-/// The longest body that is taken on each channel; nullopt: the channel is not used in this direction.
+/// The longest body that is accepted on each channel; nullopt: the channel is not used in this direction.
 struct FrameLimits {
     std::optional<std::uint32_t> control_bytes_max;
     std::optional<std::uint32_t> stream_bytes_max;
 };
 
-/// What a server takes before the hello, and after it.
+/// What a server accepts before the hello, and after it.
 constexpr FrameLimits hello_limits{.control_bytes_max = 4 << 10, .stream_bytes_max = std::nullopt};
 constexpr FrameLimits server_limits{.control_bytes_max = 1 << 20, .stream_bytes_max = std::nullopt};
-/// What a client takes; a Description or a History can be long.
+/// What a client accepts; a Description or a History can be long.
 constexpr FrameLimits client_limits{.control_bytes_max = 64 << 20, .stream_bytes_max = 256 << 20};
 
 std::array<std::byte, header_bytes> encode_header(FrameHeader header);
 
-/// Damage names what the header should have held: magic, version, channel or length.
+/// Damage names the invalid part of the header: magic, version, channel or length.
 Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes, const FrameLimits& limits);
 
 /// Header and message as one string of bytes.
 std::string encode_frame(Channel channel, const google::protobuf::MessageLite& message);
 
-/// How deep messages may stand within messages: what protobuf itself reads.
+/// The deepest nesting of messages that protobuf parses.
 constexpr int message_depth_max = 100;
 
-/// What is wrong with the body of a frame that could not be read as this message.
+/// Why the body of a frame could not be parsed as this message.
 Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::Descriptor& message);
 
 /// A message from the body of a frame.
@@ -85,7 +85,8 @@ struct Frame {
     std::span<const std::byte> body; // valid until the reader is fed again
 };
 
-/// Cuts a byte stream into frames, however the bytes come. Memory follows the bytes received, not the lengths declared.
+/// Cuts a byte stream into frames, whatever the pieces in which it arrives. Memory is bounded by the bytes received, not by
+/// the declared lengths.
 ///
 ///     reader.feed(bytes);
 ///     for (;;) {
@@ -101,24 +102,24 @@ class FrameReader {
     /// Adds bytes; ignored once the stream is damaged.
     void feed(std::span<const std::byte> bytes);
 
-    /// The next complete frame, nullopt if it has not come yet. Damage stays: there is no way back into step.
+    /// The next complete frame; nullopt if more bytes are needed. Damage is permanent.
     Result<std::optional<Frame>> next();
 
-    /// Gives back the memory of a long frame once all of it has been minded.
+    /// Frees the memory of a long frame after it has been returned completely.
     void trim();
 
-    /// For the frames that next() has not begun to return: a server's limits change after the hello.
+    /// Applies to frames that next() has not returned: the limits of a server change after the hello.
     void set_limits(FrameLimits limits) { limits_ = limits; }
 
-    /// Received and not yet returned by next().
+    /// Bytes received and not yet returned by next().
     std::size_t buffered_bytes() const { return buffer_.size() - begin_; }
-    /// Memory held.
+    /// Bytes of memory in use.
     std::size_t capacity_bytes() const { return buffer_.capacity(); }
 
   private:
     FrameLimits limits_;
     std::vector<std::byte> buffer_;
-    std::size_t begin_ = 0; // of what next() has not returned
+    std::size_t begin_ = 0; // of the bytes that next() has not returned
     std::optional<Damage> damage_;
 };
 

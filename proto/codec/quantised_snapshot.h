@@ -1,5 +1,5 @@
-// Scene: the entities of a picture in whole numbers, which are steps of 1/16 px, or 1/16 of health (steps.h). Every
-// codec tells these numbers, and no others.
+// Quantised snapshot: the entities of a snapshot in whole numbers of 1/16 px or 1/16 of health (steps.h). All codecs encode
+// exactly these numbers.
 #pragma once
 
 #include "proto/codec/column.h"
@@ -10,25 +10,25 @@
 
 namespace evod::codec {
 
-/// Entities of one kind, by rising id or, of an island's boxes, in their order. All columns that a kind has are of one
-/// length; the others are empty.
+/// Entities of one kind, ids rising; the boxes of an island in their order. All columns that a kind has have one length; the
+/// others are empty.
 struct Entities {
-    Column id; // organisms, food, poison; in a tile, boxes too: the index among the island's
+    Column id; // organisms, food, poison; in a tile boxes too: the index on the island
     Column x, y;
     Column width;  // organisms: radius; boxes: half width
     Column height; // organisms: health; boxes: half height
     friend bool operator==(const Entities&, const Entities&) = default;
 };
 
-/// The entities of one picture, or of one tile of it.
+/// The entities of one snapshot, or of one of its tiles.
 struct QuantisedSnapshot {
     std::uint32_t position_bytes = 2; // 2 or 4
-    bool of_tile = false;             // boxes have ids, for they come and go
+    bool of_tile = false;             // boxes have ids, because they enter and leave tiles
     Entities organisms{}, food{}, poison{}, crates{}, obstacles{};
     friend bool operator==(const QuantisedSnapshot&, const QuantisedSnapshot&) = default;
 };
 
-/// Of organisms, food, poison, crates, obstacles: the order of everything that is told.
+/// Of organisms, food, poison, crates, obstacles: the order of everything that is encoded.
 using Counts = std::array<std::uint32_t, 5>;
 constexpr std::array<Entities QuantisedSnapshot::*, 5> snapshot_parts{
     &QuantisedSnapshot::organisms, &QuantisedSnapshot::food, &QuantisedSnapshot::poison, &QuantisedSnapshot::crates,
@@ -39,7 +39,7 @@ inline Counts counts_of(const QuantisedSnapshot& snapshot) {
                            [&](auto part) { return static_cast<std::uint32_t>((snapshot.*part).x.size()); });
     return counts;
 }
-/// Message  SnapshotFrame or DecodedTile.
+/// Message: SnapshotFrame or SnapshotTile.
 template <class Message>
 Counts counts_of(const Message& message) {
     return {message.organism_count(), message.food_count(), message.poison_count(), message.crate_count(),

@@ -1,4 +1,4 @@
-// Result<T>: a value, or what is wrong with the bytes that should have given one.
+// Result<T>: a value, or why bytes could not be decoded to one.
 #pragma once
 
 #include <boost/system/result.hpp>
@@ -7,10 +7,10 @@
 
 namespace evod::codec {
 
-/// A limit that bytes went beyond.
+/// The limit that the bytes exceed.
 enum class Beyond { Nothing, FrameBytes, MessageDepth };
 
-/// Bytes that are not what they should be. `what` is one sentence without a full stop, fit for a log or a person.
+/// Invalid bytes. `what` is one sentence without a full stop, for logs and users.
 struct Damage {
     std::string what;
     Beyond beyond = Beyond::Nothing;

@@ -1,92 +1,91 @@
 #include "proto/codec/snapshot_codec.h"
 
-#include "proto/codec/body.h"
-#include "proto/codec/delta_codec.h"
-#include "proto/codec/little_endian.h"
 #include "proto/codec/steps.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace evod::codec {
-
 namespace {
 
-/// Bytes of one entity's row over all of its columns.
-constexpr std::uint64_t organism_bytes(std::uint64_t position) {
-    return 4 + 2 * position + 2 + 2;
-}
-constexpr std::uint64_t item_bytes(std::uint64_t position) {
-    return 4 + 2 * position;
-}
-constexpr std::uint64_t box_bytes(std::uint64_t position) {
-    return 2 * position + 2 + 2;
+using Floats = google::protobuf::RepeatedField<float>;
+using Ids = google::protobuf::RepeatedField<std::uint32_t>;
+
+Damage wrong(const std::string& field, const std::string& got, const std::string& allowed) {
+    return Damage{"a snapshot's " + field + " is " + got + ", not " + allowed};
 }
 
-/// Length of the body that these counts make.
-std::uint64_t body_bytes(const evod::v1::SnapshotFrame& frame) {
-    const std::uint64_t position = frame.position_bytes();
-    return frame.organism_count() * organism_bytes(position) +
-           (std::uint64_t{frame.food_count()} + frame.poison_count()) * item_bytes(position) +
-           (std::uint64_t{frame.crate_count()} + frame.obstacle_count()) * box_bytes(position);
+void set_ids(const Column& column, Ids& to) {
+    to.Add(column.begin(), column.end());
 }
 
-// ---- decoding --------------------------------------------------------------------------------------------------
+/// From steps to px, or to health.
+void set_values(const Column& column, Floats& to) {
+    to.Reserve(static_cast<int>(column.size()));
+    for (const std::uint32_t steps : column) {
+        to.AddAlreadyReserved(static_cast<float>(steps) * (1 / steps_per_px));
+    }
+}
 
-/// Reads whole columns; the caller has checked that they are there.
-class Reader {
+void set_items(const Entities& items, evod::v1::PlainItems& to) {
+    set_ids(items.id, *to.mutable_id());
+    set_values(items.x, *to.mutable_x_px());
+    set_values(items.y, *to.mutable_y_px());
+}
+
+void set_boxes(const Entities& boxes, evod::v1::PlainBoxes& to) {
+    set_values(boxes.x, *to.mutable_x_px());
+    set_values(boxes.y, *to.mutable_y_px());
+    set_values(boxes.width, *to.mutable_half_width_px());
+    set_values(boxes.height, *to.mutable_half_height_px());
+}
+
+/// Copies columns of one kind, checking each. After the first fault the columns stay empty.
+class PlainReader {
   public:
-    Reader(const char* from, std::uint32_t position_bytes) : from_{from}, position_bytes_{position_bytes} {}
+    PlainReader(const char* kind, std::uint32_t count) : kind_{kind}, count_{count} {}
 
-    std::vector<std::uint32_t> ids(std::size_t count) {
-        return column<std::uint32_t, std::uint32_t>(count, [](std::uint32_t id) { return id; });
+    std::vector<std::uint32_t> ids(const Ids& column) {
+        if (has_count("id", column.size()) &&
+            std::adjacent_find(column.begin(), column.end(), std::greater_equal<>{}) != column.end()) {
+            refuse("id", "out of order", "rising");
+        }
+        return damage_ ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{column.begin(), column.end()};
     }
-    std::vector<float> positions(std::size_t count) {
-        return position_bytes_ == 2 ? steps<std::uint16_t>(count) : steps<std::uint32_t>(count);
+    std::vector<float> values(const char* field, const Floats& column) {
+        if (has_count(field, column.size())) {
+            const auto bad =
+                std::find_if(column.begin(), column.end(), [](float value) { return !std::isfinite(value); });
+            if (bad != column.end()) {
+                refuse(field, std::to_string(*bad), "a finite number");
+            }
+        }
+        return damage_ ? std::vector<float>{} : std::vector<float>{column.begin(), column.end()};
     }
-    std::vector<float> sizes(std::size_t count) { return steps<std::uint16_t>(count); }
+    const std::optional<Damage>& damage() const { return damage_; }
 
   private:
-    template <std::unsigned_integral Step>
-    std::vector<float> steps(std::size_t count) {
-        return column<float, Step>(count, [](Step step) { return static_cast<float>(step) * (1 / steps_per_px); });
-    }
-    template <class Value, std::unsigned_integral Number, class Convert>
-    std::vector<Value> column(std::size_t count, const Convert& convert) {
-        std::vector<Value> values(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            values[i] = convert(load<Number>(from_ + i * sizeof(Number)));
+    bool has_count(const char* field, int size) {
+        if (static_cast<std::uint32_t>(size) != count_) {
+            refuse(field, std::to_string(size) + " numbers long", std::to_string(count_) + " as the count says");
         }
-        from_ += count * sizeof(Number);
-        return values;
+        return !damage_;
+    }
+    void refuse(const char* field, const std::string& got, const std::string& allowed) {
+        if (!damage_) {
+            damage_ = wrong(std::string{"plain."} + kind_ + "." + field, got, allowed);
+        }
     }
 
-    const char* from_;
-    std::uint32_t position_bytes_;
+    const char* kind_;
+    std::uint32_t count_;
+    std::optional<Damage> damage_;
 };
-
-Damage wrong(const char* field, const std::string& got, const char* allowed) {
-    return Damage{std::string{"a snapshot's "} + field + " is " + got + ", not " + allowed};
-}
-
-/// What is wrong with the length of the body, if anything.
-std::optional<Damage> damage_of_length(const evod::v1::SnapshotFrame& frame) {
-    const std::uint64_t expected = body_bytes(frame);
-    if (frame.body().size() != expected) {
-        return wrong("body", std::to_string(frame.body().size()) + " bytes long",
-                     (std::to_string(expected) + " as its counts say").c_str());
-    }
-    return std::nullopt;
-}
-
-bool rise(const std::vector<std::uint32_t>& ids) {
-    return std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end();
-}
 
 } // namespace
 
@@ -94,8 +93,8 @@ void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame)
     for (const auto part : snapshot_parts) {
         const Entities& entities = snapshot.*part;
         for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height}) {
-            const bool may_be_left_out = column != &entities.y; // what a kind does not have
-            if (column->size() != entities.x.size() && !(may_be_left_out && column->empty())) {
+            const bool optional = column != &entities.y; // not every kind has it
+            if (column->size() != entities.x.size() && !(optional && column->empty())) {
                 throw std::invalid_argument{"a snapshot has columns of different lengths"};
             }
         }
@@ -104,32 +103,29 @@ void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame)
     frame.set_position_bytes(snapshot.position_bytes);
 }
 
-void encode(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
+void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
     describe(snapshot, frame);
-    frame.set_codec(evod::v1::CODEC_COLUMNS);
-    BodyWriter writer{body_bytes(frame)};
-    const auto positions = [&](const Column& column) {
-        snapshot.position_bytes == 2 ? writer.plain<std::uint16_t>(column) : writer.plain<std::uint32_t>(column);
-    };
-    for (const auto part : snapshot_parts) {
-        const Entities& entities = snapshot.*part; // columns that a kind does not have are empty
-        writer.plain<std::uint32_t>(entities.id);
-        positions(entities.x);
-        positions(entities.y);
-        writer.plain<std::uint16_t>(entities.width);
-        writer.plain<std::uint16_t>(entities.height);
-    }
-    frame.set_body(writer.take());
-    frame.set_checksum(checksum_of(frame, frame.body()));
+    frame.clear_position_bytes();
+    frame.set_codec(evod::v1::CODEC_PLAIN);
+    evod::v1::PlainSnapshot& plain = *frame.mutable_plain();
+    evod::v1::PlainOrganisms& organisms = *plain.mutable_organisms();
+    set_ids(snapshot.organisms.id, *organisms.mutable_id());
+    set_values(snapshot.organisms.x, *organisms.mutable_x_px());
+    set_values(snapshot.organisms.y, *organisms.mutable_y_px());
+    set_values(snapshot.organisms.width, *organisms.mutable_radius_px());
+    set_values(snapshot.organisms.height, *organisms.mutable_health());
+    set_items(snapshot.food, *plain.mutable_food());
+    set_items(snapshot.poison, *plain.mutable_poison());
+    set_boxes(snapshot.crates, *plain.mutable_crates());
+    set_boxes(snapshot.obstacles, *plain.mutable_obstacles());
 }
 
 std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {
-    if (frame.position_bytes() != 2 && frame.position_bytes() != 4) {
+    if (frame.codec() == evod::v1::CODEC_DELTA && frame.position_bytes() != 2 && frame.position_bytes() != 4) {
         return wrong("position_bytes", std::to_string(frame.position_bytes()), "2 or 4");
     }
     if (frame.island() >= frame.island_count()) {
-        return wrong("island", std::to_string(frame.island()),
-                     ("one of " + std::to_string(frame.island_count())).c_str());
+        return wrong("island", std::to_string(frame.island()), "one of " + std::to_string(frame.island_count()));
     }
     struct Size {
         const char* field;
@@ -150,48 +146,58 @@ std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {
     return std::nullopt;
 }
 
-Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame) {
-    if (frame.codec() != evod::v1::CODEC_COLUMNS) {
-        return wrong("codec", std::to_string(frame.codec()), "one that is known here");
+Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
+    if (frame.codec() != evod::v1::CODEC_PLAIN) {
+        return wrong("codec", std::to_string(frame.codec()), "a known one");
     }
     if (auto damage = damage_of_fields(frame)) {
         return *std::move(damage);
     }
-    if (auto damage = damage_of_length(frame)) {
+    const evod::v1::PlainSnapshot& plain = frame.plain();
+    DecodedSnapshot snapshot;
+    std::optional<Damage> damage;
+    const auto read = [&](const char* kind, std::uint32_t count, const auto& columns) {
+        PlainReader reader{kind, count};
+        columns(reader);
+        if (!damage) {
+            damage = reader.damage();
+        }
+    };
+    read("organisms", frame.organism_count(), [&](PlainReader& reader) {
+        const evod::v1::PlainOrganisms& from = plain.organisms();
+        snapshot.organisms = {reader.ids(from.id()), reader.values("x_px", from.x_px()),
+                              reader.values("y_px", from.y_px()), reader.values("radius_px", from.radius_px()),
+                              reader.values("health", from.health())};
+    });
+    const auto read_items = [&](const char* kind, std::uint32_t count, const evod::v1::PlainItems& from,
+                                DecodedItems& to) {
+        read(kind, count, [&](PlainReader& reader) {
+            to = {reader.ids(from.id()), reader.values("x_px", from.x_px()), reader.values("y_px", from.y_px())};
+        });
+    };
+    read_items("food", frame.food_count(), plain.food(), snapshot.food);
+    read_items("poison", frame.poison_count(), plain.poison(), snapshot.poison);
+    const auto read_boxes = [&](const char* kind, std::uint32_t count, const evod::v1::PlainBoxes& from,
+                                DecodedBoxes& to) {
+        read(kind, count, [&](PlainReader& reader) {
+            to = {.x_px = reader.values("x_px", from.x_px()),
+                  .y_px = reader.values("y_px", from.y_px()),
+                  .half_width_px = reader.values("half_width_px", from.half_width_px()),
+                  .half_height_px = reader.values("half_height_px", from.half_height_px())};
+            to.id.resize(to.x_px.size());
+            std::iota(to.id.begin(), to.id.end(), 0U);
+        });
+    };
+    read_boxes("crates", frame.crate_count(), plain.crates(), snapshot.crates);
+    read_boxes("obstacles", frame.obstacle_count(), plain.obstacles(), snapshot.obstacles);
+    if (damage) {
         return *std::move(damage);
     }
-    DecodedSnapshot picture;
-    Reader reader{frame.body().data(), frame.position_bytes()};
-    const std::size_t organism_count = frame.organism_count();
-    picture.organisms.id = reader.ids(organism_count);
-    picture.organisms.x_px = reader.positions(organism_count);
-    picture.organisms.y_px = reader.positions(organism_count);
-    picture.organisms.radius_px = reader.sizes(organism_count);
-    picture.organisms.health = reader.sizes(organism_count);
-    for (const auto& [items, count] :
-         {std::pair{&picture.food, frame.food_count()}, std::pair{&picture.poison, frame.poison_count()}}) {
-        items->id = reader.ids(count);
-        items->x_px = reader.positions(count);
-        items->y_px = reader.positions(count);
-    }
-    for (const auto& [boxes, count] :
-         {std::pair{&picture.crates, frame.crate_count()}, std::pair{&picture.obstacles, frame.obstacle_count()}}) {
-        boxes->x_px = reader.positions(count);
-        boxes->y_px = reader.positions(count);
-        boxes->half_width_px = reader.sizes(count);
-        boxes->half_height_px = reader.sizes(count);
-        boxes->id.resize(count);
-        std::iota(boxes->id.begin(), boxes->id.end(), 0U);
-    }
-    for (const auto& [what, ids] : {std::pair{"organisms", &picture.organisms.id}, std::pair{"food", &picture.food.id},
-                                    std::pair{"poison", &picture.poison.id}}) {
-        if (!rise(*ids)) {
-            return wrong("ids", "out of order", (std::string{"rising in its "} + what).c_str());
-        }
-    }
-    frame.clear_body();
-    picture.about = std::move(frame);
-    return picture;
+    frame.clear_plain();
+    frame.clear_body(); // meaningless with this codec, as are the tiles
+    frame.clear_tiles();
+    snapshot.about = std::move(frame);
+    return snapshot;
 }
 
 } // namespace evod::codec

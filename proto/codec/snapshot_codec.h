@@ -1,11 +1,10 @@
-// Snapshot codec: a snapshot → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
-// stream.proto.
+// Snapshot codec: decoded snapshots, and CODEC_PLAIN. The message is described in stream.proto.
 //
-// The server encodes a picture once for all its viewers; clients decode. The encoder is handed snapshots that are right;
-// the decoder trusts nothing.
+// The server encodes a snapshot once for all its viewers; clients decode it. The encoder's input is valid; the decoder
+// checks everything.
 //
 // Threads      none; nothing here is shared.
-// Determinism  bodies are little-endian whatever the machine, so equal columns are equal bytes.
+// Determinism  all numbers are multiples of 1/16, which a float holds exactly, so all machines send equal bytes.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -18,12 +17,11 @@
 
 namespace evod::codec {
 
-/// Sets the counts and position_bytes of `frame`, and leaves its other fields alone. Throws std::invalid_argument where
-/// the columns of a kind differ in length.
+/// Sets the counts and position_bytes of `frame`. Throws std::invalid_argument if the columns of a kind differ in length.
 void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
 
-/// Sets codec, body and checksum of `frame` too, which has its sequence. snapshot: of a whole island.
-void encode(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
+/// Sets codec, counts and `plain` of `frame`. snapshot: of a whole island.
+void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
 
 struct DecodedOrganisms {
     std::vector<std::uint32_t> id; // rising
@@ -35,10 +33,10 @@ struct DecodedItems {
 };
 struct DecodedBoxes {
     std::vector<float> x_px, y_px, half_width_px, half_height_px;
-    std::vector<std::uint32_t> id{}; // rising: the index among the island's
+    std::vector<std::uint32_t> id{}; // rising: the index on the island
 };
 
-/// What a tile of DETAIL_DOTS shows: where its entities are, to 1/256 of its side.
+/// A tile of DETAIL_DOTS: positions to 1/256 of its side.
 struct DecodedDots {
     struct Places {
         std::vector<float> x_px, y_px;
@@ -46,35 +44,34 @@ struct DecodedDots {
     Places organisms, food, poison, crates, obstacles;
 };
 
-/// What a tile of DETAIL_DENSITY shows: how many there are in each of cells_per_side squared squares, row after row.
+/// A tile of DETAIL_DENSITY: the number of entities in each of cells_per_side squared squares, row after row.
 struct DecodedDensity {
     std::uint32_t cells_per_side = 1;
     std::vector<std::uint32_t> organisms, food, poison;
 };
 
-/// A tile that is seen.
+/// A visible tile.
 struct DecodedTile {
     std::uint32_t tile = 0; // index
     evod::v1::Detail detail = evod::v1::DETAIL_FULL;
-    double left_px = 0, top_px = 0; // its corner; its side is SnapshotFrame.tile_px
+    double left_px = 0, top_px = 0; // its upper left corner; its side is SnapshotFrame.tile_px
     DecodedDots dots;               // DETAIL_DOTS
     DecodedDensity density;         // DETAIL_DENSITY
 };
 
-/// One picture of one island, ready to draw. All columns of a struct have the same length, and all numbers are finite.
+/// One snapshot of one island, ready to draw. All columns of a struct have the same length, and all numbers are finite.
 struct DecodedSnapshot {
-    evod::v1::SnapshotFrame about; // every field of the frame but its body and tiles: tick, walls, statistics, …
-    DecodedOrganisms organisms;    // with tiles, of all those of DETAIL_FULL together; so too the others
+    evod::v1::SnapshotFrame about; // every field of the frame but body, tiles and plain: tick, walls, statistics, …
+    DecodedOrganisms organisms;    // with a View: those of all tiles of DETAIL_FULL; likewise the other kinds
     DecodedItems food, poison;
     DecodedBoxes crates, obstacles;
-    std::vector<DecodedTile> tiles; // with a View: those that are seen, by rising index
+    std::vector<DecodedTile> tiles; // with a View: the visible tiles, indices rising
 };
 
-/// What is wrong with the fields around the body, if anything; whichever the codec is.
+/// The first invalid field among those that do not contain entities, if any; for every codec.
 std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame);
 
-/// A picture of CODEC_COLUMNS. Damage says which field is wrong, and how. Memory is taken only after the counts agree
-/// with the body's length.
-Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame);
+/// Decodes CODEC_PLAIN. Damage names the invalid field.
+Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame);
 
 } // namespace evod::codec

@@ -14,7 +14,7 @@ namespace evod::codec {
 
 namespace {
 
-/// The content of a body. bytes_max: it is refused beyond.
+/// The uncompressed body. bytes_max: more is Damage.
 Result<std::string> content_of(std::string body, evod::v1::Compression compression, std::uint64_t bytes_max) {
     switch (compression) {
     case evod::v1::COMPRESSION_ZSTD:
@@ -23,7 +23,7 @@ Result<std::string> content_of(std::string body, evod::v1::Compression compressi
     case evod::v1::COMPRESSION_NONE:
         return {boost::system::in_place_value, std::move(body)};
     default:
-        return Damage{"a snapshot's compression is " + std::to_string(compression) + ", not one that is known here"};
+        return Damage{"a snapshot's compression is " + std::to_string(compression) + ", not a known one"};
     }
 }
 
@@ -51,7 +51,7 @@ DecodedBoxes boxes_of(const Entities& entities) {
     return boxes;
 }
 
-DecodedSnapshot picture_of(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame about) {
+DecodedSnapshot decoded_snapshot(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame about) {
     return {.about = std::move(about),
             .organisms = {kept(snapshot.organisms.id), in_px(snapshot.organisms.x), in_px(snapshot.organisms.y),
                           in_px(snapshot.organisms.width), in_px(snapshot.organisms.height)},
@@ -63,11 +63,11 @@ DecodedSnapshot picture_of(const QuantisedSnapshot& snapshot, evod::v1::Snapshot
 }
 
 Damage keyframe_needed() {
-    return Damage{"a snapshot is told from one that is not known here: a keyframe is needed"};
+    return Damage{"a snapshot has an unknown base: a keyframe is needed"};
 }
 
 Damage other_checksum() {
-    return Damage{"a snapshot's checksum is not that of its body"};
+    return Damage{"a snapshot's checksum does not match its body"};
 }
 
 Damage other_base(std::uint64_t got, std::uint64_t last) {
@@ -83,17 +83,15 @@ bool is_keyframe(const evod::v1::SnapshotFrame& frame) {
 }
 
 Result<DecodedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
-    if (frame.codec() == evod::v1::CODEC_COLUMNS && checksum_of(frame, frame.body()) != frame.checksum()) {
-        return other_checksum();
-    }
     if (frame.codec() != evod::v1::CODEC_DELTA) {
-        return codec::decode(std::move(frame));
+        return decode_plain(std::move(frame));
     }
-    auto picture = frame.tile_px() > 0 ? decode_tiles(std::move(frame)) : decode_whole(std::move(frame));
-    if (!picture) {
+    frame.clear_plain(); // meaningless with this codec
+    auto decoded = frame.tile_px() > 0 ? decode_tiles(std::move(frame)) : decode_whole(std::move(frame));
+    if (!decoded) {
         forget();
     }
-    return picture;
+    return decoded;
 }
 
 void SnapshotDecoder::forget() {
@@ -126,7 +124,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
     const auto content = content_of(std::move(*frame.mutable_body()), frame.compression(),
                                     body_bytes_max(counts, base ? base->snapshot.get() : nullptr));
     frame.clear_body();
-    frame.clear_tiles(); // without tile_px they mean nothing
+    frame.clear_tiles(); // meaningless without tile_px
     if (!content) {
         return content.error();
     }
@@ -141,7 +139,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
     forget();
     snapshot_ = baseline->snapshot;
     whole_ = Whole{.baseline = *std::move(baseline), .about = frame};
-    return picture_of(*snapshot_, std::move(frame));
+    return decoded_snapshot(*snapshot_, std::move(frame));
 }
 
 Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame frame) {
@@ -153,19 +151,19 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
         return layout.error();
     }
     Tiles next{.layout = *layout, .bases = {}};
-    std::vector<DecodedTile> seen;
+    std::vector<DecodedTile> visible;
     std::vector<const QuantisedSnapshot*> snapshots;
     std::uint64_t content_bytes_left = *client_limits.stream_bytes_max; // of all tiles together
     for (evod::v1::SnapshotTile& tile : *frame.mutable_tiles()) {
         if (tile.tile() >= layout->count()) {
-            return Damage{"a tile is " + std::to_string(tile.tile()) + ", not one of " +
+            return Damage{"a tile's index is " + std::to_string(tile.tile()) + ", not one of " +
                           std::to_string(layout->count())};
         }
-        if (!seen.empty() && seen.back().tile >= tile.tile()) {
-            return Damage{"a snapshot's tiles do not rise"};
+        if (!visible.empty() && visible.back().tile >= tile.tile()) {
+            return Damage{"a snapshot's tiles are out of order"};
         }
         if (tile.sequence() != frame.sequence()) {
-            return Damage{"a tile's sequence is " + std::to_string(tile.sequence()) + ", not its snapshot's, " +
+            return Damage{"a tile's sequence is " + std::to_string(tile.sequence()) + ", not that of its snapshot, " +
                           std::to_string(frame.sequence())};
         }
         const Tiles::Base* base = nullptr;
@@ -191,13 +189,13 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
         }
         content_bytes_left -= std::min<std::uint64_t>(content_bytes_left, content->size());
         if (checksum_of(frame.tile_px(), frame.position_bytes(), tile, *content) != tile.checksum()) {
-            return Damage{"a tile's checksum is not that of its body"};
+            return Damage{"a tile's checksum does not match its body"};
         }
-        DecodedTile& picture = seen.emplace_back();
-        picture.tile = tile.tile();
-        picture.detail = tile.detail();
-        picture.left_px = double{1} * (tile.tile() % layout->columns) * layout->tile_px;
-        picture.top_px = double{1} * (tile.tile() / layout->columns) * layout->tile_px;
+        DecodedTile& decoded = visible.emplace_back();
+        decoded.tile = tile.tile();
+        decoded.detail = tile.detail();
+        decoded.left_px = double{1} * (tile.tile() % layout->columns) * layout->tile_px;
+        decoded.top_px = double{1} * (tile.tile() / layout->columns) * layout->tile_px;
         if (tile.detail() == evod::v1::DETAIL_FULL) {
             auto baseline =
                 decode_body(*content, {.counts = counts, .position_bytes = frame.position_bytes(), .of_tile = true},
@@ -212,15 +210,15 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
             if (!dots) {
                 return dots.error();
             }
-            picture.dots = *std::move(dots);
+            decoded.dots = *std::move(dots);
         } else if (tile.detail() == evod::v1::DETAIL_DENSITY) {
             auto density = decode_density(*content, counts);
             if (!density) {
                 return density.error();
             }
-            picture.density = *std::move(density);
+            decoded.density = *std::move(density);
         } else {
-            return Damage{"a tile's detail is " + std::to_string(tile.detail()) + ", not one that is known here"};
+            return Damage{"a tile's detail is " + std::to_string(tile.detail()) + ", not a known one"};
         }
     }
     auto snapshot = merged(frame.position_bytes(), snapshots);
@@ -232,9 +230,9 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
     tiles_ = std::move(next);
     frame.clear_body();
     frame.clear_tiles();
-    DecodedSnapshot picture = picture_of(*snapshot_, std::move(frame));
-    picture.tiles = std::move(seen);
-    return picture;
+    DecodedSnapshot decoded = decoded_snapshot(*snapshot_, std::move(frame));
+    decoded.tiles = std::move(visible);
+    return decoded;
 }
 
 } // namespace evod::codec

@@ -1,7 +1,7 @@
-// Picture decoder: SnapshotFrames, one after another, by any codec, whole or in tiles → pictures to draw.
+// Snapshot decoder: a sequence of SnapshotFrames of any codec, whole or in tiles → snapshots to draw.
 //
-// It trusts nothing: memory follows the bytes received and the counts checked against them, and after damage in any
-// part of a picture all of it is refused, and every delta up to the next keyframe.
+// It checks everything: memory is bounded by the bytes received and the counts checked against them. Damage in any part
+// refuses the whole snapshot, and every delta up to the next keyframe.
 //
 // Threads      a decoder is used by one thread.
 #pragma once
@@ -19,25 +19,25 @@
 
 namespace evod::codec {
 
-/// Whether a picture can be decoded by who knows none before it.
+/// Whether a frame can be decoded without an earlier one.
 bool is_keyframe(const evod::v1::SnapshotFrame& frame);
 
-/// The pictures of one island of one subscription.
+/// Decodes the snapshots of one island of one subscription.
 class SnapshotDecoder {
   public:
-    /// Damage says what is wrong; then every delta is refused up to the next keyframe.
+    /// After Damage every delta is refused up to the next keyframe.
     Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
-    /// Deltas are of no use now: there has been no keyframe yet, or damage after it.
+    /// Deltas cannot be decoded: there has been no keyframe yet, or damage after it.
     bool needs_keyframe() const { return !snapshot_; }
 
-    /// What the last picture of CODEC_DELTA consisted of; null before a keyframe. With tiles, those of DETAIL_FULL.
+    /// The entities of the last snapshot of CODEC_DELTA; null before a keyframe. With a View, those of tiles of DETAIL_FULL.
     const QuantisedSnapshot* snapshot() const { return snapshot_.get(); }
 
   private:
     struct Whole {
         Baseline baseline;
-        evod::v1::SnapshotFrame about; // what deltas leave out, and sequence
+        evod::v1::SnapshotFrame about; // the fields that deltas omit, and sequence
     };
     struct Tiles {
         struct Base {
@@ -45,7 +45,7 @@ class SnapshotDecoder {
             Baseline baseline;
         };
         TileLayout layout;
-        std::map<std::uint32_t, Base> bases; // by index, of those that the last picture showed at DETAIL_FULL
+        std::map<std::uint32_t, Base> bases; // by index, of the tiles at DETAIL_FULL in the last snapshot
     };
     Result<DecodedSnapshot> decode_whole(evod::v1::SnapshotFrame frame);
     Result<DecodedSnapshot> decode_tiles(evod::v1::SnapshotFrame frame);

@@ -14,21 +14,21 @@ namespace evod::codec {
 
 namespace {
 
-constexpr unsigned place_bits = 8; // of a place within a tile
+constexpr unsigned place_bits = 8; // of a position within a tile
 constexpr unsigned cells_per_side_log2_max = 4;
-constexpr std::size_t counted_parts = 3; // organisms, food, poison: those that a density counts
+constexpr std::size_t counted_parts = 3; // organisms, food and poison, which a density counts
 
-/// How many tiles there are from wall to wall.
+/// The number of tiles from wall to wall.
 double tiles_along(double length_px, std::uint32_t tile_px) {
     return std::max(1.0, std::ceil(length_px / tile_px));
 }
 
-/// The first of `count` tiles that begins at `px` or right of it.
+/// The first of `count` tiles that begins at or after `px`.
 std::uint32_t first_from(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::ceil(px / tile_px), 0.0, double{1} * count));
 }
 
-/// The last of `count` tiles that begins at `px` or left of it.
+/// The last of `count` tiles that begins at or before `px`.
 std::uint32_t last_up_to(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(px / tile_px), 0.0, double{1} * count));
 }
@@ -49,7 +49,7 @@ TileLayout tile_layout(double width_px, double height_px) {
 
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame) {
     const std::uint32_t tile_px = frame.tile_px();
-    // Other sizes and numbers of tiles than a server of today cuts are no damage; these are what indices bear.
+    // Accepts more than this version of the server sends: whatever indices can hold.
     constexpr double count_max = 1 << 24;
     if (!std::has_single_bit(tile_px)) {
         return Damage{"a snapshot's tile_px is " + std::to_string(tile_px) + ", not a power of two"};
@@ -84,7 +84,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, 
     : snapshot_{std::move(snapshot)}
     , layout_{layout}
     , side_log2_{static_cast<unsigned>(std::countr_zero(layout.tile_px)) + steps_per_px_log2}
-    , together_(layout.count()) {
+    , gathered_(layout.count()) {
     const std::uint32_t count = layout_.count();
     std::vector<std::uint16_t> tiles;
     static_assert(tiles_max <= 1 << 16);
@@ -98,7 +98,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, 
             continue;
         }
         tiles.resize(size);
-        for (std::size_t i = 0; i < size; ++i) { // what stands on a wall is in the last tile before it
+        for (std::size_t i = 0; i < size; ++i) { // an entity on a wall is in the last tile before it
             const std::uint32_t column = std::min(entities.x[i] >> side_log2_, layout_.columns - 1);
             const std::uint32_t row = std::min(entities.y[i] >> side_log2_, layout_.rows - 1);
             tiles[i] = static_cast<std::uint16_t>(row * layout_.columns + column);
@@ -114,7 +114,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, 
         }
         counted += p < counted_parts ? size : 0;
     }
-    // A cell for two entities in the mean: then a density takes about half the bytes of the dots that it counts.
+    // One cell per two entities on average: then a density takes about half the bytes of the dots.
     while (cells_per_side_log2_ < cells_per_side_log2_max &&
            (std::uint64_t{count} << (2 * (cells_per_side_log2_ + 1))) <= counted / 2) {
         ++cells_per_side_log2_;
@@ -149,8 +149,8 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
     constexpr std::array<EntitiesView QuantisedView::*, snapshot_parts.size()> parts_seen{
         &QuantisedView::organisms, &QuantisedView::food, &QuantisedView::poison, &QuantisedView::crates,
         &QuantisedView::obstacles};
-    const bool gathers = !together_[tile];
-    together_[tile] = true;
+    const bool gathers = !gathered_[tile];
+    gathered_[tile] = true;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         const Numbers indices = of(p, tile);
         if (indices.empty()) {
@@ -240,7 +240,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
         const auto gather = [&](Column Entities::*column) {
             for (const Found& one : found) {
                 const Column& from = tiles[one.tile]->*part.*column;
-                if (!from.empty()) { // otherwise entities of this kind have none
+                if (!from.empty()) { // the kind has this column
                     (to.*column).push_back(from[one.index]);
                 }
             }
@@ -285,7 +285,7 @@ Result<DecodedDensity> decode_density(std::string_view body, const Counts& count
     DecodedDensity density;
     density.cells_per_side = reader.number<std::uint8_t>();
     if (!std::has_single_bit(density.cells_per_side) || density.cells_per_side > 1U << cells_per_side_log2_max) {
-        reader.refuse("has " + std::to_string(density.cells_per_side) + " cells a side, not 1, 2, 4, 8 or 16");
+        reader.refuse("has " + std::to_string(density.cells_per_side) + " cells per row, not 1, 2, 4, 8 or 16");
         return *reader.damage();
     }
     const std::array<std::vector<std::uint32_t>*, counted_parts> parts{&density.organisms, &density.food,
@@ -293,12 +293,12 @@ Result<DecodedDensity> decode_density(std::string_view body, const Counts& count
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const Column cells = reader.column(std::size_t{density.cells_per_side} * density.cells_per_side);
         if (!reader.damage() && std::accumulate(cells.begin(), cells.end(), std::uint64_t{0}) != counts[p]) {
-            reader.refuse("counts others than it says there are");
+            reader.refuse("counts entities that differ from the counts of the tile");
         }
         parts[p]->assign(cells.begin(), cells.end());
     }
     if (reader.rest_bytes() > 0) {
-        reader.refuse("has bytes at its end that mean nothing");
+        reader.refuse("has surplus bytes at its end");
     }
     if (reader.damage()) {
         return *reader.damage();

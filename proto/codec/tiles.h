@@ -1,10 +1,10 @@
-// Tiles: an island cut into squares, for those who see a region of it, or less than everything. The layout of a tile's
-// body is told in stream.proto.
+// Tiles: an island cut into squares, for viewers of a region or of less detail. The layout of a tile's body is described in
+// stream.proto.
 //
-// A tile at DETAIL_FULL is a QuantisedSnapshot of its own, told as the delta codec tells a whole island; dots and densities are
-// told from nothing before them. All tiles together are the island: an entity is in the one that its centre is in.
+// A tile at DETAIL_FULL is a QuantisedSnapshot, which the delta codec encodes like a whole island. Dots and densities have
+// no baseline. All tiles together are the island: each entity is in the tile that contains its centre.
 //
-// Determinism  whole numbers alone, as everywhere in pictures.
+// Determinism  integers only, as for all snapshots.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -26,7 +26,7 @@ namespace evod::codec {
 constexpr std::uint32_t tiles_max = 1024;  // of an island
 constexpr std::uint32_t tile_px_min = 512; // side
 
-/// How an island is cut. Tiles are numbered row after row.
+/// The tiles of an island, numbered row after row.
 struct TileLayout {
     double width_px = 0, height_px = 0;  // of the island
     std::uint32_t tile_px = tile_px_min; // side, a power of two
@@ -36,13 +36,13 @@ struct TileLayout {
     friend bool operator==(const TileLayout&, const TileLayout&) = default;
 };
 
-/// The smallest tiles of which there are at most tiles_max.
+/// The layout with the smallest tiles that gives at most tiles_max of them.
 TileLayout tile_layout(double width_px, double height_px);
 
-/// As a frame tells it, which may be anything; but its size has been judged.
+/// The layout in a frame. The caller has checked the size of the island.
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame);
 
-/// Some columns of some rows; from … up to, but without, ….
+/// The tiles of a rectangle; the ends are exclusive.
 struct TileRange {
     std::uint32_t column_begin = 0, column_end = 0, row_begin = 0, row_end = 0;
 
@@ -50,7 +50,7 @@ struct TileRange {
         const std::uint32_t column = tile % layout.columns, row = tile / layout.columns;
         return column >= column_begin && column < column_end && row >= row_begin && row < row_end;
     }
-    /// Calls what(tile) of each, indices rising.
+    /// Calls what(tile) for each tile, indices rising.
     template <class Do>
     void each(const TileLayout& layout, const Do& what) const {
         for (std::uint32_t row = row_begin; row < row_end; ++row) {
@@ -62,13 +62,13 @@ struct TileRange {
     friend bool operator==(const TileRange&, const TileRange&) = default;
 };
 
-/// The tiles that a region touches; one of any finite place, of positive size.
+/// The tiles that a region touches. The region is finite and its size positive.
 TileRange tiles_of(const evod::v1::Region& region, const TileLayout& layout);
-/// All of them.
+/// All tiles.
 TileRange tiles_of(const TileLayout& layout);
 
-/// A snapshot, and what of it is in which tile. To make one is to number the entities; those of a tile are put together
-/// when it is first asked for. Used by one thread.
+/// A snapshot sorted into tiles. The constructor sorts the indices; the columns of a tile are gathered on its first use.
+/// Used by one thread.
 class SnapshotTiles {
   public:
     SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, const TileLayout& layout);
@@ -76,9 +76,9 @@ class SnapshotTiles {
     const TileLayout& layout() const { return layout_; }
 
     Counts counts(std::uint32_t tile) const;
-    /// How many there are in the tiles before it; tile may be layout().count().
+    /// Counts of all tiles before `tile`, which may be layout().count().
     Counts counts_before(std::uint32_t tile) const;
-    /// Its entities, boxes with ids; lies in this object.
+    /// The entities of a tile; boxes have ids. Valid as long as this object.
     QuantisedView full(std::uint32_t tile);
     /// The body of a tile of DETAIL_DOTS.
     std::string dots(std::uint32_t tile) const;
@@ -87,13 +87,13 @@ class SnapshotTiles {
 
   private:
     struct Part {
-        std::vector<std::uint32_t> order; // indices of the snapshot's entities, tile after tile, rising within each
-        std::vector<std::uint32_t> begin; // of each tile in `order`; and the end of the last
-        // The snapshot's columns in that order, of the tiles that are put together; null where it has none, and before.
+        std::vector<std::uint32_t> order; // indices of entities, tile after tile, rising within each
+        std::vector<std::uint32_t> begin; // offset of each tile in `order`, and the end of the last
+        // The snapshot's columns in that order, filled for the gathered tiles; null before, and if the kind has no such column.
         std::array<std::unique_ptr<std::uint32_t[]>, 5> columns;
     };
     std::span<const std::uint32_t> of(std::size_t part, std::uint32_t tile) const;
-    /// Where an entity is within a tile, in 1/256 of its side.
+    /// The position of an entity within a tile, in 1/256 of its side.
     struct Place {
         std::uint8_t x, y;
     };
@@ -102,20 +102,19 @@ class SnapshotTiles {
     std::shared_ptr<const QuantisedSnapshot> snapshot_;
     TileLayout layout_;
     unsigned side_log2_;               // of a tile, in steps
-    unsigned cells_per_side_log2_ = 0; // of densities
+    unsigned cells_per_side_log2_ = 0; // of a density grid
     std::array<Part, snapshot_parts.size()> parts_;
-    std::vector<bool> together_; // by tile
+    std::vector<bool> gathered_; // by tile
 };
 
-/// All entities of some tiles, none of which may be in two of them.
+/// Merges tiles. Damage if an entity is in two of them.
 Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const QuantisedSnapshot* const> tiles);
 
-/// What bodies tell, which may be anything.
 Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, const TileLayout& layout,
                                 std::uint32_t tile);
 Result<DecodedDensity> decode_density(std::string_view body, const Counts& counts);
 
-/// The longest body that a tile of DETAIL_DENSITY can have.
+/// Size of the longest body of a tile of DETAIL_DENSITY.
 constexpr std::uint64_t density_bytes_max = 16 << 10;
 
 /// SnapshotTile.checksum.

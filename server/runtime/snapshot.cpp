@@ -28,7 +28,7 @@ void copy(const simulation::Island& island, const parameters::Parameters& parame
     to.island = island.index();
     to.width_px = physics::to_px(island.area().width);
     to.height_px = physics::to_px(island.area().height);
-    if (to.width_px <= 0 || to.height_px <= 0) { // an island without bodies has no walls either
+    if (to.width_px <= 0 || to.height_px <= 0) { // an island without bodies has no walls
         to.width_px = parameters.island_width_px;
         to.height_px = parameters.island_height_px;
     }
@@ -76,7 +76,7 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     }
 
     return {taken.release(), [spare = spare_](const Snapshot* snapshot) {
-                std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)}; // made above, and not const there
+                std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)}; // it was not const when it was made
                 const std::lock_guard lock{spare->mutex};
                 if (spare->snapshots.size() < spares_max) {
                     spare->snapshots.push_back(std::move(back));

@@ -1,9 +1,9 @@
-// Snapshot: an immutable picture of a world between two ticks, for those who watch it.
+// Snapshot: an immutable copy of a world between two ticks, for streaming.
 //
-// Taking one is copying columns as they lie, for worlds stand still meanwhile; to put entities in order and to compute
-// anything of them is left to the reader's thread.
+// The simulation thread copies columns in memory order, because the worlds wait meanwhile. The reader's thread sorts entities
+// and computes everything else.
 //
-// Owner        shared; the last to let go gives the memory back to the pool it came from.
+// Owner        shared; the last owner returns the memory to the pool it came from.
 // Threads      taken by the simulation thread, read by any.
 #pragma once
 
@@ -20,16 +20,16 @@
 
 namespace evod::runtime {
 
-/// By id where each is, and what is there, in any order: the dead may have left void places.
+/// Columns in memory order, with gaps left by the dead, and the index of each organism in them.
 struct OrganismsSnapshot {
-    base::Column<std::uint32_t> place_of; // simulation::Island::no_body of the dead
+    base::Column<std::uint32_t> place_of; // by id: index in the columns; simulation::Island::no_body for the dead
     base::Column<physics::Coordinate> x, y;
     base::Column<float> radius_px, health;
     std::uint32_t alive_count = 0;
 };
 
 struct ItemsSnapshot {
-    base::Column<simulation::Items::Item> all; // by id, there or not
+    base::Column<simulation::Items::Item> all; // by id, present or not
     std::uint32_t present_count = 0;
 };
 
@@ -41,7 +41,7 @@ struct BoxesSnapshot {
 struct IslandSnapshot {
     std::uint32_t island = 0;
     double width_px = 0, height_px = 0;
-    simulation::LiveStatistics live; // but for health_mean, which follows from what organisms have
+    simulation::LiveStatistics live; // without health_mean, which the reader computes
     OrganismsSnapshot organisms;
     ItemsSnapshot food, poison;
     BoxesSnapshot boxes; // crates, then obstacles
@@ -59,13 +59,13 @@ struct Snapshot {
     bool slowed = false;
     double item_radius_px = 0;
     std::uint32_t island_count = 0;
-    bool after_change = false; // shows what a command or a reached goal has changed: to be shown whatever the rate
-    std::vector<IslandSnapshot> islands; // those that are watched, by rising index
+    bool after_change = false;           // shows the effect of a command or a reached goal: sent whatever the rate
+    std::vector<IslandSnapshot> islands; // those with subscriptions, indices rising
 };
 
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 
-/// Hands out snapshots and takes their memory back when nobody holds them.
+/// Makes snapshots and reuses their memory.
 class SnapshotPool {
   public:
     SnapshotPool() : spare_{std::make_shared<Spare>()} {}
@@ -74,12 +74,12 @@ class SnapshotPool {
     SnapshotPtr take(const simulation::Entry& entry, const std::vector<std::uint32_t>& islands, bool after_change);
 
   private:
-    static constexpr std::size_t spares_max = 4; // one written, one waiting, one being sent, one to spare
+    static constexpr std::size_t spares_max = 4; // one being written, one waiting, one being sent, one spare
     struct Spare {
         std::mutex mutex; // guards what follows
         std::vector<std::unique_ptr<Snapshot>> snapshots;
     };
-    std::shared_ptr<Spare> spare_; // outlives the pool while snapshots are held
+    std::shared_ptr<Spare> spare_; // outlives the pool while snapshots exist
 };
 
 } // namespace evod::runtime

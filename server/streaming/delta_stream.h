@@ -32,7 +32,7 @@ constexpr std::chrono::seconds keyframe_interval{2};
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after);
 
 enum class Form : std::uint8_t {
-    Plain, // CODEC_COLUMNS
+    Plain, // CODEC_PLAIN
     Whole, // CODEC_DELTA
     Tiles, // CODEC_DELTA with a View
 };

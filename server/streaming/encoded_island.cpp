@@ -97,7 +97,7 @@ codec::SnapshotTiles& EncodedIsland::tiles() {
 const SharedBytes& EncodedIsland::plain() {
     if (!plain_) {
         v1::SnapshotFrame frame = about_;
-        codec::encode(*snapshot_, frame);
+        codec::encode_plain(*snapshot_, frame);
         plain_ = shared(frame.SerializeAsString());
     }
     return plain_;

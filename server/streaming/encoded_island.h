@@ -39,7 +39,7 @@ class EncodedIsland {
     /// The snapshot cut into tiles, on the first call.
     codec::SnapshotTiles& tiles();
 
-    /// Fields 1 to 49 of a frame of CODEC_COLUMNS.
+    /// Fields 1 to 49 of a frame of CODEC_PLAIN.
     const SharedBytes& plain();
     /// Fields 1 to 49 of a frame of CODEC_DELTA without tiles. base_sequence: 0 for a keyframe.
     SharedBytes whole(std::uint64_t base_sequence, std::string_view body, const codec::Seams& seams,

@@ -11,7 +11,7 @@ namespace {
 
 using codec::Column;
 
-/// From fixed point, as it was put there, in place: all at once, which vectors do.
+/// Converts fixed point to steps in place, in one loop for vector instructions.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
     const codec::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
                                           position_bytes};
@@ -20,7 +20,7 @@ void to_steps(Column& positions, std::uint32_t position_bytes) {
     }
 }
 
-/// Room for `count`, and for one more: what is to be left out is written there and written over.
+/// Makes room for `count` and one more: a skipped entity is written there and overwritten.
 template <class... Columns>
 void make_room(std::size_t count, Columns&... columns) {
     (columns.resize(count + 1), ...);
@@ -35,7 +35,7 @@ codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posi
     codec::Entities to;
     make_room(items.present_count, to.id, to.x, to.y);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < items.all.size(); ++i) { // without a branch: which items are away is unpredictable
+    for (std::size_t i = 0; i < items.all.size(); ++i) { // without a branch: which items are absent is unpredictable
         const simulation::Items::Item& item = items.all[i];
         to.id[kept] = static_cast<std::uint32_t>(i);
         to.x[kept] = static_cast<std::uint32_t>(item.x);
@@ -70,21 +70,21 @@ codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin,
 
 codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
     codec::Entities to;
-    Column places;
-    make_room(organisms.alive_count, to.id, places);
+    Column indices;
+    make_room(organisms.alive_count, to.id, indices);
     std::size_t kept = 0;
     for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // without a branch, as above
         to.id[kept] = static_cast<std::uint32_t>(id);
-        places[kept] = organisms.place_of[id];
+        indices[kept] = organisms.place_of[id];
         kept += organisms.place_of[id] != simulation::Island::no_body;
     }
-    keep_first(kept, to.id, places, to.x, to.y, to.width, to.height);
+    keep_first(kept, to.id, indices, to.x, to.y, to.width, to.height);
     const auto fetch = [&](const auto& from, const auto& converted, Column& column) {
-        std::ranges::transform(places, column.begin(), [&](std::uint32_t place) { return converted(from[place]); });
+        std::ranges::transform(indices, column.begin(), [&](std::uint32_t index) { return converted(from[index]); });
     };
-    const auto as_it_is = [](physics::Coordinate position) { return static_cast<std::uint32_t>(position); };
-    fetch(organisms.x, as_it_is, to.x);
-    fetch(organisms.y, as_it_is, to.y);
+    const auto unchanged = [](physics::Coordinate position) { return static_cast<std::uint32_t>(position); };
+    fetch(organisms.x, unchanged, to.x);
+    fetch(organisms.y, unchanged, to.y);
     fetch(organisms.radius_px, codec::size_in_steps, to.width);
     fetch(organisms.health, codec::size_in_steps, to.height);
     to_steps(to.x, position_bytes);

@@ -1,7 +1,7 @@
-// Scene: an island of a snapshot as encoders take it, in whole numbers, and entities by rising id.
+// Quantise: an island of a snapshot in the form that encoders take, with whole numbers and ids rising.
 //
-// The simulation thread copies columns as they lie. What lies there is put in order here, on the network thread, where
-// it keeps nobody from simulating.
+// The simulation thread copies columns in memory order. The network thread sorts and rounds them here, so that this does not
+// delay the simulation.
 #pragma once
 
 #include "proto/codec/quantised_snapshot.h"

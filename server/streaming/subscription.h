@@ -25,7 +25,7 @@ struct SnapshotSubscription {
     double rate_hz = 1;
     std::uint64_t newcomer = 0; // its number among the subscriptions of the server that began without a snapshot
     std::uint64_t dropped_count = 0;
-    v1::Codec codec = v1::CODEC_COLUMNS;
+    v1::Codec codec = v1::CODEC_PLAIN;
     v1::Compression compression = v1::COMPRESSION_NONE;
     std::optional<std::uint32_t> unacknowledged_max; // snapshots of one island in flight; nullopt: any number
     std::optional<v1::View> view;                    // CODEC_DELTA: snapshots are sent in tiles

@@ -151,7 +151,7 @@ class Attacker:
 
 attacks = {name: (lambda attacker, request=request: attacker.flood(request)) for name, request in queries.items()} | {
     "subscriptions": lambda attacker: attacker.subscriptions_only("w", codec=stream_pb2.CODEC_DELTA),
-    "subscriptions_columns": lambda attacker: attacker.subscriptions_only("w", codec=stream_pb2.CODEC_COLUMNS),
+    "subscriptions_plain": lambda attacker: attacker.subscriptions_only("w", codec=stream_pb2.CODEC_PLAIN),
     "subscriptions_islands": lambda attacker: attacker.subscriptions_only("islands", codec=stream_pb2.CODEC_DELTA),
     "subscribe_and_leave": lambda attacker: attacker.subscribe_and_leave("w"),
     "subscribe_and_leave_islands": lambda attacker: attacker.subscribe_and_leave("islands"),

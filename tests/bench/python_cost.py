@@ -34,7 +34,7 @@ sys.path.insert(0, options.package)
 import evod  # noqa: E402
 from bench_client import benchmark_world, print_figures, spread  # noqa: E402
 from evod import framing  # noqa: E402
-from evod.picture_decoder import FrameDecoder  # noqa: E402
+from evod.snapshot_decoder import SnapshotDecoder  # noqa: E402
 from evod.v1 import stream_pb2  # noqa: E402
 
 GENERATIONS, SUBSCRIPTIONS = 100, 4
@@ -123,7 +123,7 @@ def snapshots(program, organisms, seconds):
     last = messages[-1].subscription_id  # the first messages are of the closed subscriptions
     messages = [message for message in messages if message.subscription_id == last]
     data = [framing.encode(message.SerializeToString()) for message in messages]
-    decoder, reader = FrameDecoder(), framing.FrameReader()
+    decoder, reader = SnapshotDecoder(), framing.FrameReader()
     began = time.perf_counter()
     for one in data:
         reader.feed(one)

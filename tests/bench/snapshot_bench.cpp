@@ -3,7 +3,7 @@
 //
 // Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
 // bytes per entity. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
-// --movers`; pictures are 3 ticks apart, or 300 to 302, as a world at full speed has them.
+// --movers`; snapshots are 3 ticks apart, or 300 to 302, as a world at full speed has them.
 #include "server/base/inline_executor.h"
 #include "server/runtime/snapshot.h"
 #include "server/streaming/delta_stream.h"
@@ -24,8 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// The default world, with so many organisms and items on the ground of `ground` organisms.
-simulation::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std::uint32_t poison, double ground) {
-    simulation::Parameters parameters = experiment("default");
+parameters::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std::uint32_t poison, double ground) {
+    parameters::Parameters parameters = experiment("default");
     const double longer = std::sqrt(ground / parameters.population_size);
     parameters.island_width_px *= longer;
     parameters.island_height_px *= longer;
@@ -37,7 +37,7 @@ simulation::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std
 
 struct Kind {
     const char* name;
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     int ticks_between = 3;
     int spread = 1; // so many different numbers of ticks, from ticks_between on
 };
@@ -109,7 +109,7 @@ void encode(benchmark::State& state, const Kind& kind, v1::Compression compressi
 }
 
 const bool registered = [] {
-    const simulation::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
+    const parameters::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
     for (const Kind& kind : {Kind{"half move", half}, Kind{"a tenth moves", world_of(2'300, 8'000, 12'700, 10'000)},
                              Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300, 3}}) {
         for (const auto& [name, compression] :

@@ -164,7 +164,7 @@ def measure():
             name = f"w{organisms}"
             parameters = {} if organisms == 50 else benchmark_world(organisms)
             server.control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=assignments(parameters)))
-            for codec, number, compression in (("columns", 1, 1), ("delta", 2, 1), ("delta and zstd", 2, 2)):
+            for codec, number, compression in (("plain", 3, 1), ("delta", 2, 1), ("delta and zstd", 2, 2)):
                 figures[f"{organisms} {codec}"] = {"organisms": organisms, "codec": codec} | watch(
                     server, name, number, compression)
             server.control.call(delete_world=c.DeleteWorld(world=name))

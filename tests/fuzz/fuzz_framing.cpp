@@ -1,8 +1,9 @@
-// Any bytes, cut in every way, give the same frames and the same end; what a frame holds is parsed as both ends would.
+// Framing: any bytes, cut in any way, give the same frames and the same damage. The content of a frame is parsed as both ends
+// parse it.
 //
-// The first byte says for whose limits they are read. All bytes are cut in ways that are drawn by them, short ones byte
-// by byte too. One input in 32, and which is drawn as well, is cut in every way: of up to 8 bytes all 2^(n-1); of up to
-// 16, which is a header, a body and the beginning of the next, all pairs of places; of up to 64 each place.
+// The first byte selects the limits. The bytes themselves select the cuts; short inputs are also cut at every byte. One input
+// in 32, selected the same way, is cut in every way: up to 8 bytes in all 2^(n-1) ways; up to 16, which is a header, a body and
+// the beginning of the next frame, at all pairs of places; up to 64 at each place.
 #include "proto/codec/framing.h"
 
 #include "evod/v1/session.pb.h"
@@ -26,16 +27,16 @@ void require(bool holds) {
     }
 }
 
-/// A frame ends here, `bytes` from the beginning; its body is the last of them.
+/// A frame that ends at `end`; its body is the last body_bytes before that.
 struct Found {
     Channel channel;
     std::size_t end, body_bytes;
 };
 
-/// What a reader makes of the bytes when they come at once.
+/// The result of reading all bytes at once.
 struct Whole {
     std::vector<Found> frames;
-    std::string damage; // empty: there is none
+    std::string damage; // empty: none
 };
 
 Whole read_whole(Bytes bytes, const FrameLimits& limits) {
@@ -56,13 +57,13 @@ Whole read_whole(Bytes bytes, const FrameLimits& limits) {
     }
 }
 
-/// The same bytes in pieces: each frame must be there as soon as its last byte is, and damage must be said alike.
+/// The same bytes in pieces. Each frame must be returned as soon as its last byte is fed; the damage must be the same.
 class InPieces {
   public:
     InPieces(Bytes bytes, const FrameLimits& limits, const Whole& whole)
         : bytes_{bytes}, whole_{whole}, reader_{limits} {}
 
-    /// The piece up to `cut` bytes from the beginning.
+    /// Feeds the piece that ends at offset `cut`.
     void feed_to(std::size_t cut) {
         reader_.feed(bytes_.subspan(fed_, cut - fed_));
         fed_ = cut;
@@ -114,13 +115,13 @@ void cut_in_every_way(Bytes bytes, const FrameLimits& limits, const Whole& whole
         for (std::size_t second = first; second < (size <= 16 ? size : first + 1); ++second) {
             InPieces pieces{bytes, limits, whole};
             pieces.feed_to(first);
-            pieces.feed_to(second); // where it is the first once more: a piece of nothing
+            pieces.feed_to(second); // an empty piece if it equals the first
             pieces.finish();
         }
     }
 }
 
-/// next_length  says how long the next piece is, at least 1.
+/// next_length  returns the length of the next piece, at least 1.
 void cut_by(Bytes bytes, const FrameLimits& limits, const Whole& whole, auto next_length) {
     InPieces pieces{bytes, limits, whole};
     for (std::size_t at = 0; at < bytes.size();) {

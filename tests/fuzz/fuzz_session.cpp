@@ -8,7 +8,7 @@
 #include "server/network/session.h"
 #include "server/parameters/parameters.h"
 #include "tests/fuzz/script.h"
-#include "tests/fuzz/sound_picture.h"
+#include "tests/fuzz/valid_snapshot.h"
 #include "tests/fuzz/watched_server.h"
 #include "tests/fuzz/watching_client.h"
 
@@ -177,7 +177,7 @@ class Play {
     void acknowledge(WatchingClient& client) {
         const auto which = script_.take();
         v1::ClientMessage message;
-        if (const auto newest = client.newest_picture(which / 4)) {
+        if (const auto newest = client.newest_snapshot(which / 4)) {
             *message.mutable_acknowledge_snapshot() = *newest;
             if (which % 4 == 1) {
                 message.mutable_acknowledge_snapshot()->set_sequence(newest->sequence() + 1);
@@ -227,11 +227,11 @@ class Play {
     bool is_through(const WatchingClient& client) const {
         if (client.closed()) {
             // Nobody is sent away without a reason, and who says no more gets all answers.
-            require(client.told_of_end() || client.may_have_stalled() || server_.going_away() ||
+            require(client.end_announced() || client.may_have_stalled() || server_.going_away() ||
                     (client.finished() && (client.refused() || client.all_answered())));
             return true;
         }
-        if (client.told_of_end() || server_.going_away() || client.refused() || client.finished()) {
+        if (client.end_announced() || server_.going_away() || client.refused() || client.finished()) {
             return false; // its end has yet to come
         }
         return client.all_answered();

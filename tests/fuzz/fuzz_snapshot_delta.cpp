@@ -1,10 +1,10 @@
-// Any SnapshotFrames, one after another, are decoded or refused by one decoder; what is decoded is sound.
+// One decoder decodes or refuses every sequence of SnapshotFrames; what is decoded is valid.
 //
-// The input is frames, whole or in tiles, each behind its length in two bytes. Checksums are put right, for chance
-// would find none.
+// The input consists of frames, whole or in tiles, each after its length in two bytes. Checksums are corrected, because
+// random input would hardly ever contain a right one.
 #include "proto/codec/little_endian.h"
 #include "proto/codec/snapshot_decoder.h"
-#include "tests/fuzz/sound_picture.h"
+#include "tests/fuzz/valid_snapshot.h"
 
 #include <algorithm>
 
@@ -26,12 +26,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 tile.set_checksum(evod::codec::checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
             }
         }
-        const auto picture = decoder.decode(std::move(frame));
-        if (!picture) {
-            evod::fuzz::require(!picture.error().what.empty());
+        const auto snapshot = decoder.decode(std::move(frame));
+        if (!snapshot) {
+            evod::fuzz::require(!snapshot.error().what.empty());
             continue;
         }
-        evod::fuzz::require_sound(*picture);
+        evod::fuzz::require_valid(*snapshot);
     }
     return 0;
 }

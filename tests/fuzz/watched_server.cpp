@@ -3,7 +3,7 @@
 #include "server/network/random_ids.h"
 #include "server/protocol/queries.h"
 #include "server/protocol/worlds.h"
-#include "tests/fuzz/sound_picture.h"
+#include "tests/fuzz/valid_snapshot.h"
 
 #include <boost/asio/post.hpp>
 

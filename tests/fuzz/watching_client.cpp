@@ -2,7 +2,7 @@
 
 #include "server/network/limits.h"
 #include "server/protocol/commands.h"
-#include "tests/fuzz/sound_picture.h"
+#include "tests/fuzz/valid_snapshot.h"
 #include "tests/fuzz/watched_server.h"
 
 #include <sys/socket.h>
@@ -16,7 +16,7 @@
 namespace evod::fuzz {
 namespace {
 
-/// Of those that are answered by the simulation, in the order in which they came.
+/// Whether the simulation answers the request; it answers in order of arrival.
 bool goes_to_the_simulation(const v1::Request& request) {
     switch (protocol::kind_of(request)) {
     case protocol::RequestKind::Command:
@@ -30,7 +30,7 @@ bool goes_to_the_simulation(const v1::Request& request) {
     }
 }
 
-bool is_right(const v1::Hello& hello) {
+bool is_valid(const v1::Hello& hello) {
     return hello.protocol_version() == 1 && hello.client_name().size() <= 64 && hello.client_version().size() <= 64 &&
            admit(hello.token());
 }
@@ -48,7 +48,7 @@ WatchingClient::~WatchingClient() {
     ::close(descriptor_);
 }
 
-// ---- what it says ----------------------------------------------------------------------------------------------
+// ---- sending ---------------------------------------------------------------------------------------------------
 
 void WatchingClient::send(std::size_t count) {
     count = std::min(count, unsent_.size());
@@ -57,7 +57,7 @@ void WatchingClient::send(std::size_t count) {
     }
     const ssize_t sent = ::send(descriptor_, unsent_.data(), count, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent <= 0) {
-        return; // not now, or nobody is there any more
+        return; // the socket is full, or the other end is closed
     }
     said(std::as_bytes(std::span{unsent_}.first(static_cast<std::size_t>(sent))));
     unsent_.erase(0, static_cast<std::size_t>(sent));
@@ -85,7 +85,7 @@ void WatchingClient::said(std::span<const std::byte> bytes) {
 void WatchingClient::said(const codec::Frame& frame) {
     const auto message = codec::parse_body<v1::ClientMessage>(frame.body);
     if (!greeted_) {
-        greeted_ = message && message->has_hello() && is_right(message->hello());
+        greeted_ = message && message->has_hello() && is_valid(message->hello());
         if (!greeted_) {
             refused_since_ = clock().now();
         } else {
@@ -100,8 +100,8 @@ void WatchingClient::said(const codec::Frame& frame) {
     }
     if (message->has_acknowledge_snapshot()) {
         const v1::AcknowledgeSnapshot& acknowledged = message->acknowledge_snapshot();
-        const auto watch = watches_.find(acknowledged.subscription_id());
-        if (watch == watches_.end()) {
+        const auto watch = subscriptions_.find(acknowledged.subscription_id());
+        if (watch == subscriptions_.end()) {
             return;
         }
         Island& island = watch->second.islands[acknowledged.island()];
@@ -122,10 +122,11 @@ void WatchingClient::owed(std::uint64_t request_id, Asked asked) {
     outstanding_.emplace(request_id, std::move(asked));
 }
 
-// ---- what it hears ---------------------------------------------------------------------------------------------
+// ---- receiving -------------------------------------------------------------------------------------------------
 
 bool WatchingClient::hear(std::size_t count) {
-    static std::array<std::byte, 65536> bytes; // not on the stack, where the sanitizer looks after each of them anew
+    static std::array<std::byte, 65536>
+        bytes; // static, because the sanitizer would initialise it on the stack in every call
     if (closed_ || count == 0) {
         return false;
     }
@@ -134,11 +135,12 @@ bool WatchingClient::hear(std::size_t count) {
         all_heard_ = clock().now();
         return false;
     }
-    // Once its session ends, for what it said or did not say in time, the last bytes do not wait for it as long.
+    // The server waits less long for a client whose session is ending.
     const bool may_be_ending = refused() || !greeted_ || said_.buffered_bytes() > 0;
     const auto patience = may_be_ending ? network::farewell_timeout : network::stalled_timeout;
     const auto now = clock().now();
-    const bool long_refused = refused() && now - *refused_since_ >= network::farewell_timeout; // whatever it has heard
+    const bool long_refused =
+        refused() && now - *refused_since_ >= network::farewell_timeout; // whatever it has received
     may_have_stalled_ = may_have_stalled_ || long_refused || now - all_heard_ >= patience;
     if (heard_bytes <= 0) {
         closed_ = true;
@@ -156,11 +158,11 @@ bool WatchingClient::hear(std::size_t count) {
 }
 
 void WatchingClient::heard(const codec::Frame& frame) {
-    require(!told_of_end_);
+    require(!end_announced_);
     if (frame.channel == codec::Channel::Stream) {
-        auto picture = codec::parse_body<v1::SnapshotFrame>(frame.body);
-        require(welcomed_ && picture);
-        return heard(*std::move(picture));
+        auto snapshot = codec::parse_body<v1::SnapshotFrame>(frame.body);
+        require(welcomed_ && snapshot);
+        return heard(*std::move(snapshot));
     }
     const auto message = codec::parse_body<v1::ServerMessage>(frame.body);
     require(message.has_value());
@@ -175,7 +177,7 @@ void WatchingClient::heard(const codec::Frame& frame) {
         return heard(message->event());
     case v1::ServerMessage::kGoodbye:
         require(!message->goodbye().status().message().empty());
-        told_of_end_ = true;
+        end_announced_ = true;
         return;
     case v1::ServerMessage::KIND_NOT_SET:
         require(false);
@@ -188,7 +190,7 @@ void WatchingClient::heard(const v1::Response& response) {
     require(response.status().code() == v1::CODE_UNSPECIFIED || !response.status().message().empty());
     const auto found = outstanding_.find(id);
     if (found == outstanding_.end() || !welcomed_) {
-        require(welcomed_ && id == 0 && response.has_status()); // of what could not be read
+        require(welcomed_ && id == 0 && response.has_status()); // for an unreadable message
         return;
     }
     const Asked asked = std::move(found->second);
@@ -218,13 +220,15 @@ void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
     }
     const std::uint32_t subscription = response.subscription().subscription_id();
     if (request.has_subscribe_snapshots()) {
-        require(watches_.emplace(subscription, Watch{.asked = request.subscribe_snapshots(), .islands = {}}).second);
+        require(
+            subscriptions_.emplace(subscription, Subscription{.asked = request.subscribe_snapshots(), .islands = {}})
+                .second);
     }
     if (request.has_subscribe_events()) {
         require(event_subscriptions_.insert(subscription).second);
     }
     if (request.has_unsubscribe()) {
-        require(watches_.erase(request.unsubscribe().subscription_id()) +
+        require(subscriptions_.erase(request.unsubscribe().subscription_id()) +
                     event_subscriptions_.erase(request.unsubscribe().subscription_id()) ==
                 1);
     }
@@ -232,22 +236,22 @@ void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
 
 void WatchingClient::heard(const v1::Event& event) {
     if (event.has_server_going_away()) {
-        told_of_end_ = true;
+        end_announced_ = true;
     } else {
         require(ids_are_mixed_ || !event_subscriptions_.empty());
     }
 }
 
 void WatchingClient::heard(v1::SnapshotFrame frame) {
-    const auto found = watches_.find(frame.subscription_id());
-    if (found == watches_.end()) {
+    const auto found = subscriptions_.find(frame.subscription_id());
+    if (found == subscriptions_.end()) {
         return require(ids_are_mixed_);
     }
-    Watch& watch = found->second;
+    Subscription& watch = found->second;
     require(!watch.asked.has_island() || watch.asked.island() == frame.island());
     require(frame.sequence() != 0);
     Island& island = watch.islands[frame.island()];
-    // The same one comes again only as a keyframe that was asked for, or in another view.
+    // A snapshot is repeated only as a requested keyframe or after a change of the view.
     const std::uint64_t before = std::exchange(island.sequence, frame.sequence());
     require(frame.sequence() > before ||
             (frame.sequence() == before && (codec::is_keyframe(frame) || watch.asked.has_view())));
@@ -255,14 +259,14 @@ void WatchingClient::heard(v1::SnapshotFrame frame) {
         island.unacknowledged.insert(frame.sequence());
         require(island.unacknowledged.size() <= watch.asked.unacknowledged_max());
     }
-    const auto picture = island.decoder.decode(std::move(frame));
-    require(picture.has_value());
-    require_sound(*picture);
+    const auto snapshot = island.decoder.decode(std::move(frame));
+    require(snapshot.has_value());
+    require_valid(*snapshot);
 }
 
-std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_picture(std::size_t wanted) const {
-    const auto watch = watches_.find(subscription(wanted));
-    if (watch == watches_.end() || watch->second.islands.empty()) {
+std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_snapshot(std::size_t wanted) const {
+    const auto watch = subscriptions_.find(subscription(wanted));
+    if (watch == subscriptions_.end() || watch->second.islands.empty()) {
         return std::nullopt;
     }
     const auto& [island, of] =
@@ -275,10 +279,10 @@ std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_picture(std::size_
 }
 
 std::uint32_t WatchingClient::subscription(std::size_t wanted) const {
-    if (watches_.empty()) {
+    if (subscriptions_.empty()) {
         return event_subscriptions_.empty() ? 0 : *event_subscriptions_.begin();
     }
-    return std::next(watches_.begin(), static_cast<std::ptrdiff_t>(wanted % watches_.size()))->first;
+    return std::next(subscriptions_.begin(), static_cast<std::ptrdiff_t>(wanted % subscriptions_.size()))->first;
 }
 
 } // namespace evod::fuzz

@@ -10,7 +10,7 @@ import delta_decoder  # the reference decoder, in tests/system
 import numpy
 
 import evod
-from evod import picture_decoder
+from evod import snapshot_decoder
 from evod.v1 import commands_pb2 as c, stream_pb2
 
 from core_support import CoreTestCase
@@ -38,7 +38,7 @@ def recorded(lab, world, count, **options):
 
 
 def unpack(data):
-    return picture_decoder._unpack(data, 1 << 28)
+    return snapshot_decoder._unpack(data, 1 << 28)
 
 
 class Decoder(CoreTestCase):
@@ -55,15 +55,15 @@ class Decoder(CoreTestCase):
             cls.dots = recorded(lab, world, 3, detail="dots")
             cls.density = recorded(lab, world, 3, detail="density")
 
-            with world.snapshots(1) as snapshots:  # the same state again, in columns
+            with world.snapshots(1) as snapshots:  # the same state again, plain
                 cls.same = next(snapshots)
             found, take = [], lab._link.core._take_snapshot
-            lab._link.core._take_snapshot = lambda message: found.append(message) if message.codec == 1 else take(message)
-            columns = c.SubscribeSnapshots(world=world.name, rate_hz=1)
-            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=columns))  # a collected subscription would be unsubscribed
+            lab._link.core._take_snapshot = lambda message: found.append(message) if message.codec == stream_pb2.CODEC_PLAIN else take(message)
+            plain = c.SubscribeSnapshots(world=world.name, rate_hz=1)
+            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=plain))  # a collected subscription would be unsubscribed
             while not found:
                 world.info()
-            (cls.columns,) = found
+            (cls.plain,) = found
             del held
 
     def assert_same(self, entities, reference, columns):
@@ -73,7 +73,7 @@ class Decoder(CoreTestCase):
     def test_deltas_decode_as_in_the_reference_decoder(self):
         self.assertGreater(len({message.generation for message in self.deltas}), 2)
         self.assertGreater(sum(message.base_sequence != 0 for message in self.deltas), 50)
-        decoder, reference = picture_decoder.FrameDecoder(), delta_decoder.Decoder(unpack)
+        decoder, reference = snapshot_decoder.SnapshotDecoder(), delta_decoder.Decoder(unpack)
         for message in self.deltas:
             if not message.base_sequence:
                 reference = delta_decoder.Decoder(unpack)
@@ -85,8 +85,8 @@ class Decoder(CoreTestCase):
             self.assert_same(snapshot.crates, content["crates"], ("x", "y", "half_width", "half_height", "dx", "dy"))
             self.assert_same(snapshot.obstacles, content["obstacles"], ("x", "y", "half_width", "half_height"))
 
-    def test_columns_and_deltas_decode_to_the_same(self):
-        snapshot = picture_decoder.FrameDecoder().decode(self.columns)
+    def test_plain_snapshots_and_deltas_decode_to_the_same(self):
+        snapshot = snapshot_decoder.SnapshotDecoder().decode(self.plain)
         self.assertEqual((snapshot.tick, snapshot.state_hash), (self.same.tick, self.same.state_hash))
         for kind in ("organisms", "food", "poison", "crates", "obstacles"):
             numpy.testing.assert_array_equal(getattr(snapshot, kind).x_px, getattr(self.same, kind).x_px)
@@ -94,9 +94,20 @@ class Decoder(CoreTestCase):
         numpy.testing.assert_array_equal(snapshot.organisms.health, self.same.organisms.health)
         numpy.testing.assert_array_equal(snapshot.crates.half_width_px, self.same.crates.half_width_px)
 
+    def test_damaged_plain_snapshots_are_refused(self):
+        damages = (lambda m: m.ClearField("plain"), lambda m: m.plain.food.id.append(10**6),
+                   lambda m: m.plain.crates.x_px.pop(), lambda m: m.plain.organisms.id.__setitem__(1, 0),
+                   lambda m: m.plain.poison.x_px.__setitem__(0, float("nan")),
+                   lambda m: setattr(m, "organism_count", 2**32 - 1))
+        for damage in damages:
+            message = copy.deepcopy(self.plain)
+            damage(message)
+            with self.assertRaises(evod.DamagedData):
+                snapshot_decoder.SnapshotDecoder().decode(message)
+
     def test_tiles_decode_as_in_the_reference_decoder(self):
         for messages in (self.full, self.dots, self.density):
-            decoder, reference = picture_decoder.FrameDecoder(), delta_decoder.TilesDecoder(unpack)
+            decoder, reference = snapshot_decoder.SnapshotDecoder(), delta_decoder.TilesDecoder(unpack)
             for message in messages:
                 snapshot, seen = decoder.decode(message), reference.decode(message)
                 self.assertEqual([tile.index for tile in snapshot.tiles], list(seen))
@@ -117,9 +128,9 @@ class Decoder(CoreTestCase):
         self.assertEqual({tile.detail for message in self.density for tile in message.tiles}, {3})
 
     def test_later_snapshots_leave_earlier_ones_unchanged(self):
-        decoder = picture_decoder.FrameDecoder()
+        decoder = snapshot_decoder.SnapshotDecoder()
         snapshots = [decoder.decode(message) for message in self.deltas[:30]]
-        again = picture_decoder.FrameDecoder()
+        again = snapshot_decoder.SnapshotDecoder()
         for snapshot, message in zip(snapshots, self.deltas):
             numpy.testing.assert_array_equal(snapshot.organisms.x_px, again.decode(message).organisms.x_px)
         with self.assertRaises(ValueError):
@@ -131,7 +142,7 @@ class Decoder(CoreTestCase):
         """The message with another body and its correct checksum."""
         message = copy.deepcopy(message)
         message.body, message.compression = body, stream_pb2.COMPRESSION_NONE
-        counts = picture_decoder._counts_of(message)
+        counts = snapshot_decoder._counts_of(message)
         head = struct.pack("<QQ6I", message.sequence, message.base_sequence, *counts, message.position_bytes)
         message.checksum = zlib.crc32(head + body)
         return message
@@ -150,7 +161,7 @@ class Decoder(CoreTestCase):
                     body[at] = chance.choice((0, 1, 127, 128, 255, chance.randrange(256)))
                 if chance.random() < 0.3:
                     del body[chance.randrange(len(body)):]
-                decoder = picture_decoder.FrameDecoder()
+                decoder = snapshot_decoder.SnapshotDecoder()
                 for before in self.deltas[: self.deltas.index(message)]:
                     decoder.decode(before)
                 try:
@@ -167,7 +178,7 @@ class Decoder(CoreTestCase):
         keyframe, delta = self.deltas[0], self.deltas[1]
         self.assertNotEqual(delta.base_sequence, 0)
         wrong = {
-            "position_bytes": (0, 1, 3, 8), "codec": (0, 99), "compression": (1 if keyframe.compression == 2 else 2, 3),
+            "position_bytes": (0, 1, 3, 8), "codec": (0, 1, 99), "compression": (1 if keyframe.compression == 2 else 2, 3),
             "checksum": (0,), "organism_count": (0, 2**32 - 1), "obstacle_count": (1, 2**31), "body": (b"", b"\0" * 50),
         }
         for field, values in wrong.items():
@@ -175,9 +186,9 @@ class Decoder(CoreTestCase):
                 message = copy.deepcopy(keyframe)
                 setattr(message, field, value)
                 with self.assertRaises(evod.DamagedData, msg=(field, value)):
-                    picture_decoder.FrameDecoder().decode(message)
+                    snapshot_decoder.SnapshotDecoder().decode(message)
         with self.assertRaisesRegex(evod.DamagedData, "base_sequence"):
-            picture_decoder.FrameDecoder().decode(delta)
+            snapshot_decoder.SnapshotDecoder().decode(delta)
 
     def test_false_counts_allocate_no_memory(self):
         keyframe = self.deltas[0]
@@ -185,20 +196,20 @@ class Decoder(CoreTestCase):
         for section in (b"\1" + endless + b"\0", b"\2" + endless + b"\0", b"\2" + endless + b"\x80" + endless):
             body = b"\1\0" + section
             with self.assertRaises(evod.DamagedData):
-                picture_decoder.FrameDecoder().decode(self.resealed(keyframe, body))
+                snapshot_decoder.SnapshotDecoder().decode(self.resealed(keyframe, body))
 
     def test_a_decompression_bomb_is_refused(self):
-        if picture_decoder.zstandard is None:
+        if snapshot_decoder.zstandard is None:
             self.skipTest("python3-zstandard is not there")
         message = copy.deepcopy(self.deltas[0])
-        message.body = picture_decoder.zstandard.ZstdCompressor().compress(bytes(1 << 28))
+        message.body = snapshot_decoder.zstandard.ZstdCompressor().compress(bytes(1 << 28))
         message.compression = stream_pb2.COMPRESSION_ZSTD
-        with self.assertRaisesRegex(evod.DamagedData, "is 268435456 bytes long, not at most"):
-            picture_decoder.FrameDecoder().decode(message)
+        with self.assertRaisesRegex(evod.DamagedData, "is 268435456 bytes long, allowed: at most"):
+            snapshot_decoder.SnapshotDecoder().decode(message)
         for body in (b"", b"\x28\xb5\x2f\xfd", b"no zstd"):
             message.body = body
             with self.assertRaises(evod.DamagedData):
-                picture_decoder.FrameDecoder().decode(message)
+                snapshot_decoder.SnapshotDecoder().decode(message)
 
     def test_a_damaged_snapshot_requests_one_keyframe(self):
         core = self.core()
@@ -228,24 +239,24 @@ class Decoder(CoreTestCase):
             message = copy.deepcopy(self.full[0])
             setattr(message.tiles[0], field, value)
             with self.assertRaises(evod.DamagedData, msg=field):
-                picture_decoder.FrameDecoder().decode(message)
+                snapshot_decoder.SnapshotDecoder().decode(message)
         for length in (0, -1, float("nan"), float("inf"), 1e300):
             message = copy.deepcopy(self.full[0])
             message.width_px = length
             with self.assertRaisesRegex(evod.DamagedData, "px long"):
-                picture_decoder.FrameDecoder().decode(message)
+                snapshot_decoder.SnapshotDecoder().decode(message)
         message = copy.deepcopy(self.full[0])
         message.tiles.add().CopyFrom(message.tiles[0])
         with self.assertRaisesRegex(evod.DamagedData, "rising"):
-            picture_decoder.FrameDecoder().decode(message)
+            snapshot_decoder.SnapshotDecoder().decode(message)
 
     def test_threads_share_no_decompressor(self):
-        unpackers = [picture_decoder._unpacker()]
-        thread = threading.Thread(target=lambda: unpackers.append(picture_decoder._unpacker()))
+        unpackers = [snapshot_decoder._unpacker()]
+        thread = threading.Thread(target=lambda: unpackers.append(snapshot_decoder._unpacker()))
         thread.start()
         thread.join()
         self.assertIsNot(*unpackers)
-        self.assertIs(picture_decoder._unpacker(), unpackers[0])
+        self.assertIs(snapshot_decoder._unpacker(), unpackers[0])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import delta_decoder  # the reference decoder, in tests/system
 import numpy
 
 import evod
-from evod import framing, picture_decoder
+from evod import framing, snapshot_decoder
 from evod.v1 import stream_pb2
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "proto/vectors"
@@ -91,9 +91,9 @@ class Vectors(unittest.TestCase):
                              {field: vector.head[field] for field in ("frame_bytes", "frame_crc32")}, vector.name)
             self.assertEqual(stream_pb2.Codec.Name(vector.snapshot.codec), vector.head["codec"], vector.name)
 
-    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not installed")
+    @unittest.skipUnless(snapshot_decoder.can_unpack, "the package zstandard is not installed")
     def test_frames_decode_to_the_listed_values(self):
-        decoders = collections.defaultdict(picture_decoder.FrameDecoder)  # by case and island
+        decoders = collections.defaultdict(snapshot_decoder.SnapshotDecoder)  # by case and island
         for vector in self.vectors:
             decoder = decoders[vector.head["case"], vector.snapshot.island]
             if "refused" in vector.decoded:
@@ -109,7 +109,7 @@ class Vectors(unittest.TestCase):
                 expected |= entities
             self.assertEqual(shown, expected, vector.name)
 
-    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not installed")
+    @unittest.skipUnless(snapshot_decoder.can_unpack, "the package zstandard is not installed")
     def test_vectors_cover_every_form_of_a_delta(self):
         seen = set()
 
@@ -141,7 +141,7 @@ class Vectors(unittest.TestCase):
                 if snapshot.codec == stream_pb2.CODEC_DELTA:
                     of = delta_decoder.TilesDecoder if snapshot.tile_px else Decoder
                     name = vector.head["case"], snapshot.island
-                    decoder = decoders.setdefault(name, of(lambda data: picture_decoder._unpack(data, 1 << 28)))
+                    decoder = decoders.setdefault(name, of(lambda data: snapshot_decoder._unpack(data, 1 << 28)))
                     try:
                         decoder.decode(snapshot)
                     except ValueError:

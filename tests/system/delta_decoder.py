@@ -1,4 +1,4 @@
-"""Pictures of CODEC_DELTA as numpy arrays, whole or in tiles, without a loop over the entities."""
+"""Decodes snapshots of CODEC_DELTA with numpy, whole or in tiles, without a loop over the entities."""
 import struct
 import zlib
 
@@ -10,7 +10,7 @@ HAVE_IDS, MOVE = {"organisms", "food", "poison"}, {"organisms", "crates"}
 
 
 class Body:
-    """What a body holds, from its beginning to its end."""
+    """Reads a body from its beginning to its end."""
 
     def __init__(self, body):
         self.body, self.offset = body, 0
@@ -44,44 +44,44 @@ class Body:
         return numpy.cumsum((self.column(count) & 0xffffffff) + 1) - 1
 
 
-def content(picture, position_bytes, before, decompress):
-    """The body of a SnapshotFrame or SnapshotTile, once it is known to be whole, and the counts of its entities."""
-    data = decompress(picture.body) if picture.compression == 2 else picture.body
-    counts = [getattr(picture, field) for field in
+def content(message, position_bytes, before, decompress):
+    """The uncompressed body of a SnapshotFrame or SnapshotTile after its checksum was verified, and its counts."""
+    data = decompress(message.body) if message.compression == 2 else message.body
+    counts = [getattr(message, field) for field in
               ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")]
-    checked = before + struct.pack("<QQ6I", picture.sequence, picture.base_sequence, *counts, position_bytes) + data
-    if zlib.crc32(checked) != picture.checksum:
+    checked = before + struct.pack("<QQ6I", message.sequence, message.base_sequence, *counts, position_bytes) + data
+    if zlib.crc32(checked) != message.checksum:
         raise ValueError("damaged")
     return data, counts
 
 
 class Decoder:
-    """The pictures of one island of one subscription, or of one tile of it, one after another."""
+    """Decodes the snapshots of one island of one subscription, or of one of its tiles, in order."""
 
     def __init__(self, decompress, have_ids=HAVE_IDS):
-        """decompress: the content of a zstd frame."""
+        """decompress: returns the content of a zstd frame."""
         self.decompress, self.have_ids = decompress, have_ids
-        self.sequence = 0  # of the picture that the next delta is told from; 0: there is none
+        self.sequence = 0  # of the base of the next delta; 0: there is none
         self.ticks, self.entities = 0, {}
 
-    def decode(self, picture, position_bytes=None, checked_before=b""):
-        """{"organisms": {"id": …, "x": …, …, "dx": …}, "food": …, …} in 1/16 px; ValueError: ask for a keyframe."""
-        position_bytes = position_bytes or picture.position_bytes
+    def decode(self, message, position_bytes=None, checked_before=b""):
+        """{"organisms": {"id": …, "x": …, …, "dx": …}, "food": …, …} in 1/16 px. ValueError: request a keyframe."""
+        position_bytes = position_bytes or message.position_bytes
         base, self.sequence = self.sequence, 0
-        if picture.base_sequence not in (0, base):
-            raise ValueError("told from a picture that is not the last one")
-        data, counts = content(picture, position_bytes, checked_before, self.decompress)
+        if message.base_sequence not in (0, base):
+            raise ValueError("the base is not the last snapshot")
+        data, counts = content(message, position_bytes, checked_before, self.decompress)
         body = Body(data)
         ticks = body.number("<u2")
         entities = {}
         for (name, sizes), count in zip(KINDS, counts):
-            of_base = self.entities[name] if picture.base_sequence else None
+            of_base = self.entities[name] if message.base_sequence else None
             entities[name] = self.section(body, name, sizes, of_base, ticks, position_bytes)
             if len(entities[name]["x"]) != count:
-                raise ValueError("not as many as there should be")
+                raise ValueError("the number of entities does not match the count")
         self.entities = entities
-        self.ticks = ticks if ticks or not picture.base_sequence else self.ticks
-        self.sequence = picture.sequence
+        self.ticks = ticks if ticks or not message.base_sequence else self.ticks
+        self.sequence = message.sequence
         return entities
 
     def section(self, body, name, sizes, base, ticks, position_bytes):
@@ -119,15 +119,15 @@ class Decoder:
 
 
 class TilesDecoder:
-    """The pictures of one island of one subscription with a view."""
+    """Decodes the snapshots of one island of one subscription with a view."""
 
     def __init__(self, decompress):
         self.decompress = decompress
-        self.full = {}  # a Decoder for each tile that the last picture showed at DETAIL_FULL
+        self.full = {}  # a Decoder for each tile of DETAIL_FULL in the last snapshot
 
     def decode(self, frame):
-        """{tile: what its detail tells}: entities; or {"organisms": {"x": …, "y": …}, …}, in 1/256 of the tile's side; or
-        {"organisms": a square array of counts, …}. ValueError: ask for a keyframe."""
+        """{tile: content}. The content of a tile is its entities; or {"organisms": {"x": …, "y": …}, …} in 1/256 of its side;
+        or {"organisms": a square array of counts, …}. ValueError: request a keyframe."""
         before, self.full = self.full, {}
         full, seen = {}, {}
         for tile in frame.tiles:

@@ -26,7 +26,6 @@ import tempfile
 import time
 import types
 import unittest
-import zlib
 
 evod_path, messages_path, protocol_path = sys.argv[1:4]
 sys.path.insert(0, messages_path)
@@ -229,32 +228,20 @@ def as_dict(parameter_set):
     return {p.name: p for p in parameter_set.parameters}
 
 
-def checksum(picture):
-    """Of a body that is not compressed."""
-    counts = (getattr(picture, kind + "_count") for kind in ("organism", "food", "poison", "crate", "obstacle"))
-    head = struct.pack("<QQ6I", picture.sequence, picture.base_sequence, *counts, picture.position_bytes)
-    return zlib.crc32(head + picture.body)
-
-
-def columns(picture):
-    assert picture.checksum == checksum(picture), "a picture's checksum is not that of its body"
-    position = "<u2" if picture.position_bytes == 2 else "<u4"
-    items = [("id", "<u4"), ("x", position), ("y", position)]
-    boxes = [("x", position), ("y", position), ("half_width", "<u2"), ("half_height", "<u2")]
-    layout = [("organisms", picture.organism_count, items + [("radius", "<u2"), ("health", "<u2")]),
-              ("food", picture.food_count, items), ("poison", picture.poison_count, items),
-              ("crates", picture.crate_count, boxes), ("obstacles", picture.obstacle_count, boxes)]
-    result, offset = {}, 0
-    for name, count, fields in layout:
-        result[name] = {}
-        for field, kind in fields:
-            column = numpy.frombuffer(picture.body, kind, count, offset)
-            offset += column.nbytes
-            result[name][field] = column if field == "id" else column / 16
-    assert offset == len(picture.body)
+def columns(snapshot):
+    """The entities of a snapshot of CODEC_PLAIN as numpy arrays: {"organisms": {"id": …, "x": …, …}, "food": …, …}, px."""
+    result = {}
+    for kind, sizes in KINDS:
+        of_kind = getattr(snapshot.plain, kind)
+        fields = {field.name: numpy.array(getattr(of_kind, field.name), numpy.uint32 if field.name == "id" else float)
+                  for field in of_kind.DESCRIPTOR.fields}
+        assert {len(column) for column in fields.values()} == {getattr(snapshot, COUNTS[kind])}
+        result[kind] = {name.removesuffix("_px"): column for name, column in fields.items()}
     return result
 
 
+COUNTS = {"organisms": "organism_count", "food": "food_count", "poison": "poison_count", "crates": "crate_count",
+          "obstacles": "obstacle_count"}
 zstd = ctypes.CDLL("libzstd.so.1")
 zstd.ZSTD_getFrameContentSize.restype, zstd.ZSTD_decompress.restype = ctypes.c_ulonglong, ctypes.c_size_t
 
@@ -270,11 +257,6 @@ def limit(name):
     """A limit of the server, as `evod limits` lists it."""
     return int(re.search(rf"^\| `{name}` \| (\d+) \|", waiting.run([evod_path, "limits"], capture_output=True,
                                                                      text=True).stdout, re.M)[1])
-
-
-def documented_python():
-    text = open(protocol_path, encoding="utf-8").read()
-    return re.search(r"## A complete client.*?```python\n(.*?)```", text, re.S)[1]
 
 
 class WithServer(unittest.TestCase):
@@ -330,7 +312,7 @@ class Handshake(WithServer):
         self.assertEqual(welcome.protocol_version, 1)
         self.assertRegex(welcome.server_version, r"^\d+\.\d+\.\d+$")
         self.assertRegex(welcome.instance_id, r"^[0-9a-f]{32}$")
-        self.assertLessEqual({"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view"},
+        self.assertLessEqual({"codec:plain", "codec:delta", "compression:zstd", "acknowledgements", "view"},
                              set(welcome.features))
         for field, limit in welcome.limits.ListFields():
             self.assertGreater(limit, 0, field.name)
@@ -1217,7 +1199,7 @@ class Pictures(WithServer):
         self.assertEqual((picture.state_hash.hex(), picture.run_id.hex()), (info.state_hash, info.run_id))
         self.assertEqual((picture.world, picture.island, picture.island_count), (world, 0, 1))
         self.assertEqual((picture.width_px, picture.height_px, picture.item_radius_px), (1280, 720, 4))
-        self.assertEqual((picture.codec, picture.subscription_id), (stream_pb2.CODEC_COLUMNS, subscription.subscription_id))
+        self.assertEqual((picture.codec, picture.subscription_id), (stream_pb2.CODEC_PLAIN, subscription.subscription_id))
         live = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics.live[0]
         self.assertEqual(picture.live, live)
         self.assertEqual(picture.organism_count, live.alive_count)
@@ -1285,7 +1267,7 @@ class Pictures(WithServer):
             picture = self.viewer.next_picture()
             seen[picture.subscription_id, picture.island] = picture
         self.assertEqual(set(seen), {(1, 0), (1, 1), (1, 2), (2, 2)})
-        self.assertEqual(seen[1, 2].body, seen[2, 2].body)
+        self.assertEqual(seen[1, 2].plain, seen[2, 2].plain)
         status = self.viewer.call(NOT_FOUND, subscribe_snapshots=c.SubscribeSnapshots(
             world=world, rate_hz=1, island=3)).status
         self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
@@ -1311,14 +1293,13 @@ class Pictures(WithServer):
         world = self.new_world(fitness="rastrigin")
         self.subscribe(world)
         picture = self.viewer.next_picture()
-        self.assertEqual((picture.organism_count, len(picture.body)), (0, 0))
+        self.assertEqual((picture.organism_count, len(picture.plain.organisms.id)), (0, 0))
         self.assertGreater(picture.width_px, 0)
 
     def test_a_wide_island_has_wide_positions(self):
         world = self.new_world(island_width_px=5000.0)
         self.subscribe(world)
         picture = self.viewer.next_picture()
-        self.assertEqual(picture.position_bytes, 4)
         self.assertGreater(columns(picture)["food"]["x"].max(), 1280)
 
     def test_a_slow_viewer_gets_the_newest_and_is_told_what_it_missed(self):
@@ -1336,7 +1317,7 @@ class Pictures(WithServer):
                 newest = reader.next_picture(lambda p: p.tick == paused.tick)
                 snapshot = viewer.next_picture(lambda p: p.tick == paused.tick)
             self.assertGreater(snapshot.dropped_count, 0)
-            self.assertEqual(snapshot.body, newest.body)
+            self.assertEqual(snapshot.plain, newest.plain)
         waiting.quicker_than(self.client.welcome.limits.stalled_timeout_s, watch_slowly)
 
     def test_a_viewer_that_dies_in_mid_picture_leaves_no_trace(self):
@@ -1371,7 +1352,7 @@ class Deltas(WithServer):
         while True:
             picture = self.viewer.next_picture()
             self.assertGreater(picture.sequence, 0)
-            if picture.codec == stream_pb2.CODEC_COLUMNS:
+            if picture.codec == stream_pb2.CODEC_PLAIN:
                 seen = columns(picture)
             else:
                 decoder = self.decoders.setdefault((picture.subscription_id, picture.island), Decoder(zstd_content))
@@ -1387,7 +1368,7 @@ class Deltas(WithServer):
 
     def compare(self, world, generations):
         """Watches the world by every codec at once, until all have shown a good many ticks alike."""
-        kinds = {self.subscribe(world, stream_pb2.CODEC_COLUMNS): "columns", self.subscribe(world): "delta",
+        kinds = {self.subscribe(world, stream_pb2.CODEC_PLAIN): "plain", self.subscribe(world): "delta",
                  self.subscribe(world, compression=stream_pb2.COMPRESSION_ZSTD): "zstd"}
         self.client.call(run=c.Run(world=world))
         shown, alike, deltas, last_generation = {}, 0, 0, 0
@@ -1399,13 +1380,13 @@ class Deltas(WithServer):
             of_hash = shown.setdefault((picture.state_hash, picture.island), {})
             of_hash[kinds[picture.subscription_id]] = seen
             if len(of_hash) == 3:
-                self.assert_same(of_hash["delta"], of_hash["columns"])
-                self.assert_same(of_hash["zstd"], of_hash["columns"])
+                self.assert_same(of_hash["delta"], of_hash["plain"])
+                self.assert_same(of_hash["zstd"], of_hash["plain"])
                 shown.pop((picture.state_hash, picture.island))
                 alike += 1
                 last_generation = picture.generation
 
-    def test_they_show_what_columns_show(self):
+    def test_they_show_what_plain_snapshots_show(self):
         world = self.new_world(seed=3, obstacle_count=3, crate_count=4, obstacle_size_px=50, crate_size_px=30,
                                island_count=2, generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=4)))
@@ -1532,9 +1513,9 @@ class Deltas(WithServer):
         self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
             subscription_id=subscription + 1, island=7, sequence=1)))  # means nothing
 
-    def test_columns_can_be_acknowledged_too(self):
+    def test_plain_snapshots_can_be_acknowledged_too(self):
         world = self.new_world()
-        self.subscribe(world, stream_pb2.CODEC_COLUMNS, unacknowledged_max=1)
+        self.subscribe(world, stream_pb2.CODEC_PLAIN, unacknowledged_max=1)
         self.client.call(run=c.Run(world=world))
         last = 0
         for _ in range(10):
@@ -1556,10 +1537,10 @@ class Deltas(WithServer):
 
     def test_what_cannot_be_subscribed_to_is_refused(self):
         world = self.new_world()
-        columns_by_zstd = c.SubscribeSnapshots(world=world, rate_hz=1, compression=stream_pb2.COMPRESSION_ZSTD)
-        status = self.viewer.call(INVALID, subscribe_snapshots=columns_by_zstd).status
+        plain_by_zstd = c.SubscribeSnapshots(world=world, rate_hz=1, compression=stream_pb2.COMPRESSION_ZSTD)
+        status = self.viewer.call(INVALID, subscribe_snapshots=plain_by_zstd).status
         self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.codec"])
-        for field, number in (("codec", 99), ("compression", 99), ("unacknowledged_max", 0),
+        for field, number in (("codec", 1), ("codec", 99), ("compression", 99), ("unacknowledged_max", 0),
                               ("unacknowledged_max", 1001)):
             status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
                 world=world, rate_hz=1, **{field: number})).status
@@ -1567,7 +1548,7 @@ class Deltas(WithServer):
 
 
 class Views(WithServer):
-    """Pictures in tiles, held against CODEC_COLUMNS of the same ticks."""
+    """Snapshots in tiles, compared with CODEC_PLAIN of the same ticks."""
 
     def setUp(self):
         super().setUp()
@@ -1580,7 +1561,7 @@ class Views(WithServer):
                                  "crate_count": 20, **parameters})
 
     def subscribe(self, world, view=None, rate_hz=120.0, **fields):
-        codec = stream_pb2.CODEC_COLUMNS if view is None else stream_pb2.CODEC_DELTA
+        codec = stream_pb2.CODEC_PLAIN if view is None else stream_pb2.CODEC_DELTA
         return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
             world=world, codec=codec, rate_hz=rate_hz, view=view, **fields)).subscription.subscription_id
 
@@ -1611,7 +1592,7 @@ class Views(WithServer):
         return math.ceil(picture.width_px / 512), math.ceil(picture.height_px / 512)
 
     def in_tiles(self, columns_picture):
-        """{kind: {"tile": …, "id": …, "x": …, …}} in 1/16 px, of a picture of CODEC_COLUMNS."""
+        """{kind: {"tile": …, "id": …, "x": …, …}} in 1/16 px, of a snapshot of CODEC_PLAIN."""
         across, down = self.tiles_of(columns_picture)
         entities = {}
         for kind, fields in columns(columns_picture).items():
@@ -1640,7 +1621,7 @@ class Views(WithServer):
                 region.left_px < picture.width_px and region.top_px < picture.height_px]
 
     def watch_together(self, world, generations=1, **fields):
-        """By columns, of everything in tiles, and of a region that pans with every picture."""
+        """Plain snapshots, all tiles, and a region that pans with every snapshot."""
         whole, all_tiles = self.subscribe(world), self.subscribe(world, c.View(), **fields)
         panning = self.subscribe(world, c.View(region=c.Region(left_px=-500, width_px=600, height_px=600)), **fields)
         regions, step = {}, 0
@@ -1672,7 +1653,7 @@ class Views(WithServer):
                 last_generation = picture.generation
         self.assertGreater(len(regions), 3)
 
-    def test_all_tiles_and_those_of_a_region_show_what_columns_show(self):
+    def test_all_tiles_and_those_of_a_region_show_what_plain_snapshots_show(self):
         world = self.wide_world(generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=3)))
         self.watch_together(world, 2)
@@ -1859,7 +1840,7 @@ class Views(WithServer):
                 status = self.viewer.call(INVALID, **request).status
                 self.assertEqual([v.field for v in status.violations], [path + field])
                 self.assertTrue(status.violations[0].allowed and status.violations[0].got)
-        for codec in (0, 1):
+        for codec in (stream_pb2.CODEC_UNSPECIFIED, stream_pb2.CODEC_PLAIN):
             status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
                 world=world, rate_hz=1, codec=codec, view=c.View())).status
             self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.codec"])
@@ -2206,14 +2187,11 @@ class Documentation(unittest.TestCase):
         self.assertEqual(blocks[0][:8], b"EV\x01\x01\x08\0\0\0")
         hello = session_pb2.ClientMessage.FromString(blocks[0][8:])
         self.assertEqual((hello.hello.protocol_version, hello.hello.client_name), (1, "me"))
-        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xac\0\0\0")
-        self.assertEqual(len(blocks[1]), 8 + 0xac)
-        picture = stream_pb2.SnapshotFrame.FromString(blocks[1][8:])
-        self.assertEqual((picture.world, picture.tick, picture.dropped_count), ("default", 120, 3))
-        self.assertEqual(picture.checksum, checksum(picture))
-        names = {}
-        exec(compile(documented_python(), protocol_path, "exec"), names)
-        seen = names["columns"](picture)
+        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xe2\0\0\0")
+        self.assertEqual(len(blocks[1]), 8 + 0xe2)
+        snapshot = stream_pb2.SnapshotFrame.FromString(blocks[1][8:])
+        self.assertEqual((snapshot.world, snapshot.tick, snapshot.dropped_count), ("default", 120, 3))
+        seen = columns(snapshot)
         self.assertEqual({k: list(v) for k, v in seen["organisms"].items()},
                          {"id": [0, 2], "x": [10.5, 50.25], "y": [20, 30.0625], "radius": [10, 8.5], "health": [100, 42.5]})
         self.assertEqual((seen["food"]["x"][0], seen["poison"]["y"][0], seen["obstacles"]["half_width"][0]), (5, 55, 15))

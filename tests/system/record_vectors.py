@@ -6,13 +6,13 @@ EVOD is the program, MESSAGES the folder of the message classes: build/release/b
 --check it writes nothing, and fails where the files differ from what the server sends now. docs/PROTOCOL.md, "Test vectors",
 describes the files.
 
-What a frame decodes to is computed without a decoder of deltas or tiles. A subscription with CODEC_COLUMNS beside the others
-gets the same ticks as plain columns; tiles, dots and densities are counted from these. Where a world is paused, the columns
-are compared with the server's answers to GetOrganism, which no codec takes part in. At the end the decoder of
-docs/PROTOCOL.md has to agree with all of it.
+The script computes what a frame decodes to without a decoder of deltas or tiles. Beside each subscription another one with
+CODEC_PLAIN receives the same ticks; tiles, dots and densities are counted from its snapshots. Where a world is paused, the
+plain organisms are compared with the server's answers to GetOrganism, which involve no codec. At the end the decoder of
+docs/PROTOCOL.md must agree with everything.
 
-Each scenario has a server of its own, and is repeated until two recordings are equal byte for byte: a machine that is slow
-for a moment makes the server leave out snapshots, or send one more.
+Each scenario starts a server, and is repeated until two recordings are equal byte for byte: on a busy machine the server may
+drop a snapshot, or send one more.
 """
 import collections
 import json
@@ -21,6 +21,8 @@ import pathlib
 import struct
 import sys
 import zlib
+
+import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "proto/vectors"
@@ -34,27 +36,27 @@ from delta_decoder import KINDS, Decoder, TilesDecoder  # noqa: E402
 from plain_client import c, stream_pb2, w  # noqa: E402
 
 WORLD = "vectors"
-RATE_HZ = 2  # low, so that a snapshot comes after each command and where the world stops, and hardly ever between
+RATE_HZ = 2  # low, so that snapshots follow commands and the end of a run, and hardly ever come in between
 RECORDINGS_MAX = 10
 HAVE_IDS = ("organisms", "food", "poison")
-COLUMNS, DELTA = stream_pb2.CODEC_COLUMNS, stream_pb2.CODEC_DELTA
+PLAIN, DELTA = stream_pb2.CODEC_PLAIN, stream_pb2.CODEC_DELTA
 FULL, DOTS, DENSITY = stream_pb2.DETAIL_FULL, stream_pb2.DETAIL_DOTS, stream_pb2.DETAIL_DENSITY
 
 
 class Recorder(plain.Client):
-    """A client that makes one world, steps it, and keeps the frames of each subscription as they come."""
+    """A client that creates one world, steps it, and keeps the frames of each subscription in order."""
 
     def __init__(self, server, seed, **parameters):
         self.bodies = collections.defaultdict(list)  # by subscription
         self.newest = {}  # by (subscription, island): the last snapshot, and how many there have been
         self.cases = {}  # by name: the subscription
-        self.reference = {}  # by (run_id, island, tick): the snapshot of CODEC_COLUMNS
+        self.reference = {}  # by (run_id, island, tick): the snapshot of CODEC_PLAIN
         self.run_ids = []
         self.damaged = {}  # by case: which frame, from 0
         super().__init__(server, key="vectors")
         self.islands = parameters.get("island_count", 1)
         self.call(create_world=c.CreateWorld(name=WORLD, seed=seed, parameters=plain.assignments(**parameters)))
-        self.columns = self.subscribe(None, codec=COLUMNS)
+        self.plain = self.subscribe(None, codec=PLAIN)
 
     def frame(self):
         channel, body = super().frame()
@@ -63,7 +65,7 @@ class Recorder(plain.Client):
             name = snapshot.subscription_id, snapshot.island
             self.bodies[snapshot.subscription_id].append(body)
             self.newest[name] = snapshot, self.newest.get(name, (None, 0))[1] + 1
-            if snapshot.codec == COLUMNS:
+            if snapshot.codec == PLAIN:
                 self.reference[snapshot.run_id, snapshot.island, snapshot.tick] = snapshot
             if snapshot.run_id and snapshot.run_id not in self.run_ids:
                 self.run_ids.append(snapshot.run_id)
@@ -73,13 +75,13 @@ class Recorder(plain.Client):
         return {name: count for name, (_, count) in self.newest.items()}
 
     def wait(self, before, names, condition=lambda snapshot: True):
-        """Until each of `names` has got a snapshot since `before` that fulfils the condition."""
+        """Waits until each of `names` has a snapshot since `before` that fulfils the condition."""
         while not all(name in self.newest and self.newest[name][1] > before.get(name, 0) and
                       condition(self.newest[name][0]) for name in names):
             self.step()
 
     def names(self, *subscriptions):
-        return [(subscription, island) for subscription in subscriptions or [self.columns, *self.cases.values()]
+        return [(subscription, island) for subscription in subscriptions or [self.plain, *self.cases.values()]
                 for island in range(self.islands)]
 
     def subscribe(self, case, **fields):
@@ -92,7 +94,7 @@ class Recorder(plain.Client):
         return subscription
 
     def command(self, condition=lambda snapshot: True, **request):
-        """A command for the world, and the snapshots after it."""
+        """Sends a command for the world and waits for the snapshots after it."""
         before = self.counts()
         self.call(**request)
         self.wait(before, self.names(), condition)
@@ -102,10 +104,10 @@ class Recorder(plain.Client):
             self.command(lambda snapshot: (snapshot.tick, snapshot.state) == (tick, w.RUN_STATE_PAUSED),
                          run_until_tick=c.RunUntilTick(world=WORLD, tick=tick))
             for island in range(self.islands):
-                self.compare_organisms(self.newest[self.columns, island][0])
+                self.compare_organisms(self.newest[self.plain, island][0])
 
     def compare_organisms(self, snapshot):
-        """Holds a snapshot of CODEC_COLUMNS against the server's answers about each organism, while the world is paused."""
+        """Compares a plain snapshot with the responses about each organism, while the world is paused."""
         organisms = {}
         for organism, *steps in zip(*entities_of(snapshot)["organisms"].values()):
             organisms[organism] = steps
@@ -113,7 +115,7 @@ class Recorder(plain.Client):
         for organism in range(born):
             info = self.call(get_organism=c.GetOrganism(world=WORLD, island=snapshot.island, organism=organism)).organism
             steps = [math.floor(value * 16 + 0.5) for value in (info.x_px, info.y_px, info.radius_px, info.health)]
-            shown = info.alive and info.radius_px > 0  # without a body otherwise
+            shown = info.alive and info.radius_px > 0  # otherwise it has no body
             if shown != (organism in organisms) or shown and steps != organisms[organism]:
                 raise AssertionError(f"organism {organism}: {steps}, {info}; in columns {organisms.get(organism)}")
 
@@ -131,7 +133,7 @@ class Recorder(plain.Client):
         self.wait(before, self.names(self.cases[case]))
 
     def reset(self, seed):
-        run_id = self.newest[self.columns, 0][0].run_id
+        run_id = self.newest[self.plain, 0][0].run_id
         self.command(lambda snapshot: snapshot.tick == 0 and snapshot.run_id not in (b"", run_id),
                      reset_world=c.ResetWorld(world=WORLD, seed=seed))
 
@@ -150,7 +152,7 @@ SMALL = {"population_size": 12, "food_count": 8, "poison_count": 6, "crate_count
 
 def whole(recorder, name):
     """The same snapshots by every codec, as they are and compressed."""
-    recorder.cases[f"{name}_columns"] = recorder.columns
+    recorder.cases[f"{name}_plain"] = recorder.plain
     recorder.subscribe(f"{name}_deltas", codec=DELTA)
     recorder.subscribe(f"{name}_deltas_zstd", codec=DELTA, compression=stream_pb2.COMPRESSION_ZSTD)
 
@@ -169,7 +171,7 @@ def life(server):
 
 
 def births(server):
-    """A generation ends, and all of the next are born at once; then the world is reset."""
+    """A generation ends and all organisms of the next are born; then the world is reset."""
     with Recorder(server, 5, **SMALL, generation_s=0.5) as recorder:
         whole(recorder, "births")
         recorder.speed(20.0)
@@ -180,7 +182,7 @@ def births(server):
 
 
 def empty(server):
-    """Islands without anything: organisms have no bodies where the fitness is of genes alone."""
+    """Empty islands: with a fitness of genes alone organisms have no bodies."""
     with Recorder(server, 1, fitness="gene_sum", population_size=4, food_count=0, poison_count=0) as recorder:
         whole(recorder, "empty")
         for detail in FULL, DOTS, DENSITY:
@@ -190,7 +192,7 @@ def empty(server):
 
 
 def islands(server):
-    """Two islands in one subscription; on one of them everyone dies."""
+    """Two islands in one subscription; on one of them all organisms die."""
     with Recorder(server, 11, island_count=2, population_size=2, food_count=3, poison_count=6, poison_harm=1000.0,
                   island_width_px=300.0, island_height_px=300.0, health_loss_per_s=60.0) as recorder:
         whole(recorder, "islands")
@@ -200,7 +202,7 @@ def islands(server):
 
 
 def wide(server):
-    """An island whose positions take 4 bytes, and ways that take as many."""
+    """An island whose positions and displacements take 4 bytes."""
     with Recorder(server, 13, population_size=16, food_count=3, poison_count=3, crate_count=1, island_width_px=200000.0,
                   island_height_px=200000.0, generation_s=1000.0, health_loss_per_s=0.0, damping=1.0,
                   max_speed_px_s=100000.0, normal_speed_max=10000.0, initial_gene_max=10000.0) as recorder:
@@ -228,7 +230,7 @@ TILED = {"population_size": 16, "food_count": 12, "poison_count": 8, "crate_coun
 
 
 def tiles(server):
-    """All tiles, and a region that moves; organisms, crates and food that come into a tile and leave it."""
+    """All tiles, and a region that moves; organisms, crates and food enter and leave tiles."""
     with Recorder(server, 23, **TILED) as recorder:
         recorder.subscribe("tiles_all", codec=DELTA, view=c.View())
         moving = "tiles_of_a_region"
@@ -247,7 +249,7 @@ def tiles(server):
 
 
 def details(server):
-    """The same tiles with less and less detail, and with all of it again."""
+    """The same tiles in less and less detail, and in full detail again."""
     with Recorder(server, 19, **TILED) as recorder:
         case = "details"
         recorder.subscribe(case, codec=DELTA, view=c.View())
@@ -255,12 +257,12 @@ def details(server):
         recorder.run_to(5)
         for detail in DOTS, DENSITY, DOTS, FULL:
             recorder.view(case, detail=detail)
-            recorder.run_to(recorder.newest[recorder.columns, 0][0].tick + 10)
+            recorder.run_to(recorder.newest[recorder.plain, 0][0].tick + 10)
         return recorder
 
 
 def coarse(server):
-    """Dots and densities of a crowd, as they are and compressed."""
+    """Dots and densities of many entities, uncompressed and compressed."""
     with Recorder(server, 29, population_size=60, food_count=350, poison_count=20, crate_count=2, obstacle_count=2,
                   island_width_px=1100.0, island_height_px=500.0, body_size_max=60.0) as recorder:
         for detail in DOTS, DENSITY:
@@ -285,9 +287,8 @@ def corner(server):
 
 
 def damage(server):
-    """One frame of each case is damaged on its way: deltas are of no use from there to the next keyframe."""
+    """One frame of each case is damaged: deltas are refused from there to the next keyframe."""
     with Recorder(server, 37, **SMALL) as recorder:
-        recorder.cases["damage_columns"] = recorder.columns
         recorder.subscribe("damage_deltas", codec=DELTA)
         recorder.subscribe("damage_tiles", codec=DELTA, view=c.View())
         recorder.damaged = dict.fromkeys(recorder.cases, 2)
@@ -305,24 +306,15 @@ SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, 
 
 
 def entities_of(snapshot):
-    """{kind: {column: whole numbers}} of a snapshot of CODEC_COLUMNS."""
-    assert snapshot.codec == COLUMNS and snapshot.checksum == plain.checksum(snapshot)
-    position = "H" if snapshot.position_bytes == 2 else "I"
-    counts = [snapshot.organism_count, snapshot.food_count, snapshot.poison_count, snapshot.crate_count,
-              snapshot.obstacle_count]
-    entities, offset = {}, 0
-    for (kind, sizes), count in zip(KINDS, counts):
-        formats = {**({"id": "I"} if kind in HAVE_IDS else {}), "x": position, "y": position, **dict.fromkeys(sizes, "H")}
-        entities[kind] = {}
-        for column, letter in formats.items():
-            entities[kind][column] = list(struct.unpack_from(f"<{count}{letter}", snapshot.body, offset))
-            offset += struct.calcsize(f"<{count}{letter}")
-    assert offset == len(snapshot.body)
-    return entities
+    """{kind: {column: whole numbers}} of a snapshot of CODEC_PLAIN."""
+    assert snapshot.codec == PLAIN
+    return {kind: {name: (column if name == "id" else numpy.rint(column * 16)).astype(int).tolist()
+                   for name, column in columns.items()}
+            for kind, columns in plain.columns(snapshot).items()}
 
 
 def in_tile(entities, snapshot, tile):
-    """The entities of one tile, those of boxes with ids, too; and the tile's corner in 1/16 px."""
+    """The entities of one tile, boxes with ids; and the tile's corner in 1/16 px."""
     side = snapshot.tile_px * 16
     across, down = (max(1, math.ceil(length / snapshot.tile_px)) for length in (snapshot.width_px, snapshot.height_px))
     left, top = tile % across * side, tile // across * side
@@ -336,18 +328,18 @@ def in_tile(entities, snapshot, tile):
 
 
 def present(entities):
-    """Without the kinds of which there are none."""
+    """Without kinds that have no entities."""
     return {kind: columns for kind, columns in entities.items() if columns["x"]}
 
 
 def expected_tile(entities, snapshot, tile):
     there, left, top = in_tile(entities, snapshot, tile.tile)
     side = snapshot.tile_px * 16
-    told = {"tile": tile.tile, "detail": stream_pb2.Detail.Name(tile.detail)}
+    content = {"tile": tile.tile, "detail": stream_pb2.Detail.Name(tile.detail)}
     if tile.detail == FULL:
-        return {**told, **present(there)}
+        return {**content, **present(there)}
     if tile.detail == DOTS:
-        return {**told, **present({kind: {"x": [min((x - left) * 256 // side, 255) for x in columns["x"]],
+        return {**content, **present({kind: {"x": [min((x - left) * 256 // side, 255) for x in columns["x"]],
                                           "y": [min((y - top) * 256 // side, 255) for y in columns["y"]]}
                                    for kind, columns in there.items()})}
     cells = tile.body[0] if tile.compression != stream_pb2.COMPRESSION_ZSTD else plain.zstd_content(tile.body)[0]
@@ -355,20 +347,20 @@ def expected_tile(entities, snapshot, tile):
     for kind, rows in density.items():
         for x, y in zip(there[kind]["x"], there[kind]["y"]):
             rows[min((y - top) * cells // side, cells - 1)][min((x - left) * cells // side, cells - 1)] += 1
-    return {**told, "cells": cells, **density}
+    return {**content, "cells": cells, **density}
 
 
 def expected(snapshot, reference):
-    """What a frame decodes to. reference: the snapshot of CODEC_COLUMNS of the same run, island and tick."""
+    """What a frame decodes to. reference: the snapshot of CODEC_PLAIN of the same run, island and tick."""
     assert snapshot.state_hash == reference.state_hash
-    told = {"world": reference.world, "run_id": reference.run_id.hex(), "island": reference.island,
+    content = {"world": reference.world, "run_id": reference.run_id.hex(), "island": reference.island,
             "island_count": reference.island_count, "tick": reference.tick, "generation": reference.generation,
             "generation_tick": reference.generation_tick, "width_px": reference.width_px,
             "height_px": reference.height_px, "item_radius_px": reference.item_radius_px}
     entities = entities_of(reference)
     if snapshot.tile_px == 0:
-        return {**told, **present(entities)}
-    return {**told, "tile_px": snapshot.tile_px,
+        return {**content, **present(entities)}
+    return {**content, "tile_px": snapshot.tile_px,
             "tiles": [expected_tile(entities, snapshot, tile) for tile in snapshot.tiles]}
 
 
@@ -384,7 +376,7 @@ def with_one_bit_wrong(body, snapshot):
 
 
 def vectors_of(recorder):
-    """[(frame, head of its line, what it decodes to)] of each case, one after another."""
+    """[(frame, head of its line, decoded content)] of all cases."""
     fixed = {run_id: bytes([number]) * 16 for number, run_id in enumerate(recorder.run_ids, 1)}
     vectors = []
     for case, subscription in recorder.cases.items():
@@ -411,7 +403,7 @@ def vectors_of(recorder):
 
 
 def record(scenario):
-    """Vectors of which two recordings in a row were the same."""
+    """Vectors of which two successive recordings are equal."""
     before = None
     for _ in range(RECORDINGS_MAX):
         server = plain.Server("--seed", "1")
@@ -422,15 +414,15 @@ def record(scenario):
         if vectors == before:
             return vectors
         before = vectors
-    raise AssertionError(f"{scenario.__name__}: no two recordings in a row were the same: is the machine busy?")
+    raise AssertionError(f"{scenario.__name__}: no two successive recordings are equal: is the machine busy?")
 
 
 def assert_decoded(vectors):
-    """The decoder of docs/PROTOCOL.md finds the same."""
+    """Checks that the decoder of docs/PROTOCOL.md gives the same."""
     decoders = {}
     for frame, head, decoded in vectors:
         snapshot = stream_pb2.SnapshotFrame.FromString(frame[8:])
-        if snapshot.codec == COLUMNS:
+        if snapshot.codec == PLAIN:
             continue
         of = TilesDecoder if snapshot.tile_px else Decoder
         decoder = decoders.setdefault((head["case"], snapshot.island), of(plain.zstd_content))
@@ -443,13 +435,13 @@ def assert_decoded(vectors):
         if snapshot.tile_px:
             assert list(seen) == [tile["tile"] for tile in decoded["tiles"]], head
             parts = [(tile, seen[tile["tile"]]) for tile in decoded["tiles"]]
-        for told, entities in parts:
+        for content, entities in parts:
             for kind, columns in entities.items():
-                if told.get("detail") == "DETAIL_DENSITY":
-                    assert columns.tolist() == told[kind], (head, kind)
+                if content.get("detail") == "DETAIL_DENSITY":
+                    assert columns.tolist() == content[kind], (head, kind)
                     continue
-                assert len(columns["x"]) == len(told.get(kind, {"x": []})["x"]), (head, kind)
-                for column, numbers in told.get(kind, {}).items():
+                assert len(columns["x"]) == len(content.get(kind, {"x": []})["x"]), (head, kind)
+                for column, numbers in content.get(kind, {}).items():
                     assert columns[column].tolist() == numbers, (head, kind, column)
 
 
@@ -460,8 +452,8 @@ def main():
     for _, head, decoded in vectors:
         text = json.dumps(decoded, separators=(",", ":"))
         same = line_of.setdefault(text, len(lines) + 1)
-        told = decoded if same > len(lines) or len(decoded) == 1 else {"same_as_line": same}
-        lines.append(json.dumps({**head, **told}, separators=(",", ":")) + "\n")
+        content = decoded if same > len(lines) or len(decoded) == 1 else {"same_as_line": same}
+        lines.append(json.dumps({**head, **content}, separators=(",", ":")) + "\n")
     files = {"snapshots.frames": b"".join(frame for frame, _, _ in vectors), "snapshots.jsonl": "".join(lines).encode()}
     for name, content in files.items():
         path = FOLDER / name

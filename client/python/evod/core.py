@@ -20,7 +20,7 @@ from typing import Any, Iterator
 
 import google.protobuf.message
 
-from evod import framing, picture_decoder
+from evod import framing, snapshot_decoder
 from evod.errors import DamagedData, Error, NoConnection, refusal
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
@@ -102,7 +102,7 @@ class Subscription:
 class _StreamState:
     """The snapshot stream of one island of one subscription in this session."""
 
-    decoder: picture_decoder.FrameDecoder = dataclasses.field(default_factory=picture_decoder.FrameDecoder)
+    decoder: snapshot_decoder.SnapshotDecoder = dataclasses.field(default_factory=snapshot_decoder.SnapshotDecoder)
     keyframe_needed: bool = False
     keyframe_requests: int = 0  # since the last snapshot that could be decoded
 

@@ -13,7 +13,7 @@ import google.protobuf.message
 import numpy
 import numpy.typing
 
-from evod import picture_decoder
+from evod import snapshot_decoder
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
@@ -197,7 +197,7 @@ class LabPlans:
             island=island,
             rate_hz=rate_hz,
             codec=stream_pb2.CODEC_DELTA,
-            compression=stream_pb2.COMPRESSION_ZSTD if picture_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
+            compression=stream_pb2.COMPRESSION_ZSTD if snapshot_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
             unacknowledged_max=UNACKNOWLEDGED_MAX,
             view=view,
         )

@@ -64,7 +64,7 @@ struct IslandViewTest : testing::Test {
     }
 
     using Clock = WindowRenderer::Clock;
-    const codec::DecodedSnapshot snapshot = codec::decode(known_snapshot()).value();
+    const codec::DecodedSnapshot snapshot = codec::decode_plain(known_snapshot()).value();
     PlayingServer server{known_snapshot()};
     std::optional<Panes> panes; // destroyed before the server, which waits for the disconnection
     sf::Context context{context_settings(), 1, 1};

@@ -72,7 +72,7 @@ TEST_F(RecordTest, RecordsAReplayWithoutChangingTheWorld) {
     make_world(server, "one", 300);
     const Ran ran = record(frames, "--past 2 --record-generations 1 --every 40");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(frame_count(), 4);              // ticks 120, 160, 200 and 240, the last
+    EXPECT_EQ(frame_count(), 4);            // ticks 120, 160, 200 and 240, the last
     expect_frame(0, 120, at_generation(2)); // a seek to tick 120 would show the end of generation 1
     expect_frame(3, 240);
     EXPECT_EQ(state().tick(), 300u);
@@ -83,8 +83,8 @@ TEST_F(RecordTest, TwoWorldsAdvanceByTheSameTicks) {
     make_world(server, "other", 200, 8);
     // Large enough for the smallest item to be a pixel wide.
     const Ran ran =
-        run_evoview("--server " + server.address() + " --world one --beside other --size 1280x720 --record " +
-                    frames + " --record-ticks 20 --every 10");
+        run_evoview("--server " + server.address() + " --world one --beside other --size 1280x720 --record " + frames +
+                    " --record-ticks 20 --every 10");
     ASSERT_EQ(ran.status, 0) << ran.output;
     EXPECT_EQ(frame_count(), 3);
     const auto halves = side_by_side({0, 0, 1280, 720}, 2);
@@ -177,7 +177,7 @@ TEST(RecordAsAViewer, RecordsWithoutSendingCommands) {
     evod::v1::SnapshotFrame snapshot;
     snapshot.set_width_px(100);
     snapshot.set_height_px(100);
-    codec::encode({}, snapshot);
+    codec::encode_plain({}, snapshot);
     snapshot.set_world("default");
     snapshot.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
     snapshot.set_island_count(1);

@@ -31,7 +31,7 @@ TEST_F(ScreenshotTest, EveryPixelMatchesTheSnapshot) {
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
         ASSERT_EQ(image.getSize(), (sf::Vector2u{width, height}));
-        const ExpectedFrame expected{codec::decode(snapshot).value(), camera_of(snapshot, width, height)};
+        const ExpectedFrame expected{codec::decode_plain(snapshot).value(), camera_of(snapshot, width, height)};
         for (const Colour colour : {palette::background, palette::wall, palette::organism, palette::food,
                                     palette::poison, palette::crate, palette::crate_edge, palette::obstacle}) {
             EXPECT_GT(expected.count(colour), 20u);
@@ -49,7 +49,7 @@ TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
     sf::Image image;
     ASSERT_TRUE(image.loadFromFile(path));
     const Camera camera = camera_of(snapshot, 1280, 720);
-    const auto decoded = codec::decode(snapshot).value();
+    const auto decoded = codec::decode_plain(snapshot).value();
     for (std::size_t i = 0; i < decoded.organisms.id.size(); ++i) {
         const Point top =
             camera.to_screen({decoded.organisms.x_px[i], decoded.organisms.y_px[i] - decoded.organisms.radius_px[i]});

@@ -17,7 +17,7 @@ std::string noise(Random& random, std::size_t bytes, std::uint64_t kinds) {
     return made;
 }
 
-RC_GTEST_PROP(Compression, WhateverTheSeamsTheContentComesBack, (std::uint64_t seed)) {
+RC_GTEST_PROP(Compression, TheContentIsRestoredForAllSeams, (std::uint64_t seed)) {
     Random random{seed};
     Compressor compressor;
     for (int round = 0; round < 5; ++round) {
@@ -34,7 +34,7 @@ RC_GTEST_PROP(Compression, WhateverTheSeamsTheContentComesBack, (std::uint64_t s
     }
 }
 
-TEST(Compression, WhatIsNotRandomIsShortenedBesideWhatIs) {
+TEST(Compression, RegularBytesBesideRandomOnesGetShorter) {
     Random random{1};
     Compressor compressor;
     const std::string places = noise(random, 20'000, 256), small = noise(random, 20'000, 8);
@@ -44,7 +44,7 @@ TEST(Compression, WhatIsNotRandomIsShortenedBesideWhatIs) {
     EXPECT_GT(compressor.compress(places + small).size(), least + 2000);
 }
 
-TEST(Compression, ColumnsThatAreShortStayTogether) {
+TEST(Compression, ShortColumnsShareABlock) {
     Random random{2};
     Compressor compressor;
     std::string bytes;

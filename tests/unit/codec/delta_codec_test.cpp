@@ -16,20 +16,19 @@
 namespace evod::codec {
 namespace {
 
-/// The server's end: each picture as a keyframe and, but for the first, as a delta.
+/// The server's end: each snapshot as a keyframe and, except for the first, as a delta.
 class Sender {
   public:
     struct Sent {
-        evod::v1::SnapshotFrame columns, keyframe, delta;
+        evod::v1::SnapshotFrame plain, keyframe, delta;
     };
 
     Sent send(const LivingIsland& island, std::uint16_t ticks) {
-        Sent sent{.columns = island.about(), .keyframe = island.about(), .delta = {}};
+        Sent sent{.plain = island.about(), .keyframe = island.about(), .delta = {}};
         const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
-        encode(*snapshot, sent.columns);
+        encode_plain(*snapshot, sent.plain);
         const bool has_base = baseline_.snapshot && follows(*snapshot, *baseline_.snapshot);
-        sent.columns.set_sequence(++sequence_);
-        sent.keyframe.set_sequence(sequence_);
+        sent.keyframe.set_sequence(++sequence_);
         sent.keyframe.set_codec(evod::v1::CODEC_DELTA);
         sent.delta = sent.keyframe;
         if (has_base) {
@@ -59,7 +58,7 @@ void compress(evod::v1::SnapshotFrame& frame) {
 }
 
 /// A keyframe and the delta after it.
-Sender::Sent two_pictures(std::uint64_t seed, SnapshotDecoder& decoder) {
+Sender::Sent two_snapshots(std::uint64_t seed, SnapshotDecoder& decoder) {
     Random random{seed};
     LivingIsland island;
     island.populate(random);
@@ -69,7 +68,7 @@ Sender::Sent two_pictures(std::uint64_t seed, SnapshotDecoder& decoder) {
     return sender.send(island, 2);
 }
 
-RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, bool wide)) {
+RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly, (std::uint64_t seed, bool wide)) {
     Random random{seed};
     LivingIsland island;
     island.side_px = wide ? 500'000 : 4000;
@@ -83,29 +82,29 @@ RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, boo
         }
         auto sent = sender.send(island, ticks);
         const QuantisedSnapshot snapshot = island.snapshot();
-        const auto expected = decode(sent.columns).value();
-        const auto same = [&](const Result<DecodedSnapshot>& picture, const SnapshotDecoder& decoder) {
-            RC_ASSERT(picture.has_value());
+        const auto expected = decode_plain(sent.plain).value();
+        const auto same = [&](const Result<DecodedSnapshot>& decoded, const SnapshotDecoder& decoder) {
+            RC_ASSERT(decoded.has_value());
             RC_ASSERT(*decoder.snapshot() == snapshot);
-            RC_ASSERT(picture->organisms.id == expected.organisms.id);
-            RC_ASSERT(picture->organisms.x_px == expected.organisms.x_px);
-            RC_ASSERT(picture->organisms.health == expected.organisms.health);
-            RC_ASSERT(picture->food.x_px == expected.food.x_px);
-            RC_ASSERT(picture->crates.x_px == expected.crates.x_px);
-            RC_ASSERT(picture->crates.id == expected.crates.id);
-            RC_ASSERT(picture->obstacles.half_width_px == expected.obstacles.half_width_px);
-            RC_ASSERT(picture->about.world() == "w");
-            RC_ASSERT(picture->about.width_px() == island.side_px);
+            RC_ASSERT(decoded->organisms.id == expected.organisms.id);
+            RC_ASSERT(decoded->organisms.x_px == expected.organisms.x_px);
+            RC_ASSERT(decoded->organisms.health == expected.organisms.health);
+            RC_ASSERT(decoded->food.x_px == expected.food.x_px);
+            RC_ASSERT(decoded->crates.x_px == expected.crates.x_px);
+            RC_ASSERT(decoded->crates.id == expected.crates.id);
+            RC_ASSERT(decoded->obstacles.half_width_px == expected.obstacles.half_width_px);
+            RC_ASSERT(decoded->about.world() == "w");
+            RC_ASSERT(decoded->about.width_px() == island.side_px);
         };
         same(always.decode(sent.delta), always);
-        // Whichever way a viewer came to a picture, the next delta is the same for it.
+        // After a keyframe or a delta, the next delta is the same.
         same(sometimes.decode(n % 7 == 0 ? sent.keyframe : sent.delta), sometimes);
         compress(sent.delta);
         same(compressed.decode(sent.delta), compressed);
     }
 }
 
-RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (std::uint64_t seed)) {
+RC_GTEST_PROP(DeltaCodec, BothEndsPredictTheSame, (std::uint64_t seed)) {
     Random random{seed};
     const auto any = [&](std::uint64_t bits) {
         const auto number = static_cast<std::uint32_t>(random());
@@ -136,13 +135,13 @@ RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (
             }
         }
         const std::string body = encode_delta(base, *here, ticks);
-        const auto told = decode_body(body, {.counts = counts_of(*here), .position_bytes = 4}, &base);
-        RC_ASSERT(told.has_value());
-        RC_ASSERT(*told->snapshot == *here);
+        const auto decoded = decode_body(body, {.counts = counts_of(*here), .position_bytes = 4}, &base);
+        RC_ASSERT(decoded.has_value());
+        RC_ASSERT(*decoded->snapshot == *here);
     }
 }
 
-TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
+TEST(DeltaCodec, MostlyNewItemsTakeNoMoreThanAKeyframe) {
     constexpr std::uint32_t id_end = 6000;
     constexpr std::uint64_t all = 100;
     Random random{7};
@@ -165,9 +164,9 @@ TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
         }
         const Baseline base = initial_baseline(there);
         const std::string delta = encode_delta(base, *here, 300), keyframe = encode_keyframe(initial_baseline(here));
-        const auto told = decode_body(delta, {.counts = counts_of(*here)}, &base);
-        ASSERT_TRUE(told.has_value()) << stays_percent;
-        EXPECT_TRUE(*told->snapshot == *here) << stays_percent;
+        const auto decoded = decode_body(delta, {.counts = counts_of(*here)}, &base);
+        ASSERT_TRUE(decoded.has_value()) << stays_percent;
+        EXPECT_TRUE(*decoded->snapshot == *here) << stays_percent;
         EXPECT_LT(delta.size(), keyframe.size() + 100) << stays_percent;
         if (stays_percent >= 40) {
             EXPECT_LT(delta.size(), keyframe.size() * 9 / 10) << stays_percent;
@@ -183,18 +182,18 @@ TEST(DeltaCodec, ADeltaIsTheseBytes) {
     sender.send(island, 0);
     island.organisms[0].x += px; // 16 steps
     sender.send(island, 2);
-    island.organisms[0].x += 2 * px; // 16 more than foretold
+    island.organisms[0].x += 2 * px; // 16 more than predicted
     island.organisms[0].health -= 0.5F;
     island.food.erase(island.food.begin());
     const auto delta = sender.send(island, 2).delta;
     EXPECT_EQ(delta.body(), std::string("\x02\x00"
-                                        "\x00\x01\x10\x00\x01\xf8" // organisms: x +16, y as foretold, health -8
+                                        "\x00\x01\x10\x00\x01\xf8" // organisms: x +16, y as predicted, health -8
                                         "\x01\x01\x00\x00\x00\x00" // food: one is gone, the first
-                                        "\x00\x00\x00",            // nothing of the others
+                                        "\x00\x00\x00",            // the other kinds: unchanged
                                         17));
 }
 
-TEST(DeltaCodec, AColumnOfAFewLargeNumbersTellsThemAlone) {
+TEST(DeltaCodec, AFewLargeNumbersAreExceptions) {
     LivingIsland island;
     for (std::uint32_t id = 0; id < 1000; ++id) {
         island.organisms.push_back({.id = id, .x = 0, .y = 0, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F});
@@ -208,7 +207,7 @@ TEST(DeltaCodec, AColumnOfAFewLargeNumbersTellsThemAlone) {
 
 TEST(DeltaDamage, EveryOtherByteIsRefused) {
     SnapshotDecoder first;
-    const auto sent = two_pictures(5, first);
+    const auto sent = two_snapshots(5, first);
     ASSERT_TRUE(SnapshotDecoder{first}.decode(sent.delta));
     for (const auto* whole : {&sent.delta, &sent.keyframe}) {
         ASSERT_GT(whole->body().size(), 100U);
@@ -217,18 +216,18 @@ TEST(DeltaDamage, EveryOtherByteIsRefused) {
                 auto damaged = *whole;
                 (*damaged.mutable_body())[i] = static_cast<char>(damaged.body()[i] ^ change);
                 SnapshotDecoder decoder{first};
-                const auto picture = decoder.decode(damaged);
-                ASSERT_FALSE(picture) << i;
-                EXPECT_THAT(picture.error().what, testing::HasSubstr("checksum"));
+                const auto decoded = decoder.decode(damaged);
+                ASSERT_FALSE(decoded) << i;
+                EXPECT_THAT(decoded.error().what, testing::HasSubstr("checksum"));
                 EXPECT_TRUE(decoder.needs_keyframe());
             }
         }
     }
 }
 
-TEST(DeltaDamage, ABodyCutOrChangedIsRefusedWhateverItsChecksum) {
+TEST(DeltaDamage, CutBodiesWithRightChecksumsAreRefused) {
     SnapshotDecoder first;
-    const auto sent = two_pictures(6, first);
+    const auto sent = two_snapshots(6, first);
     for (const auto* whole : {&sent.delta, &sent.keyframe}) {
         for (std::size_t length = 0; length <= whole->body().size() + 1; ++length) {
             auto cut = *whole;
@@ -237,14 +236,14 @@ TEST(DeltaDamage, ABodyCutOrChangedIsRefusedWhateverItsChecksum) {
             EXPECT_EQ(SnapshotDecoder{first}.decode(cut).has_value(), length == whole->body().size()) << length;
         }
         Random random{7};
-        for (int round = 0; round < 20'000; ++round) { // none does more than be refused or give some picture
+        for (int round = 0; round < 20'000; ++round) { // each is refused or gives some snapshot
             auto changed = *whole;
             (*changed.mutable_body())[below(random, changed.body().size())] = static_cast<char>(random());
             changed.set_checksum(checksum_of(changed, changed.body()));
             SnapshotDecoder decoder{first};
-            if (const auto picture = decoder.decode(changed)) {
-                ASSERT_EQ(picture->organisms.x_px.size(), changed.organism_count());
-                ASSERT_TRUE(std::ranges::is_sorted(picture->food.id));
+            if (const auto decoded = decoder.decode(changed)) {
+                ASSERT_EQ(decoded->organisms.x_px.size(), changed.organism_count());
+                ASSERT_TRUE(std::ranges::is_sorted(decoded->food.id));
             }
         }
     }
@@ -252,7 +251,7 @@ TEST(DeltaDamage, ABodyCutOrChangedIsRefusedWhateverItsChecksum) {
 
 TEST(DeltaDamage, AnotherBaseIsRefused) {
     SnapshotDecoder first;
-    const auto sent = two_pictures(8, first);
+    const auto sent = two_snapshots(8, first);
     auto other = sent.delta;
     other.set_base_sequence(99);
     EXPECT_THAT(SnapshotDecoder{first}.decode(other).error().what, testing::HasSubstr("base_sequence is 99"));
@@ -261,15 +260,15 @@ TEST(DeltaDamage, AnotherBaseIsRefused) {
     EXPECT_FALSE(elsewhere.decode(other));
     EXPECT_FALSE(elsewhere.decode(sent.delta)) << "after damage only a keyframe helps";
     EXPECT_TRUE(elsewhere.decode(sent.keyframe));
-    // A number put right by hand does not help: the checksum is over it.
+    // Correcting the number does not help, because the checksum covers it.
     other = sent.delta;
     other.set_sequence(other.sequence() + 1);
     EXPECT_THAT(SnapshotDecoder{first}.decode(other).error().what, testing::HasSubstr("checksum"));
 }
 
-TEST(DeltaDamage, CountsThatNoBodyBacksTakeNoMemory) {
+TEST(DeltaDamage, FalseCountsTakeNoMemory) {
     SnapshotDecoder first;
-    const auto sent = two_pictures(9, first);
+    const auto sent = two_snapshots(9, first);
     for (const auto set : {&evod::v1::SnapshotFrame::set_organism_count, &evod::v1::SnapshotFrame::set_food_count,
                            &evod::v1::SnapshotFrame::set_crate_count}) {
         for (const auto* whole : {&sent.delta, &sent.keyframe}) {
@@ -279,26 +278,26 @@ TEST(DeltaDamage, CountsThatNoBodyBacksTakeNoMemory) {
             EXPECT_FALSE(SnapshotDecoder{first}.decode(frame));
         }
     }
-    // A keyframe without entities but for a count of those that come.
+    // A keyframe without entities but with a count of those that come.
     evod::v1::SnapshotFrame frame = LivingIsland{}.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
     frame.set_organism_count(0xffffffff);
     frame.set_body(std::string("\0\0\2\xff\xff\xff\xff\0\0\0\0", 11));
     frame.set_checksum(checksum_of(frame, frame.body()));
-    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("lets more come"));
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("adds more entities"));
 }
 
-TEST(DeltaDamage, ACompressedBodyHoldsNoMoreThanItsCountsAllow) {
+TEST(DeltaDamage, CountsLimitTheSizeOfACompressedBody) {
     evod::v1::SnapshotFrame frame = LivingIsland{}.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
     frame.set_body(std::string(100'000, '\0'));
     compress(frame);
     ASSERT_LT(frame.body().size(), 100U);
-    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("holds 100000 bytes"));
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("has 100000 bytes of content"));
     frame.set_body("no zstd");
     EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("not a zstd frame"));
     SnapshotDecoder first;
-    auto sent = two_pictures(10, first);
+    auto sent = two_snapshots(10, first);
     compress(sent.keyframe);
     for (std::size_t length = 0; length < sent.keyframe.body().size(); ++length) {
         auto cut = sent.keyframe;
@@ -309,31 +308,19 @@ TEST(DeltaDamage, ACompressedBodyHoldsNoMoreThanItsCountsAllow) {
     EXPECT_THAT(SnapshotDecoder{}.decode(sent.keyframe).error().what, testing::HasSubstr("compression is 9"));
 }
 
-TEST(DeltaDamage, FieldsAroundTheBodyAreJudgedAsOfAnyPicture) {
+TEST(DeltaDamage, TheOtherFieldsAreCheckedToo) {
     SnapshotDecoder first;
-    auto keyframe = two_pictures(11, first).keyframe;
+    auto keyframe = two_snapshots(11, first).keyframe;
     keyframe.set_width_px(std::nan(""));
     EXPECT_THAT(SnapshotDecoder{}.decode(keyframe).error().what, testing::HasSubstr("width_px"));
 }
 
-TEST(ColumnsDamage, IsNoticedByTheChecksum) {
-    evod::v1::SnapshotFrame frame;
-    frame.set_island_count(1);
-    frame.set_width_px(1280);
-    frame.set_height_px(720);
-    frame.set_sequence(5);
-    encode({.food = {.id = {1, 2}, .x = {16, 32}, .y = {48, 64}, .width = {}, .height = {}}}, frame);
-    EXPECT_TRUE(SnapshotDecoder{}.decode(frame));
-    frame.mutable_body()->back() ^= 1;
-    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("checksum"));
-}
-
-TEST(Crc32, IsThatOfZlib) {
+TEST(Crc32, EqualsThatOfZlib) {
     EXPECT_EQ(crc32("123456789"), 0xcbf43926U);
     EXPECT_EQ(crc32("56789", crc32("1234")), 0xcbf43926U);
     EXPECT_EQ(crc32(std::string(1'000'000, 'a')), 0xdc25bfbcU); // Python's zlib.crc32(b"a" * 1000000)
 }
-TEST(Crc32, IsTheSameHoweverBytesAreCut) {
+TEST(Crc32, IsTheSameForBytesInPieces) {
     std::string bytes(3000, '\0');
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         bytes[i] = static_cast<char>(i * i >> 3);

@@ -30,7 +30,7 @@ std::array<std::byte, header_bytes> header_of(std::array<int, 8> values) {
     return header;
 }
 
-/// Groups of a field that nobody knows, so many within each other.
+/// Nested groups of an unknown field.
 std::string groups(int count) {
     std::string begin, end;
     for (int i = 0; i < count; ++i) {
@@ -40,14 +40,14 @@ std::string groups(int count) {
     return begin + end;
 }
 
-/// With so many bytes or a message as field `number`.
+/// Bytes or a message as field `number`.
 std::string within(char number, const std::string& body) {
     EXPECT_LT(body.size(), 128u * 128u);
     return std::string{static_cast<char>(number << 3 | 2)} + static_cast<char>(body.size() % 128 + 128) +
            static_cast<char>(body.size() / 128) + body;
 }
 
-TEST(Body, IsReadDownToItsDepthAndNoDeeper) {
+TEST(Body, IsParsedDownToTheDepthLimit) {
     using evod::v1::ClientMessage;
     for (const auto& body : {groups(message_depth_max), within(2, groups(message_depth_max - 1))}) {
         EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(body)));
@@ -61,7 +61,7 @@ TEST(Body, IsReadDownToItsDepthAndNoDeeper) {
     }
 }
 
-TEST(Body, ThatIsDamagedIsNotCalledTooDeep) {
+TEST(Body, DamageIsNotReportedAsDepth) {
     using evod::v1::ClientMessage;
     for (const std::string body : {"\xff\xff\xff", "\x12\x7f", "\xa4\x06", "\x12\x04\x12\x02\xff\xfe"}) {
         const auto damaged = parse_body<ClientMessage>(bytes_of(body));
@@ -69,7 +69,7 @@ TEST(Body, ThatIsDamagedIsNotCalledTooDeep) {
         EXPECT_EQ(damaged.error().beyond, Beyond::Nothing) << damaged.error().what;
         EXPECT_NE(damaged.error().what.find("is not a evod.v1.ClientMessage"), std::string::npos);
     }
-    // What looks deep within a string is no message.
+    // A string that looks like nested messages is no message.
     ClientMessage named;
     named.mutable_hello()->set_token("\x12\x04\x12\x02\x12");
     EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(named.SerializeAsString())));
@@ -91,11 +91,11 @@ TEST(Header, AWrongLetterVersionOrChannelIsDamage) {
     }
 }
 
-TEST(Header, AClientsStreamChannelIsRefusedEvenWhenEmpty) {
+TEST(Header, StreamFramesOfAClientAreRefused) {
     EXPECT_FALSE(decode_header(header_of({'E', 'V', 1, 2, 0, 0, 0, 0}), server_limits));
 }
 
-TEST(Header, TheLimitItselfIsTakenAndOneMoreIsNot) {
+TEST(Header, TheLimitIsInclusive) {
     for (const auto& [limits, channel, limit] : {std::tuple{hello_limits, Channel::Control, 4U << 10},
                                                  {server_limits, Channel::Control, 1U << 20},
                                                  {client_limits, Channel::Control, 64U << 20},
@@ -105,8 +105,7 @@ TEST(Header, TheLimitItselfIsTakenAndOneMoreIsNot) {
     }
 }
 
-RC_GTEST_PROP(FrameReader, GivesBackTheFramesHoweverTheBytesAreCut,
-              (const std::vector<std::pair<bool, std::string>>& sent)) {
+RC_GTEST_PROP(FrameReader, ReturnsFramesFromBytesInAnyPieces, (const std::vector<std::pair<bool, std::string>>& sent)) {
     std::string stream;
     for (const auto& [control, body] : sent) {
         stream += raw_frame(control ? Channel::Control : Channel::Stream, body);
@@ -131,7 +130,7 @@ RC_GTEST_PROP(FrameReader, GivesBackTheFramesHoweverTheBytesAreCut,
     RC_ASSERT(reader.buffered_bytes() == 0U);
 }
 
-TEST(FrameReader, NoticesAStreamOutOfStepAtItsFirstWrongByte) {
+TEST(FrameReader, DetectsTheFirstWrongByte) {
     for (const std::string wrong : {"G", "EX", "EV\x02", "EV\x01\x07"}) {
         FrameReader reader{client_limits};
         reader.feed(bytes_of(raw_frame(Channel::Control, "first") + wrong));
@@ -145,7 +144,7 @@ TEST(FrameReader, NoticesAStreamOutOfStepAtItsFirstWrongByte) {
     }
 }
 
-TEST(FrameReader, TakesNoMemoryForALengthThatIsOnlyDeclared) {
+TEST(FrameReader, ADeclaredLengthTakesNoMemory) {
     FrameReader reader{client_limits};
     reader.feed(encode_header({.channel = Channel::Stream, .body_bytes = 256U << 20}));
     const auto frame = reader.next();
@@ -158,7 +157,7 @@ TEST(FrameReader, TakesNoMemoryForALengthThatIsOnlyDeclared) {
     EXPECT_FALSE(strict.next()) << "too long is said before the body has come";
 }
 
-TEST(FrameReader, GivesUpTheMemoryOfOneLongFrame) {
+TEST(FrameReader, FreesTheMemoryOfALongFrame) {
     FrameReader reader{client_limits};
     reader.feed(bytes_of(raw_frame(Channel::Stream, std::string(8 << 20, 'x'))));
     EXPECT_TRUE(*reader.next());
@@ -167,7 +166,7 @@ TEST(FrameReader, GivesUpTheMemoryOfOneLongFrame) {
     EXPECT_LT(reader.capacity_bytes(), 1U << 20);
 }
 
-TEST(FrameReader, NewLimitsHoldForTheFramesAlreadyReceived) {
+TEST(FrameReader, NewLimitsApplyToReceivedFrames) {
     FrameReader reader{hello_limits};
     reader.feed(bytes_of(raw_frame(Channel::Control, "hello") + raw_frame(Channel::Control, std::string(5000, 'x'))));
     EXPECT_TRUE(*reader.next());
@@ -177,7 +176,7 @@ TEST(FrameReader, NewLimitsHoldForTheFramesAlreadyReceived) {
     EXPECT_TRUE(*second);
 }
 
-TEST(Body, AMessageComesBackAndAnythingElseIsDamage) {
+TEST(Body, ParsesAMessageAndRefusesOtherBytes) {
     evod::v1::ClientMessage message;
     message.mutable_hello()->set_client_name("a test");
     FrameReader reader{hello_limits};

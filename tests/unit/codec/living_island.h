@@ -1,4 +1,4 @@
-// LivingIsland: an island to take pictures of, on which everything happens that can happen between two of them.
+// Living island: an island to take snapshots of, on which everything happens that can happen between two snapshots.
 #pragma once
 
 #include "proto/codec/delta_codec.h"
@@ -16,13 +16,12 @@ namespace evod::codec {
 
 constexpr std::int32_t px = 4096; // fixed-point units
 
-using Random = std::mt19937_64; // its numbers are the same everywhere; what distributions make of them is not
+using Random = std::mt19937_64; // the same on every platform, unlike the distributions
 
 inline std::uint64_t below(Random& random, std::uint64_t end) {
     return random() % end;
 }
 
-/// An island that lives: everything that can happen between two pictures does.
 struct LivingIsland {
     double side_px = 4000; // of a square
     struct Organism {
@@ -78,12 +77,12 @@ struct LivingIsland {
             organism.x = std::clamp<std::int64_t>(organism.x + organism.dx * static_cast<std::int64_t>(ticks), 0, top);
             organism.y = std::clamp<std::int64_t>(organism.y + organism.dy * static_cast<std::int64_t>(ticks), 0, top);
             organism.health -= 0.1F * static_cast<float>(ticks);
-            if (below(random, 50) == 0) { // from one end to the other, and health that is none or too much
+            if (below(random, 50) == 0) { // it jumps across the island, and its health is NaN or too large
                 organism.x = below(random, 2) == 0 ? 0 : top;
                 organism.y = anywhere(random);
                 organism.health = below(random, 2) == 0 ? std::nanf("") : 1e9F;
             }
-            if (below(random, 90) == 0) { // another one of the same name
+            if (below(random, 90) == 0) { // another organism with the same id
                 organism.radius += 1.F;
             }
         }
@@ -93,7 +92,7 @@ struct LivingIsland {
         }
         for (auto* items : {&food, &poison}) {
             for (Item& item : *items) {
-                if (below(random, 30) == 0) { // eaten, and back elsewhere
+                if (below(random, 30) == 0) { // eaten, and reappeared elsewhere
                     item.x = anywhere(random);
                 }
             }
@@ -140,7 +139,7 @@ struct LivingIsland {
         return snapshot;
     }
 
-    /// All of a frame but its body, codec and sequence.
+    /// A frame without body, codec and sequence.
     evod::v1::SnapshotFrame about() const {
         evod::v1::SnapshotFrame frame;
         frame.set_world("w");

@@ -30,7 +30,7 @@ TEST(PopulationCsv, IslandsAreReadInOrder) {
                 ElementsAre(ElementsAre(1, 2, 3, 4, 5, 6.5f, 7, 8, 9, 10, 11, 12), ElementsAre(10, -2, 3, 4, 5, 0.1f)));
 }
 
-TEST(PopulationCsv, WhatIsWrongIsNamedWithItsLine) {
+TEST(PopulationCsv, ErrorsNameTheLine) {
     const std::string good = heading + "0,0,1,2,3,4,5,6\n";
     EXPECT_THAT(wrong(""), StartsWith("line 1: got \"\", allowed the heading island,"));
     EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
@@ -48,7 +48,7 @@ TEST(PopulationCsv, WhatIsWrongIsNamedWithItsLine) {
               "line 2: got \"1,0,1,2,3,4,5,6\", allowed organism 0 of island 0, or the next island");
 }
 
-TEST(PopulationCsv, OfALongLineOnlyTheBeginningIsSaid) {
+TEST(PopulationCsv, ErrorsQuoteOnlyTheBeginningOfALine) {
     EXPECT_THAT(wrong(heading + std::string(100'000, '9')), testing::SizeIs(testing::Lt(200u)));
 }
 

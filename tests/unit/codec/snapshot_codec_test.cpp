@@ -1,5 +1,7 @@
 #include "proto/codec/snapshot_codec.h"
 
+#include "proto/codec/snapshot_decoder.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +14,7 @@
 namespace evod::codec {
 namespace {
 
+using testing::HasSubstr;
 using Ids = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
@@ -29,112 +32,107 @@ evod::v1::SnapshotFrame frame_of(const QuantisedSnapshot& snapshot) {
     frame.set_island_count(1);
     frame.set_width_px(1280);
     frame.set_height_px(720);
-    encode(snapshot, frame);
+    encode_plain(snapshot, frame);
     return frame;
 }
 
-TEST(SnapshotCodec, ABodyIsTheseBytes) {
-    const auto frame =
-        frame_of({.organisms = {.id = {0x01020304}, .x = {256}, .y = {16}, .width = {160}, .height = {8}}});
-    EXPECT_EQ(frame.body(), std::string("\x04\x03\x02\x01"
-                                        "\x00\x01"
-                                        "\x10\x00"
-                                        "\xa0\x00"
-                                        "\x08\x00",
-                                        12));
-    EXPECT_EQ(frame.position_bytes(), 2U);
+TEST(PlainCodec, TheColumnsAreNumbersInPx) {
+    const auto frame = frame_of({.organisms = {.id = {77}, .x = {256}, .y = {24}, .width = {160}, .height = {1601}}});
+    EXPECT_EQ(frame.codec(), evod::v1::CODEC_PLAIN);
+    const evod::v1::PlainOrganisms& organisms = frame.plain().organisms();
+    EXPECT_THAT(organisms.id(), testing::ElementsAre(77));
+    EXPECT_THAT(organisms.x_px(), testing::ElementsAre(16.F));
+    EXPECT_THAT(organisms.y_px(), testing::ElementsAre(1.5F));
+    EXPECT_THAT(organisms.radius_px(), testing::ElementsAre(10.F));
+    EXPECT_THAT(organisms.health(), testing::ElementsAre(100.0625F));
+    EXPECT_TRUE(frame.body().empty());
+    EXPECT_EQ(frame.organism_count(), 1U);
 }
 
-TEST(SnapshotCodec, APictureComesBack) {
+TEST(PlainCodec, DecodingRestoresTheSnapshot) {
     auto frame = frame_of(small_snapshot());
     frame.set_tick(77);
-    const auto picture = decode(frame);
-    ASSERT_TRUE(picture) << picture.error().what;
-    EXPECT_EQ(picture->about.tick(), 77U);
-    EXPECT_TRUE(picture->about.body().empty());
-    EXPECT_EQ(picture->organisms.id, (Ids{3, 9}));
-    EXPECT_EQ(picture->organisms.x_px, (Floats{100.F, 1280.F}));
-    EXPECT_EQ(picture->organisms.y_px, (Floats{0.0625F, 720.F}));
-    EXPECT_EQ(picture->organisms.radius_px, (Floats{10.F, 8.0625F}));
-    EXPECT_EQ(picture->organisms.health, (Floats{100.5F, 4095.9375F}));
-    EXPECT_EQ(picture->food.id, (Ids{0, 4}));
-    EXPECT_EQ(picture->food.y_px, (Floats{3.F, 4.F}));
-    EXPECT_EQ(picture->poison.id, (Ids{70000}));
-    EXPECT_EQ(picture->crates.half_height_px, (Floats{10.F}));
-    EXPECT_EQ(picture->obstacles.x_px, (Floats{11.F}));
-    EXPECT_EQ(picture->obstacles.half_width_px, (Floats{13.F}));
+    const auto snapshot = decode_plain(frame);
+    ASSERT_TRUE(snapshot) << snapshot.error().what;
+    EXPECT_EQ(snapshot->about.tick(), 77U);
+    EXPECT_FALSE(snapshot->about.has_plain());
+    EXPECT_EQ(snapshot->organisms.id, (Ids{3, 9}));
+    EXPECT_EQ(snapshot->organisms.x_px, (Floats{100.F, 1280.F}));
+    EXPECT_EQ(snapshot->organisms.y_px, (Floats{0.0625F, 720.F}));
+    EXPECT_EQ(snapshot->organisms.radius_px, (Floats{10.F, 8.0625F}));
+    EXPECT_EQ(snapshot->organisms.health, (Floats{100.5F, 4095.9375F}));
+    EXPECT_EQ(snapshot->food.id, (Ids{0, 4}));
+    EXPECT_EQ(snapshot->food.y_px, (Floats{3.F, 4.F}));
+    EXPECT_EQ(snapshot->poison.id, (Ids{70000}));
+    EXPECT_EQ(snapshot->crates.half_height_px, (Floats{10.F}));
+    EXPECT_EQ(snapshot->crates.id, (Ids{0}));
+    EXPECT_EQ(snapshot->obstacles.x_px, (Floats{11.F}));
+    EXPECT_EQ(snapshot->obstacles.half_width_px, (Floats{13.F}));
 }
 
-TEST(SnapshotCodec, AnEmptyIslandIsAnEmptyBody) {
-    const auto frame = frame_of({});
-    EXPECT_TRUE(frame.body().empty());
-    EXPECT_TRUE(decode(frame));
+TEST(PlainCodec, AnEmptyIslandIsDecoded) {
+    const auto snapshot = decode_plain(frame_of({}));
+    ASSERT_TRUE(snapshot);
+    EXPECT_TRUE(snapshot->organisms.id.empty());
 }
 
-TEST(SnapshotCodec, PositionsMayTakeFourBytes) {
+TEST(PlainCodec, WideIslandsKeepTheirPrecision) {
     QuantisedSnapshot snapshot = small_snapshot();
     snapshot.position_bytes = 4;
-    snapshot.organisms.x[1] = 16 * 285'999 + 8;
-    const auto frame = frame_of(snapshot);
-    EXPECT_EQ(frame.position_bytes(), 4U);
-    EXPECT_EQ(decode(frame)->organisms.x_px, (Floats{100.F, 285'999.5F}));
-    EXPECT_EQ(decode(frame)->obstacles.half_height_px, (Floats{14.F}));
+    snapshot.organisms.x[1] = 16 * 499'999 + 9;
+    EXPECT_EQ(decode_plain(frame_of(snapshot))->organisms.x_px, (Floats{100.F, 499'999.5625F}));
 }
 
-TEST(SnapshotCodec, ColumnsOfDifferentLengthsAreTheCallersError) {
+TEST(PlainCodec, TheDecoderNeedsNoKeyframeBeforeIt) {
+    SnapshotDecoder decoder;
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(decoder.decode(frame_of(small_snapshot())));
+    }
+}
+
+TEST(PlainCodec, ColumnsOfDifferentLengthsThrow) {
     for (const auto column : {&Entities::id, &Entities::x, &Entities::y}) {
         QuantisedSnapshot snapshot = small_snapshot();
         (snapshot.food.*column).pop_back();
         evod::v1::SnapshotFrame frame;
-        EXPECT_THROW(encode(snapshot, frame), std::invalid_argument);
+        EXPECT_THROW(encode_plain(snapshot, frame), std::invalid_argument);
     }
     QuantisedSnapshot snapshot = small_snapshot();
     snapshot.poison.y.clear();
     evod::v1::SnapshotFrame frame;
-    EXPECT_THROW(encode(snapshot, frame), std::invalid_argument);
+    EXPECT_THROW(encode_plain(snapshot, frame), std::invalid_argument);
 }
 
-TEST(SnapshotDamage, EveryOtherLengthOfBodyIsRefused) {
-    const auto whole = frame_of(small_snapshot());
-    for (std::size_t length = 0; length < whole.body().size(); ++length) {
-        auto cut = whole;
-        cut.mutable_body()->resize(length);
-        EXPECT_FALSE(decode(cut)) << length;
-    }
-    auto longer = whole;
-    longer.mutable_body()->push_back('x');
-    EXPECT_FALSE(decode(longer));
-}
-
-TEST(SnapshotDamage, IsNamed) {
+TEST(PlainCodec, DamageNamesTheField) {
     const auto whole = frame_of(small_snapshot());
     const auto complaint = [&](const auto& change) {
         auto frame = whole;
-        change(frame);
-        const auto picture = decode(frame);
-        return picture ? std::string{} : picture.error().what;
+        change(frame, *frame.mutable_plain());
+        const auto snapshot = decode_plain(frame);
+        return snapshot ? std::string{} : snapshot.error().what;
     };
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(complaint([](auto&) {}), "");
-    EXPECT_EQ(complaint([](auto& f) { f.set_position_bytes(3); }), "a snapshot's position_bytes is 3, not 2 or 4");
-    EXPECT_EQ(complaint([](auto& f) { f.set_island(1); }), "a snapshot's island is 1, not one of 1");
-    EXPECT_EQ(complaint([](auto& f) { f.set_food_count(3); }),
-              "a snapshot's body is 64 bytes long, not 72 as its counts say");
-    EXPECT_EQ(complaint([](auto& f) {
-                  for (const auto set :
-                       {&evod::v1::SnapshotFrame::set_organism_count, &evod::v1::SnapshotFrame::set_food_count}) {
-                      (f.*set)(std::numeric_limits<std::uint32_t>::max());
-                  }
-              }),
-              "a snapshot's body is 64 bytes long, not 85899345924 as its counts say");
-    EXPECT_THAT(complaint([](auto& f) { f.set_codec(evod::v1::CODEC_UNSPECIFIED); }), testing::HasSubstr("codec"));
-    EXPECT_THAT(complaint([&](auto& f) { f.set_width_px(nan); }), testing::HasSubstr("width_px"));
-    EXPECT_THAT(complaint([&](auto& f) { f.set_height_px(infinity); }), testing::HasSubstr("height_px"));
-    EXPECT_THAT(complaint([&](auto& f) { f.set_height_px(0); }), testing::HasSubstr("height_px"));
-    EXPECT_THAT(complaint([&](auto& f) { f.set_item_radius_px(-1); }), testing::HasSubstr("item_radius_px"));
-    EXPECT_THAT(complaint([&](auto& f) { f.set_ticks_per_s(nan); }), testing::HasSubstr("ticks_per_s"));
-    EXPECT_THAT(complaint([&](auto& f) { f.mutable_live()->set_health_mean(nan); }), testing::HasSubstr("health_mean"));
-    EXPECT_THAT(complaint([](auto& f) { (*f.mutable_body())[0] = '\x09'; }), testing::HasSubstr("rising"));
+    EXPECT_EQ(complaint([](auto&, auto&) {}), "");
+    EXPECT_EQ(complaint([](auto& f, auto&) { f.set_island(1); }), "a snapshot's island is 1, not one of 1");
+    EXPECT_EQ(complaint([](auto& f, auto&) { f.set_food_count(3); }),
+              "a snapshot's plain.food.id is 2 numbers long, not 3 as the count says");
+    EXPECT_EQ(complaint([](auto& f, auto&) { f.set_organism_count(std::numeric_limits<std::uint32_t>::max()); }),
+              "a snapshot's plain.organisms.id is 2 numbers long, not 4294967295 as the count says");
+    EXPECT_EQ(complaint([](auto&, auto& p) { p.mutable_organisms()->add_health(1); }),
+              "a snapshot's plain.organisms.health is 3 numbers long, not 2 as the count says");
+    EXPECT_EQ(complaint([](auto&, auto& p) { p.clear_obstacles(); }),
+              "a snapshot's plain.obstacles.x_px is 0 numbers long, not 1 as the count says");
+    EXPECT_EQ(complaint([](auto&, auto& p) { p.mutable_organisms()->set_id(0, 9); }),
+              "a snapshot's plain.organisms.id is out of order, not rising");
+    EXPECT_EQ(complaint([&](auto&, auto& p) { p.mutable_poison()->set_y_px(0, static_cast<float>(infinity)); }),
+              "a snapshot's plain.poison.y_px is inf, not a finite number");
+    EXPECT_THAT(complaint([](auto& f, auto&) { f.set_codec(evod::v1::CODEC_UNSPECIFIED); }), HasSubstr("codec"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.set_width_px(nan); }), HasSubstr("width_px"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.set_height_px(infinity); }), HasSubstr("height_px"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.set_height_px(0); }), HasSubstr("height_px"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.set_item_radius_px(-1); }), HasSubstr("item_radius_px"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.set_ticks_per_s(nan); }), HasSubstr("ticks_per_s"));
+    EXPECT_THAT(complaint([&](auto& f, auto&) { f.mutable_live()->set_health_mean(nan); }), HasSubstr("health_mean"));
 }
 
 } // namespace

@@ -13,13 +13,13 @@ constexpr std::int32_t px = 4096; // fixed-point units
 constexpr std::int32_t least = std::numeric_limits<std::int32_t>::min(),
                        most = std::numeric_limits<std::int32_t>::max();
 
-TEST(Steps, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
+TEST(Steps, WideIslandsNeedFourBytePositions) {
     EXPECT_EQ(position_bytes_of(4095.9375, 720), 2U);
     EXPECT_EQ(position_bytes_of(4096, 720), 4U);
     EXPECT_EQ(position_bytes_of(720, 4096), 4U);
 }
 
-TEST(Steps, APositionGoesToTheNearestAndAHalfUp) {
+TEST(Steps, PositionsAreRoundedToTheNearestStep) {
     const PositionInSteps in_steps{12, 2};
     EXPECT_EQ(in_steps(0), 0U);
     EXPECT_EQ(in_steps(px), 16U);
@@ -28,7 +28,7 @@ TEST(Steps, APositionGoesToTheNearestAndAHalfUp) {
     EXPECT_EQ(in_steps(3 * px / 32 - 1), 1U);
 }
 
-TEST(Steps, WhatIsBeyondTheRangeStandsAtItsEnd) {
+TEST(Steps, NumbersOutOfRangeAreClamped) {
     for (const unsigned bits : {4U, 12U, 30U}) {
         EXPECT_EQ((PositionInSteps{bits, 2}(least)), 0U);
         EXPECT_EQ((PositionInSteps{bits, 4}(least)), 0U);
@@ -46,7 +46,7 @@ TEST(Steps, WhatIsBeyondTheRangeStandsAtItsEnd) {
     EXPECT_EQ(size_in_steps(8.0625F), 129U);
 }
 
-RC_GTEST_PROP(Steps, PositionsMoveByAtMostHalfAStep, (bool wide)) {
+RC_GTEST_PROP(Steps, RoundingMovesAPositionByHalfAStepAtMost, (bool wide)) {
     const std::int32_t width_px = wide ? 100'000 : 4000;
     const PositionInSteps in_steps{12, position_bytes_of(width_px, 1)};
     const auto position = *rc::gen::inRange<std::int32_t>(0, width_px * px);

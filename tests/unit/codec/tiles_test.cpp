@@ -27,7 +27,7 @@ evod::v1::Region region(double left_px, double top_px, double width_px, double h
     return region;
 }
 
-TEST(TileLayout, HasTheSmallestTilesOfWhichThereAreNotTooMany) {
+TEST(TileLayout, HasTheSmallestAllowedTiles) {
     const TileLayout small = tile_layout(800, 600);
     EXPECT_EQ((std::array{small.tile_px, small.columns, small.rows}), (std::array{512U, 2U, 2U}));
     EXPECT_EQ(tile_layout(512, 512).count(), 1U);
@@ -39,7 +39,7 @@ TEST(TileLayout, HasTheSmallestTilesOfWhichThereAreNotTooMany) {
     }
 }
 
-TEST(TileRange, IsOfTheTilesThatARegionTouches) {
+TEST(TileRange, ContainsTheTilesThatARegionTouches) {
     const TileLayout layout = tile_layout(2000, 1100); // 4 columns, 3 rows
     const auto tiles = [&](const evod::v1::Region& of) {
         std::vector<std::uint32_t> found;
@@ -64,7 +64,7 @@ TEST(TileRange, IsOfTheTilesThatARegionTouches) {
     EXPECT_EQ(tiles_of(layout), tiles_of(region(0, 0, 2000, 1100), layout));
 }
 
-/// A snapshot as tiles tell it: its boxes have ids.
+/// A snapshot as tiles contain it: its boxes have ids.
 QuantisedSnapshot with_ids(QuantisedSnapshot snapshot) {
     snapshot.of_tile = true;
     for (Entities* boxes : {&snapshot.crates, &snapshot.obstacles}) {
@@ -96,11 +96,11 @@ LivingIsland random_island(std::uint64_t seed) {
     LivingIsland island;
     island.side_px = std::array{400.0, 1024.0, 4000.0, 60'000.0}[below(random, 4)];
     island.populate(random);
-    island.live(random, 1); // some stand on the walls
+    island.live(random, 1); // some are on the walls
     return island;
 }
 
-RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheScene, (std::uint64_t seed)) {
+RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheSnapshot, (std::uint64_t seed)) {
     const LivingIsland island = random_island(seed);
     const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
     SnapshotTiles tiled{snapshot, tile_layout(island.side_px, island.side_px)};
@@ -129,7 +129,7 @@ RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheScene, (std::uint64_t seed)) 
     RC_ASSERT(*together == with_ids(*snapshot));
 }
 
-RC_GTEST_PROP(SnapshotTiles, DotsAndDensitiesAreWhatCountingFinds, (std::uint64_t seed)) {
+RC_GTEST_PROP(SnapshotTiles, DotsAndDensitiesMatchACount, (std::uint64_t seed)) {
     const LivingIsland island = random_island(seed);
     const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
     SnapshotTiles tiled{snapshot, tile_layout(island.side_px, island.side_px)};
@@ -153,7 +153,7 @@ RC_GTEST_PROP(SnapshotTiles, DotsAndDensitiesAreWhatCountingFinds, (std::uint64_
                 RC_ASSERT(std::abs(places[p]->x_px[i] - entities.x[i] / 16.0) <= half_dot_px);
                 RC_ASSERT(std::abs(places[p]->y_px[i] - entities.y[i] / 16.0) <= half_dot_px);
                 const double cell_px = double{1} * layout.tile_px / density->cells_per_side;
-                const auto cell = [&](double px) { // what stands on a wall is in the last cell before it
+                const auto cell = [&](double px) { // an entity on a wall is in the last cell before it
                     return std::min(static_cast<std::uint32_t>(px / cell_px), density->cells_per_side - 1);
                 };
                 ++counted[cell(entities.y[i] / 16.0 - top_px) * density->cells_per_side +
@@ -166,7 +166,7 @@ RC_GTEST_PROP(SnapshotTiles, DotsAndDensitiesAreWhatCountingFinds, (std::uint64_
     }
 }
 
-TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
+TEST(Density, TakesHalfTheBytesOfManyDots) {
     Random random{1};
     LivingIsland island;
     while (island.organisms.size() < 4000) {
@@ -182,9 +182,9 @@ TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
     EXPECT_LT(densities, dots / 2);
 }
 
-// ---- what comes over the line ----------------------------------------------------------------------------------
+// ---- decoding --------------------------------------------------------------------------------------------------
 
-/// A frame of all tiles, each at the detail that its index gives.
+/// A frame of all tiles; the detail of each depends on its index.
 evod::v1::SnapshotFrame frame_of(const LivingIsland& island, std::uint64_t sequence) {
     SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.snapshot()),
                         tile_layout(island.side_px, island.side_px)};
@@ -218,7 +218,7 @@ evod::v1::SnapshotFrame some_frame() {
     return frame_of(island, 7);
 }
 
-/// The checksum of what was changed is right again.
+/// Corrects the checksum after a change.
 void mend(const evod::v1::SnapshotFrame& frame, evod::v1::SnapshotTile& tile) {
     tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
 }
@@ -226,29 +226,29 @@ void mend(const evod::v1::SnapshotFrame& frame, evod::v1::SnapshotTile& tile) {
 TEST(TiledFrame, IsDecodedTileByTile) {
     const auto frame = some_frame();
     SnapshotDecoder decoder;
-    const auto picture = decoder.decode(frame);
-    ASSERT_TRUE(picture) << picture.error().what;
+    const auto decoded = decoder.decode(frame);
+    ASSERT_TRUE(decoded) << decoded.error().what;
     EXPECT_FALSE(decoder.needs_keyframe());
-    ASSERT_EQ(picture->tiles.size(), 64U);
-    EXPECT_EQ(picture->tiles[9].left_px, 512);
-    EXPECT_EQ(picture->tiles[9].top_px, 512);
-    EXPECT_EQ(picture->about.tiles_size(), 0);
-    std::size_t shown = picture->organisms.id.size();
-    for (const DecodedTile& tile : picture->tiles) {
+    ASSERT_EQ(decoded->tiles.size(), 64U);
+    EXPECT_EQ(decoded->tiles[9].left_px, 512);
+    EXPECT_EQ(decoded->tiles[9].top_px, 512);
+    EXPECT_EQ(decoded->about.tiles_size(), 0);
+    std::size_t shown = decoded->organisms.id.size();
+    for (const DecodedTile& tile : decoded->tiles) {
         shown += tile.dots.organisms.x_px.size();
         shown += std::accumulate(tile.density.organisms.begin(), tile.density.organisms.end(), std::size_t{0});
     }
-    EXPECT_GT(shown, picture->organisms.id.size());
+    EXPECT_GT(shown, decoded->organisms.id.size());
     EXPECT_EQ(shown, frame.organism_count());
 }
 
-TEST(TiledFrame, OfNoTilesIsAPictureToo) {
+TEST(TiledFrame, MayHaveNoTiles) {
     auto frame = some_frame();
     frame.clear_tiles();
-    const auto picture = SnapshotDecoder{}.decode(frame);
-    ASSERT_TRUE(picture);
-    EXPECT_TRUE(picture->tiles.empty());
-    EXPECT_TRUE(picture->organisms.id.empty());
+    const auto decoded = SnapshotDecoder{}.decode(frame);
+    ASSERT_TRUE(decoded);
+    EXPECT_TRUE(decoded->tiles.empty());
+    EXPECT_TRUE(decoded->organisms.id.empty());
 }
 
 TEST(TiledFrameDamage, EveryOtherByteOfATileIsRefused) {
@@ -262,13 +262,13 @@ TEST(TiledFrameDamage, EveryOtherByteOfATileIsRefused) {
             body[i] = static_cast<char>(body[i] ^ 0x10);
             SnapshotDecoder decoder;
             ASSERT_TRUE(decoder.decode(frame));
-            const auto picture = decoder.decode(damaged);
-            ASSERT_FALSE(picture) << i;
-            EXPECT_THAT(picture.error().what, HasSubstr("checksum"));
-            EXPECT_TRUE(decoder.needs_keyframe()) << "the whole picture is refused";
+            const auto decoded = decoder.decode(damaged);
+            ASSERT_FALSE(decoded) << i;
+            EXPECT_THAT(decoded.error().what, HasSubstr("checksum"));
+            EXPECT_TRUE(decoder.needs_keyframe()) << "the whole decoded is refused";
         }
     }
-    // The checksum is over where a tile is and how it is told as well.
+    // The checksum covers index and detail of the tile too.
     for (const auto change : std::vector<void (*)(evod::v1::SnapshotFrame&)>{
              [](auto& of) { of.mutable_tiles(63)->set_detail(evod::v1::DETAIL_DENSITY); },
              [](auto& of) { of.set_tile_px(256); },
@@ -282,35 +282,35 @@ TEST(TiledFrameDamage, EveryOtherByteOfATileIsRefused) {
     }
 }
 
-TEST(TiledFrameDamage, IsRefusedWhateverItsChecksum) {
+TEST(TiledFrameDamage, IsRefusedDespiteARightChecksum) {
     const auto frame = some_frame();
     const auto refused = [&](int index, const char* why, const auto& change) {
         auto damaged = frame;
         change(damaged, *damaged.mutable_tiles(index));
         mend(damaged, *damaged.mutable_tiles(index));
-        const auto picture = SnapshotDecoder{}.decode(damaged);
-        ASSERT_FALSE(picture) << why;
-        EXPECT_THAT(picture.error().what, HasSubstr(why));
+        const auto decoded = SnapshotDecoder{}.decode(damaged);
+        ASSERT_FALSE(decoded) << why;
+        EXPECT_THAT(decoded.error().what, HasSubstr(why));
     };
     using Frame = evod::v1::SnapshotFrame;
     using Tile = evod::v1::SnapshotTile;
-    refused(63, "a tile is 64, not one of 64", [](Frame&, Tile& tile) { tile.set_tile(64); });
-    refused(63, "do not rise", [](Frame&, Tile& tile) { tile.set_tile(62); });
+    refused(63, "a tile's index is 64, not one of 64", [](Frame&, Tile& tile) { tile.set_tile(64); });
+    refused(63, "out of order", [](Frame&, Tile& tile) { tile.set_tile(62); });
     refused(3, "sequence", [](Frame&, Tile& tile) { tile.set_sequence(6); });
     refused(3, "keyframe", [](Frame&, Tile& tile) { tile.set_base_sequence(6); });
     refused(3, "detail is 9", [](Frame&, Tile& tile) { tile.set_detail(static_cast<evod::v1::Detail>(9)); });
     refused(3, "compression is 9",
             [](Frame&, Tile& tile) { tile.set_compression(static_cast<evod::v1::Compression>(9)); });
-    refused(3, "lets more come", [](Frame&, Tile& tile) {
+    refused(3, "adds more entities", [](Frame&, Tile& tile) {
         tile.set_organism_count(0xffffffff);
         tile.set_body(std::string("\0\0\2\xff\xff\xff\xff\0\0\0\0", 11));
     });
     refused(1, "as its counts say", [](Frame&, Tile& tile) { tile.set_organism_count(0xffffffff); });
     refused(1, "as its counts say", [](Frame&, Tile& tile) { tile.mutable_body()->push_back('x'); });
-    refused(2, "cells a side", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 3; });
-    refused(2, "cells a side", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 32; });
-    refused(2, "mean nothing", [](Frame&, Tile& tile) { tile.mutable_body()->push_back(0); });
-    refused(2, "counts others", [](Frame&, Tile& tile) { tile.set_food_count(tile.food_count() + 1); });
+    refused(2, "cells per row", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 3; });
+    refused(2, "cells per row", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 32; });
+    refused(2, "surplus bytes", [](Frame&, Tile& tile) { tile.mutable_body()->push_back(0); });
+    refused(2, "differ from the counts", [](Frame&, Tile& tile) { tile.set_food_count(tile.food_count() + 1); });
     refused(0, "power of two", [](Frame& of, Tile&) { of.set_tile_px(500); });
     refused(0, "too small", [](Frame& of, Tile&) { of.set_width_px(1e300); });
     refused(0, "width_px", [](Frame& of, Tile&) { of.set_width_px(std::nan("")); });
@@ -322,8 +322,8 @@ TEST(TiledFrameDamage, IsRefusedWhateverItsChecksum) {
     });
 }
 
-TEST(TiledFrameDamage, ManyTilesHoldNoMoreThanOneFrameMay) {
-    // Each is a little over a quarter of what a frame may hold, of zeros that compress to almost nothing.
+TEST(TiledFrameDamage, AllTilesShareTheLimitOfAFrame) {
+    // Each is slightly more than a quarter of the limit of a frame, of zeros that compress well.
     auto frame = some_frame();
     Compressor compressor;
     const std::string zeros = compressor.compress(std::string(70 << 20, '\0'));
@@ -338,9 +338,9 @@ TEST(TiledFrameDamage, ManyTilesHoldNoMoreThanOneFrameMay) {
         tile.set_body(zeros);
         tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, std::string(70 << 20, '\0')));
     }
-    const auto picture = SnapshotDecoder{}.decode(frame);
-    ASSERT_FALSE(picture);
-    EXPECT_THAT(picture.error().what, HasSubstr("holds 73400320 bytes"));
+    const auto decoded = SnapshotDecoder{}.decode(frame);
+    ASSERT_FALSE(decoded);
+    EXPECT_THAT(decoded.error().what, HasSubstr("has 73400320 bytes of content"));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to what its line says, to the last number.
+// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes exactly to the content of its line.
 
 #include "proto/codec/compression.h"
 #include "proto/codec/framing.h"
@@ -81,7 +81,7 @@ std::vector<Vector> read_vectors() {
         vector.decoded = std::move(line);
         const auto frame = reader.next();
         if (!frame || !*frame || (*frame)->channel != Channel::Stream) {
-            ADD_FAILURE() << vector.name << ": there is no such frame";
+            ADD_FAILURE() << vector.name << ": no such frame";
             break;
         }
         auto snapshot = parse_body<evod::v1::SnapshotFrame>((*frame)->body);
@@ -100,14 +100,13 @@ const std::vector<Vector>& vectors() {
     return all;
 }
 
-// ---- what was decoded, as a line tells it
-// ----------------------------------------------------------------------------
+// ---- decoded snapshots as JSON ----------------------------------------------------------------------------------
 
 json::array numbers(const std::vector<std::uint32_t>& column) {
     return json::array(column.begin(), column.end());
 }
 
-/// Whole numbers, of `unit` each, beyond `from`.
+/// Distances from `from` in whole units.
 json::array whole(const std::vector<float>& column, float unit, float from = 0) {
     json::array whole;
     for (const float value : column) {
@@ -122,7 +121,7 @@ json::array steps(const std::vector<float>& column) {
     return whole(column, 1 / steps_per_px);
 }
 
-/// A kind without entities is left out.
+/// Omits a kind without entities.
 void add(json::object& to, std::string_view kind,
          std::initializer_list<std::pair<std::string_view, json::array>> columns) {
     if (columns.begin()->second.empty()) {
@@ -145,24 +144,24 @@ void add_boxes(json::object& to, std::string_view kind, const DecodedBoxes& boxe
     }
 }
 
-json::object entities_of(const DecodedSnapshot& picture, bool with_ids) {
+json::object entities_of(const DecodedSnapshot& snapshot, bool with_ids) {
     json::object entities;
     add(entities, "organisms",
-        {{"id", numbers(picture.organisms.id)},
-         {"x", steps(picture.organisms.x_px)},
-         {"y", steps(picture.organisms.y_px)},
-         {"radius", steps(picture.organisms.radius_px)},
-         {"health", steps(picture.organisms.health)}});
+        {{"id", numbers(snapshot.organisms.id)},
+         {"x", steps(snapshot.organisms.x_px)},
+         {"y", steps(snapshot.organisms.y_px)},
+         {"radius", steps(snapshot.organisms.radius_px)},
+         {"health", steps(snapshot.organisms.health)}});
     add(entities, "food",
-        {{"id", numbers(picture.food.id)}, {"x", steps(picture.food.x_px)}, {"y", steps(picture.food.y_px)}});
+        {{"id", numbers(snapshot.food.id)}, {"x", steps(snapshot.food.x_px)}, {"y", steps(snapshot.food.y_px)}});
     add(entities, "poison",
-        {{"id", numbers(picture.poison.id)}, {"x", steps(picture.poison.x_px)}, {"y", steps(picture.poison.y_px)}});
-    add_boxes(entities, "crates", picture.crates, with_ids);
-    add_boxes(entities, "obstacles", picture.obstacles, with_ids);
+        {{"id", numbers(snapshot.poison.id)}, {"x", steps(snapshot.poison.x_px)}, {"y", steps(snapshot.poison.y_px)}});
+    add_boxes(entities, "crates", snapshot.crates, with_ids);
+    add_boxes(entities, "obstacles", snapshot.obstacles, with_ids);
     return entities;
 }
 
-json::object told_about(const evod::v1::SnapshotFrame& about) {
+json::object fields_of(const evod::v1::SnapshotFrame& about) {
     std::string run_id;
     for (const char byte : about.run_id()) {
         constexpr std::string_view digits = "0123456789abcdef";
@@ -182,8 +181,8 @@ json::object told_about(const evod::v1::SnapshotFrame& about) {
 }
 
 /// A tile at DETAIL_FULL without its entities: the decoder returns those of all tiles together.
-json::object told_of_tile(const DecodedTile& tile, std::uint32_t tile_px) {
-    json::object told{{"tile", tile.tile}, {"detail", evod::v1::Detail_Name(tile.detail)}};
+json::object json_of_tile(const DecodedTile& tile, std::uint32_t tile_px) {
+    json::object result{{"tile", tile.tile}, {"detail", evod::v1::Detail_Name(tile.detail)}};
     const float unit = static_cast<float>(tile_px) / 256;
     const auto places = [&](const DecodedDots::Places& of) { // the decoder returns the middle of each
         return std::pair{whole(of.x_px, unit, static_cast<float>(tile.left_px) + unit / 2),
@@ -194,27 +193,26 @@ json::object told_of_tile(const DecodedTile& tile, std::uint32_t tile_px) {
                                   &tile.dots.obstacles};
         for (std::size_t k = 0; k < kinds.size(); ++k) {
             const auto place = places(*of_kinds[k]);
-            add(told, kinds[k], {{"x", place.first}, {"y", place.second}});
+            add(result, kinds[k], {{"x", place.first}, {"y", place.second}});
         }
     } else if (tile.detail == evod::v1::DETAIL_DENSITY) {
-        told["cells"] = tile.density.cells_per_side;
+        result["cells"] = tile.density.cells_per_side;
         const std::array of_kinds{&tile.density.organisms, &tile.density.food, &tile.density.poison};
         for (std::size_t k = 0; k < of_kinds.size(); ++k) {
-            json::array& rows = told[kinds[k]].emplace_array();
+            json::array& rows = result[kinds[k]].emplace_array();
             const auto side = static_cast<std::ptrdiff_t>(tile.density.cells_per_side);
             for (auto row = of_kinds[k]->begin(); row != of_kinds[k]->end(); row += side) {
                 rows.emplace_back(json::array(row, row + side));
             }
         }
     }
-    return told;
+    return result;
 }
 
-// ---- what a line says, as the decoder puts it
-// ------------------------------------------------------------------------
+// ---- lines as decoded snapshots ---------------------------------------------------------------------------------
 
-/// Takes the entities out of tiles of DETAIL_FULL, and returns those of all together, by rising id.
-json::object taken_together(json::array& tiles) {
+/// Removes the entities from tiles of DETAIL_FULL and returns all of them, ids rising.
+json::object merged_entities(json::array& tiles) {
     std::map<std::string, std::map<std::uint64_t, std::map<std::string, json::value>>> rows; // by kind and id
     for (json::value& value : tiles) {
         json::object& tile = value.as_object();
@@ -252,10 +250,9 @@ json::object taken_together(json::array& tiles) {
     return together;
 }
 
-// ---- tests
-// -----------------------------------------------------------------------------------------------------------
+// ---- tests ------------------------------------------------------------------------------------------------------
 
-TEST(Vectors, FramesAreTheBytesThatTheLinesSay) {
+TEST(Vectors, FramesMatchTheirLinesByteForByte) {
     ASSERT_FALSE(vectors().empty());
     for (const Vector& vector : vectors()) {
         EXPECT_EQ(vector.frame.size(), vector.frame_bytes) << vector.name;
@@ -264,30 +261,30 @@ TEST(Vectors, FramesAreTheBytesThatTheLinesSay) {
     }
 }
 
-TEST(Vectors, DecodeToWhatTheLinesSay) {
+TEST(Vectors, DecodeToTheirLines) {
     std::map<std::pair<std::string, std::uint32_t>, SnapshotDecoder> decoders; // by case and island
     for (const Vector& vector : vectors()) {
         SCOPED_TRACE(vector.name);
-        const auto picture = decoders[{vector.case_name, vector.snapshot.island()}].decode(vector.snapshot);
+        const auto snapshot = decoders[{vector.case_name, vector.snapshot.island()}].decode(vector.snapshot);
         json::object expected = vector.decoded;
         if (expected.contains("refused")) {
             EXPECT_EQ(expected, (json::object{{"refused", true}}));
-            EXPECT_FALSE(picture);
+            EXPECT_FALSE(snapshot);
             continue;
         }
-        ASSERT_TRUE(picture) << picture.error().what;
-        json::object shown = told_about(picture->about);
+        ASSERT_TRUE(snapshot) << snapshot.error().what;
+        json::object shown = fields_of(snapshot->about);
         const bool in_tiles = expected.contains("tiles");
-        for (auto& part : entities_of(*picture, in_tiles)) {
+        for (auto& part : entities_of(*snapshot, in_tiles)) {
             shown[part.key()] = part.value();
         }
         if (in_tiles) {
-            shown["tile_px"] = picture->about.tile_px();
+            shown["tile_px"] = snapshot->about.tile_px();
             json::array& tiles = shown["tiles"].emplace_array();
-            for (const DecodedTile& tile : picture->tiles) {
-                tiles.emplace_back(told_of_tile(tile, picture->about.tile_px()));
+            for (const DecodedTile& tile : snapshot->tiles) {
+                tiles.emplace_back(json_of_tile(tile, snapshot->about.tile_px()));
             }
-            for (auto& part : taken_together(expected.at("tiles").as_array())) {
+            for (auto& part : merged_entities(expected.at("tiles").as_array())) {
                 expected[part.key()] = part.value();
             }
         }
@@ -295,7 +292,7 @@ TEST(Vectors, DecodeToWhatTheLinesSay) {
     }
 }
 
-/// Whether every value of an enumeration but UNSPECIFIED is among those that were seen.
+/// Expects every value of an enumeration except UNSPECIFIED.
 void expect_all(const google::protobuf::EnumDescriptor& of, const std::set<int>& seen) {
     for (int i = 0; i < of.value_count(); ++i) {
         EXPECT_TRUE(of.value(i)->number() == 0 || seen.contains(of.value(i)->number()))

@@ -396,7 +396,7 @@ TEST(Snapshots, ADamagedOneIsCountedAndDropped) {
     v1::SnapshotFrame frame;
     frame.set_width_px(100);
     frame.set_height_px(100);
-    codec::encode({}, frame);
+    codec::encode_plain({}, frame);
     frame.set_island_count(1);
     frame.set_subscription_id(1);
     frame.set_organism_count(1'000'000'000);
@@ -405,7 +405,7 @@ TEST(Snapshots, ADamagedOneIsCountedAndDropped) {
     ASSERT_TRUE(connection.wait_event(hang));
     EXPECT_FALSE(connection.take_snapshot(handle));
     EXPECT_EQ(connection.status().damaged_snapshot_count, 1U);
-    EXPECT_THAT(connection.status().last_damage, HasSubstr("body"));
+    EXPECT_THAT(connection.status().last_damage, HasSubstr("plain.organisms"));
     EXPECT_EQ(connection.status().state, State::Connected);
 }
 
@@ -464,7 +464,7 @@ TEST(Snapshots, UseTheMostCompactCodecByDefault) {
     Connection connection{server.options()};
     connection.subscribe(v1::SubscribeSnapshots{});
     v1::SubscribeSnapshots plain;
-    plain.set_codec(v1::CODEC_COLUMNS);
+    plain.set_codec(v1::CODEC_PLAIN);
     connection.subscribe(plain);
     FakeSession session = server.accept_and_welcome();
     const v1::SubscribeSnapshots first = session.read_request().subscribe_snapshots();
@@ -472,7 +472,7 @@ TEST(Snapshots, UseTheMostCompactCodecByDefault) {
     EXPECT_EQ(first.compression(), v1::COMPRESSION_ZSTD);
     EXPECT_EQ(first.unacknowledged_max(), Connection::unacknowledged_snapshots_max);
     const v1::SubscribeSnapshots second = session.read_request().subscribe_snapshots();
-    EXPECT_EQ(second.codec(), v1::CODEC_COLUMNS);
+    EXPECT_EQ(second.codec(), v1::CODEC_PLAIN);
     EXPECT_FALSE(second.has_unacknowledged_max());
 }
 

@@ -82,7 +82,7 @@ class FakeSession {
         v1::SnapshotFrame frame;
         frame.set_width_px(100);
         frame.set_height_px(100);
-        codec::encode({}, frame);
+        codec::encode_plain({}, frame);
         frame.set_subscription_id(subscription_id);
         frame.set_island(island);
         frame.set_island_count(4);

@@ -17,9 +17,9 @@ struct Organism {
     float radius_px, health;
 };
 
-constexpr std::int32_t step = physics::units_per_px / 16; // that pictures tell
+constexpr std::int32_t step = physics::units_per_px / 16; // of a snapshot
 
-/// Organisms in that order, of `born` that were born.
+/// Organisms in this order in memory; `born` ids exist.
 runtime::OrganismsSnapshot lying(std::uint32_t born, std::initializer_list<Organism> organisms) {
     runtime::OrganismsSnapshot to;
     to.place_of.assign(born, simulation::Island::no_body);
@@ -36,7 +36,7 @@ runtime::OrganismsSnapshot lying(std::uint32_t born, std::initializer_list<Organ
     return to;
 }
 
-TEST(Quantise, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
+TEST(Quantise, LivingOrganismsAreSortedById) {
     constexpr std::int32_t away = physics::elsewhere;
     runtime::IslandSnapshot island;
     island.organisms = lying(11, {{7, 70 * step, 71 * step, 7.5F, 77.F},
@@ -54,7 +54,7 @@ TEST(Quantise, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
     EXPECT_THAT(quantise(island).organisms.id, IsEmpty());
 }
 
-TEST(Quantise, ItemsThatAreAwayAreLeftOut) {
+TEST(Quantise, AbsentItemsAreOmitted) {
     runtime::IslandSnapshot island;
     island.food.all = {{1 * step, 2 * step, 0}, {3, 4, 9}, {5 * step, 6 * step, 0}, {7, 8, 1}};
     island.food.present_count = 2;
@@ -67,7 +67,7 @@ TEST(Quantise, ItemsThatAreAwayAreLeftOut) {
     EXPECT_THAT(snapshot.poison.id, IsEmpty());
 }
 
-TEST(Quantise, CratesAndObstaclesAreToldApart) {
+TEST(Quantise, CratesAndObstaclesAreSeparated) {
     runtime::IslandSnapshot island;
     island.boxes = {.x = {1 * step, 2 * step, 3 * step},
                     .y = {4 * step, 5 * step, 6 * step},
@@ -81,7 +81,7 @@ TEST(Quantise, CratesAndObstaclesAreToldApart) {
     EXPECT_THAT(snapshot.obstacles.height, ElementsAre(96));
 }
 
-TEST(Quantise, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
+TEST(Quantise, WideIslandsNeedFourBytePositions) {
     runtime::IslandSnapshot island;
     island.width_px = 4095.9375;
     EXPECT_EQ(quantise(island).position_bytes, 2U);

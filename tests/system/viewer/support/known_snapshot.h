@@ -31,7 +31,7 @@ inline evod::v1::SnapshotFrame known_snapshot() {
     evod::v1::SnapshotFrame frame;
     frame.set_width_px(800);
     frame.set_height_px(600);
-    codec::encode(quantised, frame);
+    codec::encode_plain(quantised, frame);
     frame.set_world("default");
     frame.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
     frame.set_island_count(1);

@@ -105,12 +105,12 @@ struct IslandViewTest : testing::Test {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(1000);
         frame.set_height_px(1000);
-        codec::encode({.organisms = {.id = {0, 1, 2},
-                                     .x = {1600, 3200, 4800},
-                                     .y = {1600, 3200, 4800},
-                                     .width = {160, 160, 160},
-                                     .height = {800, 960, 1120}}},
-                      frame);
+        codec::encode_plain({.organisms = {.id = {0, 1, 2},
+                                           .x = {1600, 3200, 4800},
+                                           .y = {1600, 3200, 4800},
+                                           .width = {160, 160, 160},
+                                           .height = {800, 960, 1120}}},
+                            frame);
         frame.set_world(world_name);
         frame.set_run_id(run_id);
         frame.set_subscription_id(subscription_id);

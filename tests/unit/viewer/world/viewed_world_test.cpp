@@ -45,7 +45,7 @@ struct ViewedWorldTest : testing::Test {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(100);
         frame.set_height_px(100);
-        codec::encode({}, frame);
+        codec::encode_plain({}, frame);
         frame.set_world(world);
         frame.set_run_id("\xaa");
         frame.set_subscription_id(subscription_id);

@@ -1,5 +1,5 @@
-// What every decoded picture must be: columns of one length in each struct, finite numbers, the counts that its frame
-// tells, ids that rise.
+// Valid snapshots: what holds of every decoded snapshot. The columns of a struct have one length, numbers are finite, counts
+// equal those of the frame, and ids rise.
 #pragma once
 
 #include "proto/codec/snapshot_codec.h"
@@ -27,7 +27,7 @@ inline void require_rising(const std::vector<std::uint32_t>& ids) {
     require(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end());
 }
 
-inline void require_sound_tile(const codec::DecodedTile& tile) {
+inline void require_valid_tile(const codec::DecodedTile& tile) {
     const codec::DecodedDots& dots = tile.dots;
     for (const auto* places : {&dots.organisms, &dots.food, &dots.poison, &dots.crates, &dots.obstacles}) {
         require_finite(places->x_px, places->x_px.size());
@@ -39,37 +39,37 @@ inline void require_sound_tile(const codec::DecodedTile& tile) {
     }
 }
 
-inline void require_sound(const codec::DecodedSnapshot& picture) {
-    const auto& organisms = picture.organisms;
+inline void require_valid(const codec::DecodedSnapshot& snapshot) {
+    const auto& organisms = snapshot.organisms;
     require_rising(organisms.id);
     for (const auto* column : {&organisms.x_px, &organisms.y_px, &organisms.radius_px, &organisms.health}) {
         require_finite(*column, organisms.id.size());
     }
-    for (const auto* items : {&picture.food, &picture.poison}) {
+    for (const auto* items : {&snapshot.food, &snapshot.poison}) {
         require_rising(items->id);
         require_finite(items->x_px, items->id.size());
         require_finite(items->y_px, items->id.size());
     }
-    for (const auto* boxes : {&picture.crates, &picture.obstacles}) {
+    for (const auto* boxes : {&snapshot.crates, &snapshot.obstacles}) {
         require_rising(boxes->id);
         for (const auto* column : {&boxes->x_px, &boxes->y_px, &boxes->half_width_px, &boxes->half_height_px}) {
             require_finite(*column, boxes->id.size());
         }
     }
-    require(std::ranges::adjacent_find(picture.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
-            picture.tiles.end());
-    for (const auto& tile : picture.tiles) {
-        require_sound_tile(tile);
+    require(std::ranges::adjacent_find(snapshot.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
+            snapshot.tiles.end());
+    for (const auto& tile : snapshot.tiles) {
+        require_valid_tile(tile);
     }
-    if (picture.about.tile_px() > 0 && picture.about.codec() == v1::CODEC_DELTA) {
-        return; // its counts are of the whole island
+    if (snapshot.about.tile_px() > 0 && snapshot.about.codec() == v1::CODEC_DELTA) {
+        return; // its counts are those of the whole island
     }
-    require(picture.tiles.empty());
-    require(organisms.id.size() == picture.about.organism_count());
-    require(picture.food.id.size() == picture.about.food_count());
-    require(picture.poison.id.size() == picture.about.poison_count());
-    require(picture.crates.id.size() == picture.about.crate_count());
-    require(picture.obstacles.id.size() == picture.about.obstacle_count());
+    require(snapshot.tiles.empty());
+    require(organisms.id.size() == snapshot.about.organism_count());
+    require(snapshot.food.id.size() == snapshot.about.food_count());
+    require(snapshot.poison.id.size() == snapshot.about.poison_count());
+    require(snapshot.crates.id.size() == snapshot.about.crate_count());
+    require(snapshot.obstacles.id.size() == snapshot.about.obstacle_count());
 }
 
 } // namespace evod::fuzz

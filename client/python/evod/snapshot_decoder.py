@@ -1,4 +1,4 @@
-"""From what is sent of pictures to their numbers, without a loop over the entities (docs/PROTOCOL.md, Pictures)."""
+"""Decodes snapshots with numpy, without a loop over the entities (docs/PROTOCOL.md, Snapshots)."""
 from __future__ import annotations
 
 import struct
@@ -9,12 +9,12 @@ from typing import Any, Mapping, Sequence
 import numpy
 
 from evod.errors import DamagedData
-from evod.snapshots import Array, Boxes, Columns, Snapshot, Items, Organisms, Tile
+from evod.snapshots import STEPS_PER_PX, Array, Boxes, Columns, Items, Organisms, Snapshot, Tile
 from evod.v1 import stream_pb2, world_pb2
 
 try:
     import zstandard
-except ImportError:  # pictures are sent as they are, then
+except ImportError:  # then snapshots are requested uncompressed
     zstandard = None  # type: ignore[assignment]
 
 Content = Mapping[str, Columns]  # by kind
@@ -31,22 +31,22 @@ _MOVE = frozenset(("organisms", "crates"))
 _COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
 _LENGTH_PX_MAX = 1e7  # of an island; evod's parameters allow less
 _DENSITY_CELLS = (1, 2, 4, 8, 16)
-can_unpack = zstandard is not None  #: whether compressed pictures can be read
+can_unpack = zstandard is not None  #: whether compressed snapshots can be decoded
 
 
-class FrameDecoder:
-    """The pictures of one island of one subscription, one after another."""
+class SnapshotDecoder:
+    """Decodes the snapshots of one island of one subscription, in the order in which they arrive."""
 
     def __init__(self) -> None:
         self._whole = _Deltas(_HAVE_IDS)
         self._tiles: dict[int, _Deltas] = {}
-        self._same: dict[str, Any] = {}  # what deltas leave out
+        self._same: dict[str, Any] = {}  # the fields that deltas omit
 
     def decode(self, message: stream_pb2.SnapshotFrame) -> Snapshot:
-        """DamagedData: ask for a keyframe, if it is of CODEC_DELTA."""
+        """Raises DamagedData. With CODEC_DELTA the next snapshot to decode is then a keyframe."""
         tiles: tuple[Tile, ...] = ()
         if message.codec != stream_pb2.CODEC_DELTA:
-            content = _columns(message)
+            content = _plain(message)
         elif message.tile_px:
             content, tiles = self._decode_tiles(message)
         else:
@@ -56,7 +56,7 @@ class FrameDecoder:
                 field: getattr(message, field)
                 for field in ("world", "run_id", "island_count", "width_px", "height_px", "item_radius_px")
             }
-        live = world_pb2.LiveStatistics()  # of its own, so that the picture does not hold the whole message
+        live = world_pb2.LiveStatistics()  # a copy, so that the snapshot does not keep the whole message in memory
         live.CopyFrom(message.live)
         return Snapshot(
             **{**self._same, "run_id": self._same["run_id"].hex()},
@@ -85,29 +85,29 @@ class FrameDecoder:
         side = message.tile_px
         for length in (message.width_px, message.height_px):
             if not 0 < length <= _LENGTH_PX_MAX:
-                raise DamagedData(f"an island is {length} px long")
+                raise DamagedData(f"an island is {length} px long, allowed: above 0, at most {_LENGTH_PX_MAX:g}")
         in_row, in_column = (max(1, -int(-length // side)) for length in (message.width_px, message.height_px))
         full: dict[int, _Deltas] = {}
         contents: list[Content] = []
         tiles: list[Tile] = []
-        for picture in message.tiles:
-            if picture.tile >= in_row * in_column or tiles and picture.tile <= tiles[-1].index:
-                raise DamagedData(f"a tile is {picture.tile}, not a rising one of {in_row * in_column}")
-            left, top = picture.tile % in_row * side, picture.tile // in_row * side
-            checked_before = struct.pack("<III", side, picture.tile, picture.detail)
-            counts = dict(zip(_SIZES, _counts_of(picture)))
+        for tile in message.tiles:
+            if tile.tile >= in_row * in_column or tiles and tile.tile <= tiles[-1].index:
+                raise DamagedData(f"a tile's index is {tile.tile}, allowed: rising, below {in_row * in_column}")
+            left, top = tile.tile % in_row * side, tile.tile // in_row * side
+            checked_before = struct.pack("<III", side, tile.tile, tile.detail)
+            counts = dict(zip(_SIZES, _counts_of(tile)))
             dots = density = None
-            if picture.detail == stream_pb2.DETAIL_FULL:
-                decoder = full[picture.tile] = before.get(picture.tile) or _Deltas(frozenset(_SIZES))
-                contents.append(decoder.decode(picture, message.position_bytes, checked_before))
-            elif picture.detail == stream_pb2.DETAIL_DOTS:
-                body = _body_of(picture, message.position_bytes, checked_before, 2 * sum(counts.values()))
+            if tile.detail == stream_pb2.DETAIL_FULL:
+                decoder = full[tile.tile] = before.get(tile.tile) or _Deltas(frozenset(_SIZES))
+                contents.append(decoder.decode(tile, message.position_bytes, checked_before))
+            elif tile.detail == stream_pb2.DETAIL_DOTS:
+                body = _body_of(tile, message.position_bytes, checked_before, 2 * sum(counts.values()))
                 dots = _dots(body, counts, side / 256, left, top)
-            elif picture.detail == stream_pb2.DETAIL_DENSITY:
-                density = _density(_body_of(picture, message.position_bytes, checked_before, 1 << 16))
+            elif tile.detail == stream_pb2.DETAIL_DENSITY:
+                density = _density(_body_of(tile, message.position_bytes, checked_before, 1 << 16))
             else:
-                raise DamagedData(f"a tile's detail is {picture.detail}, not one that is known here")
-            tiles.append(Tile(picture.tile, picture.detail, left, top, side, counts, dots, density))
+                raise DamagedData(f"a tile's detail is {tile.detail}, allowed: 1 to 3")
+            tiles.append(Tile(tile.tile, tile.detail, left, top, side, counts, dots, density))
         self._tiles = full
         return _together(contents), tuple(tiles)
 
@@ -116,7 +116,7 @@ class FrameDecoder:
 
 
 class _Body:
-    """What a body holds, from its beginning to its end."""
+    """Reads a body from its beginning to its end."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.offset = data, 0
@@ -124,7 +124,7 @@ class _Body:
     def take(self, kind: str, count: int) -> Array:
         itemsize = numpy.dtype(kind).itemsize
         if count > (len(self.data) - self.offset) // itemsize:
-            raise DamagedData("a picture's body ends too early")
+            raise DamagedData("a snapshot's body ends too early")
         numbers = numpy.frombuffer(self.data, kind, count, self.offset)
         self.offset += count * itemsize
         return numbers
@@ -134,13 +134,13 @@ class _Body:
 
     def end(self) -> None:
         if self.offset != len(self.data):
-            raise DamagedData("a picture's body is longer than it should be")
+            raise DamagedData("a snapshot's body has surplus bytes at its end")
 
     def count(self, bytes_each: int) -> int:
-        """Of what takes at least so many bytes each: memory is taken for no more than there can be."""
+        """A count of entities that take at least `bytes_each`. The bytes that are left limit it, and so the memory."""
         count = self.number("<u4")
         if count * bytes_each > len(self.data) - self.offset:
-            raise DamagedData("a picture's body ends too early")
+            raise DamagedData("a snapshot's body ends too early")
         return count
 
     def planes(self, count: int, size: int) -> Array:
@@ -162,7 +162,7 @@ class _Body:
         column = self.take(f"<i{width}", count).astype(numpy.int32) if width else numpy.zeros(count, numpy.int32)
         if indices is not None:
             if len(indices) and int(indices.max()) >= count:
-                raise DamagedData("a column has an exception beyond its end")
+                raise DamagedData("a column has an exception after its end")
             column[indices] = values
         return column
 
@@ -174,20 +174,23 @@ class _Body:
         return ids
 
 
-def _counts_of(picture: Any) -> list[int]:
-    return [getattr(picture, field) for field in _COUNTS]
+def _counts_of(message: Any) -> list[int]:
+    return [getattr(message, field) for field in _COUNTS]
 
 
-def _body_of(picture: Any, position_bytes: int, checked_before: bytes, bytes_max: int) -> _Body:
-    """The body of a SnapshotFrame or a SnapshotTile, once it is known to be whole. bytes_max: it is refused beyond."""
-    data = picture.body
-    if picture.compression == stream_pb2.COMPRESSION_ZSTD:
+def _body_of(message: Any, position_bytes: int, checked_before: bytes, bytes_max: int) -> _Body:
+    """The uncompressed body of a SnapshotFrame or a SnapshotTile, after its checksum was verified.
+
+    checked_before: the bytes that the checksum covers first. bytes_max: larger content raises DamagedData.
+    """
+    data = message.body
+    if message.compression == stream_pb2.COMPRESSION_ZSTD:
         data = _unpack(data, bytes_max)
-    elif picture.compression > stream_pb2.COMPRESSION_NONE:
-        raise DamagedData(f"a picture's compression is {picture.compression}, not one that is known here")
-    head = struct.pack("<QQ6I", picture.sequence, picture.base_sequence, *_counts_of(picture), position_bytes)
-    if zlib.crc32(data, zlib.crc32(checked_before + head)) != picture.checksum:
-        raise DamagedData("a picture's checksum is not that of its body")
+    elif message.compression > stream_pb2.COMPRESSION_NONE:
+        raise DamagedData(f"a snapshot's compression is {message.compression}, allowed: 0 to 2")
+    head = struct.pack("<QQ6I", message.sequence, message.base_sequence, *_counts_of(message), position_bytes)
+    if zlib.crc32(data, zlib.crc32(checked_before + head)) != message.checksum:
+        raise DamagedData("a snapshot's checksum does not match its body")
     return _Body(data)
 
 
@@ -195,9 +198,9 @@ _of_thread = threading.local()
 
 
 def _unpacker() -> Any:
-    """A decompressor of this thread: they are not safe to share, and decompressing lets other threads run."""
+    """The decompressor of this thread. Threads cannot share one, because decompressing releases the interpreter lock."""
     if zstandard is None:
-        raise DamagedData("a picture is compressed, and the package zstandard is not there")
+        raise DamagedData("a snapshot is compressed, but the package zstandard is not installed")
     if not hasattr(_of_thread, "unpacker"):
         _of_thread.unpacker = zstandard.ZstdDecompressor()
     return _of_thread.unpacker
@@ -208,67 +211,75 @@ def _unpack(data: bytes, bytes_max: int) -> bytes:
     try:
         content_bytes = zstandard.frame_content_size(data)
         if not 0 <= content_bytes <= bytes_max:
-            raise DamagedData(f"a picture's content is {content_bytes} bytes long, not at most {bytes_max}")
+            raise DamagedData(f"a snapshot's content is {content_bytes} bytes long, allowed: at most {bytes_max}")
         return bytes(unpacker.decompress(data)) if content_bytes else b""
     except zstandard.ZstdError as error:
-        raise DamagedData(f"a picture cannot be unpacked: {error}") from None
+        raise DamagedData(f"a snapshot cannot be decompressed: {error}") from None
 
 
-def _columns(message: stream_pb2.SnapshotFrame) -> Content:
-    """A body of CODEC_COLUMNS."""
-    if message.codec != stream_pb2.CODEC_COLUMNS:
-        raise DamagedData(f"a picture's codec is {message.codec}, not one that is known here")
-    position = _position_kind(message.position_bytes)
-    body = _body_of(message, message.position_bytes, b"", len(message.body))
+def _plain(message: stream_pb2.SnapshotFrame) -> Content:
+    """The entities of CODEC_PLAIN, in 1/16 px as the other codecs have them."""
+    if message.codec != stream_pb2.CODEC_PLAIN:
+        raise DamagedData(f"a snapshot's codec is {message.codec}, allowed: 2 and 3")
     content = {}
     for (name, sizes), count in zip(_SIZES.items(), _counts_of(message)):
-        columns = {"id": body.take("<u4", count)} if name in _HAVE_IDS else {}
-        columns |= {field: body.take(position, count) for field in ("x", "y")}
-        columns |= {field: body.take("<u2", count) for field in sizes}
-        content[name] = columns
-    body.end()
+        columns = getattr(message.plain, name)
+        fields = {"x": "x_px", "y": "y_px"} | {size: size if size == "health" else size + "_px" for size in sizes}
+        kind = {field: numpy.array(getattr(columns, column), numpy.float64) for field, column in fields.items()}
+        if name in _HAVE_IDS:
+            kind = {"id": numpy.array(columns.id, numpy.uint32)} | kind
+            if numpy.any(kind["id"][1:] <= kind["id"][:-1]):
+                raise DamagedData(f"a snapshot's plain.{name}.id does not rise")
+        for field, column in kind.items():
+            if len(column) != count:
+                raise DamagedData(f"a snapshot's plain.{name} has {len(column)} of {field}, not {count} as its count says")
+            if not numpy.all(numpy.isfinite(column)):
+                raise DamagedData(f"a snapshot's plain.{name} has a number in {field} that is not finite")
+            if field != "id":
+                kind[field] = numpy.rint(column * STEPS_PER_PX).astype(_kind_of(field))
+        content[name] = kind
     return content
 
 
 def _position_kind(position_bytes: int) -> str:
     if position_bytes not in (2, 4):
-        raise DamagedData(f"position_bytes is {position_bytes}, not 2 or 4")
+        raise DamagedData(f"position_bytes is {position_bytes}, allowed: 2 and 4")
     return f"<u{position_bytes}"
 
 
-# ---- told from the picture before ---------------------------------------------------------------------------------------
+# ---- deltas -------------------------------------------------------------------------------------------------------------
 
 
 class _Deltas:
-    """Bodies of CODEC_DELTA: of one island of one subscription, or of one tile of it."""
+    """Decodes bodies of CODEC_DELTA: of one island of one subscription, or of one of its tiles."""
 
     def __init__(self, have_ids: frozenset[str]) -> None:
         self._have_ids = have_ids
-        self._sequence = 0  # of the picture that the next one is told from; 0: there is none
-        self._ticks = 0  # that its displacements took
+        self._sequence = 0  # of the base of the next delta; 0: there is none
+        self._ticks = 0  # duration of its displacements
         self._content: Content = {}
 
-    def decode(self, picture: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
-        """picture: a SnapshotFrame or a SnapshotTile."""
+    def decode(self, message: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
+        """message: a SnapshotFrame or a SnapshotTile."""
         base, self._sequence = self._sequence, 0
-        keyframe = picture.base_sequence == 0
-        if not keyframe and picture.base_sequence != base:
-            raise DamagedData(f"a picture's base_sequence is {picture.base_sequence}, not the last one, {base}")
+        keyframe = message.base_sequence == 0
+        if not keyframe and message.base_sequence != base:
+            raise DamagedData(f"a snapshot's base_sequence is {message.base_sequence}, not the last one, {base}")
         _position_kind(position_bytes)
-        counts = _counts_of(picture)
+        counts = _counts_of(message)
         content_before = {} if keyframe else self._content
         known = sum(counts) + sum(len(columns["x"]) for columns in content_before.values())
-        body = _body_of(picture, position_bytes, checked_before, 1024 + 64 * known)
+        body = _body_of(message, position_bytes, checked_before, 1024 + 64 * known)
         ticks = body.number("<u2")
         content = {}
         for (name, sizes), count in zip(_SIZES.items(), counts):
             section = self._section(body, name, sizes, content_before.get(name), ticks, position_bytes)
             if len(section["x"]) != count:
-                raise DamagedData(f"a picture has {len(section['x'])} {name}, not {count}")
+                raise DamagedData(f"a snapshot has {len(section['x'])} {name}, not {count} as its count says")
             content[name] = section
         body.end()
         self._ticks = ticks if ticks or keyframe else self._ticks
-        self._content, self._sequence = content, picture.sequence
+        self._content, self._sequence = content, message.sequence
         return content
 
     def _section(
@@ -281,10 +292,10 @@ class _Deltas:
         if parts & 1:
             gone_count = body.number("<u4")
             if gone_count > len(stayed["x"]):
-                raise DamagedData(f"a picture tells that {gone_count} are gone of {len(stayed['x'])}")
+                raise DamagedData(f"a snapshot removes {gone_count} entities of")
             gone = body.rising_column(gone_count)
             if len(gone) and int(gone[-1]) >= len(stayed["x"]):
-                raise DamagedData("a picture tells that something is gone which was not there")
+                raise DamagedData("a snapshot removes an entity that is not in its base")
             stays = numpy.ones(len(stayed["x"]), bool)
             stays[gone] = False
             stayed = {field: column[stays] for field, column in stayed.items()}
@@ -320,13 +331,13 @@ def _kind_of(field: str) -> type[numpy.generic]:
 
 
 def _merged(stayed: Mapping[str, Array], come: Mapping[str, Array], by_id: bool) -> Columns:
-    """Those that have come among the others by id; boxes have none, and come last."""
+    """Inserts the entities that have come by id; boxes have no ids and are appended."""
     if not by_id or not len(stayed["x"]):
         return {field: numpy.concatenate((stayed[field], come[field])) for field in come}
     places = numpy.searchsorted(stayed["id"], come["id"])
     at_old = numpy.minimum(places, len(stayed["id"]) - 1)
     if numpy.any(stayed["id"][at_old] == come["id"]):
-        raise DamagedData("a picture tells that something has come which was there")
+        raise DamagedData("a snapshot adds an entity that is in its base")
     new = numpy.zeros(len(stayed["id"]) + len(come["id"]), bool)
     new[places + numpy.arange(len(places))] = True
     old = ~new
@@ -353,14 +364,14 @@ def _dots(body: _Body, counts: Mapping[str, int], cell_px: float, left: float, t
 def _density(body: _Body) -> Mapping[str, Array]:
     cells = body.number("<u1")
     if cells not in _DENSITY_CELLS:
-        raise DamagedData(f"a density has {cells} cells in a row, not 1, 2, 4, 8 or 16")
+        raise DamagedData(f"a density has {cells} cells per row, allowed: 1, 2, 4, 8 and 16")
     density = {name: body.column(cells * cells).reshape(cells, cells) for name in ("organisms", "food", "poison")}
     body.end()
     return density
 
 
 def _together(contents: Sequence[Content]) -> Content:
-    """The entities of several tiles, by id."""
+    """The entities of several tiles, ids rising."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():
         fields = ("id", "x", "y", *sizes)
