@@ -6,8 +6,6 @@
 #include "server/replay/breeding.h"
 #include "server/runtime/worker_pool.h"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -19,11 +17,11 @@ constexpr std::ptrdiff_t answer_bytes = 2 << 20;
 
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
                                        const std::stop_token& stop) {
-    const auto file = run.past.open();
+    const auto file = run.run.open();
     if (!file) {
         return file.error();
     }
-    if (auto held = (*file)->hold_still(); !held) {
+    if (auto held = (*file)->pin_snapshot(); !held) {
         return held.error();
     }
     replay::WantedBreeding wanted{.generation = {},
@@ -74,8 +72,7 @@ void Breedings::begin(Asked asked) {
     }
     under_way_.push_back({asked.session, {}});
     const auto work = std::prev(under_way_.end());
-    work->thread = std::jthread{[this, work, asked = std::move(asked)](const std::stop_token& stop) {
-        pthread_setname_np(pthread_self(), "breeding"); // as `top -H` shows it
+    work->stop = jobs_.add([this, work, asked = std::move(asked)](const std::stop_token& stop) {
         outbox_.answer([this, work, asked, response = response_to(asked, stop)]() mutable {
             if (const auto asking = asked.asking.lock()) {
                 asking->expect(-answer_bytes);
@@ -84,10 +81,10 @@ void Breedings::begin(Asked asked) {
                 }
                 asking->answer(std::move(response));
             }
-            under_way_.erase(work); // its thread is at its end
+            under_way_.erase(work);
             begin_next();
         });
-    }};
+    });
 }
 
 v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& stop) {
@@ -107,7 +104,7 @@ void Breedings::forget(const Session& session) {
     std::erase_if(waiting_, [&](const Asked& asked) { return asked.session == session.number(); });
     for (Work& work : under_way_) {
         if (work.session == session.number()) {
-            work.thread.request_stop();
+            work.stop.request_stop();
         }
     }
 }

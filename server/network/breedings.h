@@ -1,11 +1,12 @@
-// Breedings: how generations were bred, on its way to those who have asked. Each is worked out by a thread of its own,
-// which reads the run's file beside whoever writes to it.
+// Breedings: how generations were bred, on its way to those who have asked. A job queue works them
+// out: a job reads the run's file while the server writes to it.
 //
 // Owner     the dispatcher; on the network thread.
 // Full      at_once are worked out at a time, one of a session; the others wait for their turn, as many as sessions may
 //           have unanswered.
 #pragma once
 
+#include "server/jobs/job_queue.h"
 #include "server/network/limits.h"
 #include "server/network/session.h"
 #include "server/runtime/mailbox.h"
@@ -15,7 +16,7 @@
 #include <deque>
 #include <list>
 #include <memory>
-#include <thread>
+#include <stop_token>
 
 namespace evod::network {
 
@@ -42,18 +43,19 @@ class Breedings {
     };
     struct Work {
         std::uint64_t session;
-        std::jthread thread;
+        std::stop_source stop;
     };
 
     void begin_next();
     void begin(Asked asked);
-    /// On a thread of its own.
+    /// On a thread of the job queue.
     static v1::Response response_to(const Asked& asked, const std::stop_token& stop);
 
     runtime::Outbox& outbox_;
     LimitCounters& limit_counters_;
     std::deque<Asked> waiting_;
     std::list<Work> under_way_;
+    jobs::JobQueue jobs_{{.name = "breeding", .threads_max = at_once}}; // last: its jobs use the rest
 };
 
 } // namespace evod::network

@@ -84,7 +84,7 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
 }
 
 /// request  of RequestKind::Past.
-runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::PastReply reply) {
+runtime::ReplayMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::ReplayReply reply) {
     if (request.has_open_replay()) {
         return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
                                     .at = wanted(request.open_replay().at()),
@@ -726,7 +726,7 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
         return exports_.go_on(session, id, request.continue_export());
     }
     find_run(session, request, request.export_run().world(), [this, id, request](Session& asking, const auto& run) {
-        exports_.begin(asking, id, run.past, wanted(request.export_run(), asking.visitor().role));
+        exports_.begin(asking, id, run.run, wanted(request.export_run(), asking.visitor().role));
     });
 }
 
@@ -784,7 +784,7 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
 void Dispatcher::forget(const Session& session) {
     exports_.forget(session);
     breedings_.forget(session);
-    mailbox_.push(runtime::PastMail{runtime::OwnerGone{session.number()}, {}});
+    mailbox_.push(runtime::ReplayMail{runtime::OwnerGone{session.number()}, {}});
 }
 
 } // namespace evod::network

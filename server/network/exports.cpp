@@ -16,26 +16,26 @@ v1::Response refused(std::uint64_t request_id, const base::Refusal& why) {
 
 } // namespace
 
-void Exports::give_up(std::map<std::uint64_t, Export>::iterator of) {
-    of->second.thread->request_stop();
-    given_up_.push_back(std::move(of->second.thread));
+void Exports::cancel(std::map<std::uint64_t, Export>::iterator of) {
+    of->second.job->request_stop();
+    cancelled_.push_back(std::move(of->second.job));
     exports_.erase(of);
 }
 
-void Exports::begin(Session& session, std::uint64_t request_id, const replay::Past& run,
+void Exports::begin(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                     const replay::WantedTable& wanted) {
     if (const auto before = exports_.find(session.number()); before != exports_.end()) {
-        give_up(before);
+        cancel(before);
     }
-    std::erase_if(given_up_, [](const auto& thread) { return thread->finished(); });
-    if (exports_.size() + given_up_.size() >= exports_max) {
+    std::erase_if(cancelled_, [](const auto& job) { return job->finished(); });
+    if (exports_.size() + cancelled_.size() >= exports_max) {
         limit_counters_.met(Limit::Exports);
         return session.answer(
             refused(request_id, refusal(RefusalCode::ResourceExhausted,
                                         std::to_string(exports_max) + " exports are under way already: try again",
                                         base::Reason::ExportsMax)));
     }
-    Export begun{++last_id_, std::make_unique<runtime::ExportThread>(run, wanted)};
+    Export begun{++last_id_, std::make_unique<runtime::ExportJob>(jobs_, run, wanted)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
 }
 
@@ -59,8 +59,8 @@ void Exports::go_on(Session& session, std::uint64_t request_id, const v1::Contin
 
 void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     from.asked = true;
-    from.thread->next([this, request_id, id = from.id, number = session.number(),
-                       weak = session.weak_from_this()](base::Result<runtime::ExportThread::Part> part) {
+    from.job->next([this, request_id, id = from.id, number = session.number(),
+                    weak = session.weak_from_this()](base::Result<runtime::ExportJob::Part> part) {
         outbox_.answer([this, request_id, id, number, weak, part = std::move(part)]() mutable {
             if (!part && part.error().code == RefusalCode::FailedPrecondition) {
                 limit_counters_.met(Limit::ExportPatience);
@@ -92,13 +92,13 @@ void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
     }
     found->second.asked = false;
     if (last) {
-        give_up(found);
+        cancel(found);
     }
 }
 
 void Exports::forget(const Session& session) {
     if (const auto found = exports_.find(session.number()); found != exports_.end()) {
-        give_up(found);
+        cancel(found);
     }
 }
 

@@ -1,11 +1,11 @@
 // Exports: tables of runs on their way to clients, at most one of a session at a time.
 //
-// Owner     the dispatcher; on the network thread. Parts are made by threads of their own (runtime/export_thread.h).
+// Owner     the dispatcher; on the network thread. A job queue writes the parts (runtime/export_job.h).
 // Full      at exports_max, the next is refused.
 #pragma once
 
 #include "server/network/session.h"
-#include "server/runtime/export_thread.h"
+#include "server/runtime/export_job.h"
 #include "server/runtime/outbox.h"
 
 #include <map>
@@ -20,8 +20,9 @@ class Exports {
     Exports(runtime::Outbox& outbox, LimitCounters& limit_counters)
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
-    /// Answers the request with the first part. The session's export before this one is given up.
-    void begin(Session& session, std::uint64_t request_id, const replay::Past& run, const replay::WantedTable& wanted);
+    /// Answers the request with the first part. The session's export before this one is cancelled.
+    void begin(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
+               const replay::WantedTable& wanted);
     /// Answers with the next part.
     void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
     /// The session has ended.
@@ -30,19 +31,20 @@ class Exports {
   private:
     struct Export {
         std::uint64_t id;
-        std::unique_ptr<runtime::ExportThread> thread;
+        std::unique_ptr<runtime::ExportJob> job;
         bool asked = false; // for a part that has not come
     };
 
     void ask(Session& session, std::uint64_t request_id, Export& from);
     void came(std::uint64_t session, std::uint64_t id, bool last);
-    void give_up(std::map<std::uint64_t, Export>::iterator of);
+    void cancel(std::map<std::uint64_t, Export>::iterator of);
 
     runtime::Outbox& outbox_;
     LimitCounters& limit_counters_;
     std::uint64_t last_id_ = 0;
-    std::map<std::uint64_t, Export> exports_;                      // by number of the session
-    std::vector<std::unique_ptr<runtime::ExportThread>> given_up_; // that may still be at a tick
+    jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // outlives the exports
+    std::map<std::uint64_t, Export> exports_;                             // by number of the session
+    std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_;          // may still simulate a tick
 };
 
 } // namespace evod::network

@@ -6,10 +6,10 @@
 #include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
-#include "server/runtime/export_thread.h"
+#include "server/runtime/export_job.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
-#include "server/runtime/time_travel.h"
+#include "server/runtime/replays.h"
 #include "server/simulation/world.h"
 #include "server/simulation/world_name.h"
 
@@ -60,11 +60,11 @@ constexpr LimitRow table[] = {
     {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds", "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::PlannedChanges, "planned_changes_max", parameters::planned_changes_max, "changes planned in a world",
      "refused, `RESOURCE_EXHAUSTED`"},
-    {Limit::Pasts, "replays_max", runtime::TimeTravel::replays_max, "worlds of a session that show the past",
+    {Limit::Pasts, "replays_max", runtime::Replays::replays_max, "worlds of a session that show the past",
      "refused, `RESOURCE_EXHAUSTED`; so too beyond 64 of all sessions"},
     {Limit::Lease, "lease_s", seconds(lease_time), "a world is lent to who steps it, from the last step", "it goes on"},
     {Limit::Exports, "exports_max", exports_max, "exports under way, of all sessions", "refused, `RESOURCE_EXHAUSTED`"},
-    {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportThread::patience),
+    {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportJob::patience),
      "until the next part of an export is asked for", "the export is given up"},
     {Limit::WorldNameBytes, "world_name_bytes_max", simulation::world_name_bytes_max, "a new world's name",
      "refused, `INVALID_ARGUMENT`"},

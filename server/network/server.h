@@ -121,8 +121,8 @@ class Server {
     asio::steady_timer look_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
-    std::unique_ptr<replay::Archive> archive_;          // nullptr: nothing is kept
-    std::optional<runtime::TimeTravel::Replay> replay_; // until the simulation has it
+    std::unique_ptr<replay::Archive> archive_;           // nullptr: nothing is kept
+    std::optional<runtime::Replays::FileReplay> replay_; // until the simulation has it
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;
     runtime::StreamDemand demand_;

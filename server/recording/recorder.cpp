@@ -25,10 +25,10 @@ run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run
 }
 
 std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
-    // Together, so that a file tells of a tick all there is to tell or nothing.
+    // In one batch, so that a file has either all records of a tick or none.
     std::vector<StorageThread::Record> records;
     const std::uint64_t begun = news_.generations_begun();
-    news_.tell(world, [&records](auto record) { records.emplace_back(std::move(record)); });
+    news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
     if (news_.generations_begun() != begun) {
         since_beginning_ = {};
     }
@@ -44,7 +44,7 @@ void RunRecorder::hand_over(const simulation::World& world) {
 bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent) {
     since_beginning_ += spent;
     since_checkpoint_ += spent;
-    // Where a generation is over, the next one's beginning comes with the next tick.
+    // If a generation is over, the beginning of the next one follows with the next tick.
     return since_beginning_ > worth_a_checkpoint && !world.generation_over() && !writing_->waits &&
            since_checkpoint_ > checkpoint_cost_factor * (copying_took_ + writing_->took.load());
 }
@@ -97,8 +97,8 @@ std::optional<base::Refusal> Recorder::refusal() const {
         return std::nullopt;
     }
     return base::Refusal{.code = base::RefusalCode::Unavailable,
-                         .message = "nothing can be changed while it cannot be written down: " + *why +
-                                    "; send it again once that is mended",
+                         .message = "no command is accepted while it cannot be recorded: " + *why +
+                                    "; send it again once the disk can be written",
                          .violations = {}};
 }
 
@@ -109,7 +109,7 @@ std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world
     }
     const std::string path = folder_.file_of(world);
     for (const std::string& taken : {path, run_file::DataFolder::next_file_of(path)}) {
-        std::error_code error; // where it cannot be looked at, making it fails, and is told
+        std::error_code error; // if the file cannot be examined, creating it reports why
         if (std::filesystem::exists(taken, error)) {
             return base::refusal(base::RefusalCode::AlreadyExists,
                                  "the run would be kept in " + taken +
@@ -144,10 +144,10 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     identity.forked_from = origin;
     run_file::Inherited inherited = run_file::inherited_by(entry.world);
     identity.inherited_generations = inherited.history.size();
-    run.news_.seen(entry.world.moment().tick); // the origin has that tick's link
+    run.news_.seen(entry.world.moment().tick); // the file of the origin has the state hash of that tick
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
-    // Within a generation its beginning is not enough: what came since is known to the origin alone.
+    // Within a generation its beginning is not enough: the journal since then is in the file of the origin.
     if (entry.world.moment().generation_tick > 0) {
         first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
     }
@@ -168,8 +168,8 @@ void Recorder::begin_again(const simulation::Entry& entry, const simulation::Run
     add(entry.name, std::move(run));
 }
 
-RunRecorder& Recorder::go_on(const std::string& world, std::unique_ptr<run_file::RunFile> file,
-                             const run_file::EndMark& so_far, std::uint64_t generations_ended) {
+RunRecorder& Recorder::resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,
+                              const run_file::EndMark& so_far, std::uint64_t generations_ended) {
     const auto number = thread_.adopt(std::move(file));
     add(world, RunRecorder{thread_, number, so_far, generations_ended});
     return *of(world);

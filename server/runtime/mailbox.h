@@ -5,7 +5,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/replay/past.h"
+#include "server/replay/stored_run.h"
 #include "server/runtime/clock.h"
 #include "server/simulation/laboratory.h"
 
@@ -50,45 +50,45 @@ struct CallMail {
     std::function<void()> call;
 };
 
-// Looking at the past (time_travel.h).
+// Replays (replays.h).
 
-/// A world that shows the past of `world`.
+/// Opens a replay of the run of `world`.
 struct OpenReplay {
     std::string world;
-    replay::WantedMoment at; // nothing: the first moment of the run
-    std::uint64_t owner = 0; // who asks, >= 1
+    replay::WantedMoment at; // without fields: the first moment of the run
+    std::uint64_t owner = 0; // the session, >= 1
 };
-/// Takes one to another moment.
+/// Moves a replay to another moment.
 struct Seek {
     std::string world;
     replay::WantedMoment to;
-    std::uint64_t owner = 0; // who asks, >= 1
+    std::uint64_t owner = 0; // the session, >= 1
 };
 struct CloseReplay {
     std::string world;
 };
-/// Closes all that an owner has opened, and ends the seeks that it asked for.
+/// Closes all replays of a session that has ended, and cancels its seeks.
 struct OwnerGone {
     std::uint64_t owner = 0;
 };
-/// Called on the simulation thread with the name of the world that shows the past, once it is at that moment.
-using PastReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
-struct PastMail {
+/// Called on the simulation thread with the name of the replay, once it shows the moment.
+using ReplayReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
+struct ReplayMail {
     std::variant<OpenReplay, Seek, CloseReplay, OwnerGone> request;
-    PastReply reply; // none for OwnerGone
+    ReplayReply reply; // none for OwnerGone
 };
 
 struct FoundRun {
-    replay::Past past;
-    std::uint64_t generation = 0; // in which the world was when its run was asked for
+    replay::StoredRun run;
+    std::uint64_t generation = 0; // of the world at the time of the request
 };
-/// Where a world's run is told, once all of it until now is on the disk, or cannot get there.
+/// Finds the stored run of a world, after everything recorded so far is on the disk or cannot be written.
 struct FindRun {
     std::string world;
     std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread
 };
 
-using Mail = std::variant<CommandMail, QueryMail, CallMail, PastMail, FindRun>;
+using Mail = std::variant<CommandMail, QueryMail, CallMail, ReplayMail, FindRun>;
 
 class Mailbox {
   public:

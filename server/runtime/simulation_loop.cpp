@@ -47,7 +47,7 @@ bool changes_something(const simulation::Command& command) {
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
-                               std::optional<TimeTravel::Replay> replay)
+                               std::optional<Replays::FileReplay> replay)
     : mailbox_{mailbox}
     , demand_{demand}
     , executor_{executor}
@@ -55,12 +55,12 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
-    , past_{laboratory_, mailbox, executor, recorder} {
+    , replays_{laboratory_, mailbox, executor, recorder} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
     if (replay) {
-        past_.show(*std::move(replay));
+        replays_.show(*std::move(replay));
     }
 }
 
@@ -107,7 +107,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
                (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
     };
     auto shares = std::ranges::count_if(laboratory_.entries(), [&](const auto& entry) { return wants_share(*entry); }) +
-                  (past_.under_way() ? 1 : 0);
+                  (replays_.under_way() ? 1 : 0);
     const auto end_of_share = [&](std::optional<Clock::time_point> until) {
         const auto now = clock_.now();
         const auto share = until ? (*until - now) / std::max<std::ptrdiff_t>(shares--, 1) : slice;
@@ -126,10 +126,10 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
             at_latest(entry->control.speed ? track.due : clock_.now());
         }
     }
-    if (past_.under_way()) {
+    if (replays_.under_way()) {
         // A world that cannot keep its pace anyway shares the processor with them.
         const auto end = end_of_share(in_time);
-        past_.travel([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
+        replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
     mind_arrivals();
@@ -138,7 +138,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     }
 
     const auto now = clock_.now();
-    if (const auto again = past_.refresh(now)) {
+    if (const auto again = replays_.refresh(now)) {
         at_latest(*again);
     }
     for (const auto& entry : laboratory_.entries()) {
@@ -154,7 +154,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 
 void SimulationLoop::mind_arrivals() {
     follow_worlds(); // there may be new ones
-    for (const std::string& name : past_.take_arrivals()) {
+    for (const std::string& name : replays_.take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
@@ -175,8 +175,8 @@ void SimulationLoop::mind_mail() {
         std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
                                     [this](QueryMail& query) { queries_.push_back(std::move(query)); },
                                     [](CallMail& call) { call.call(); },
-                                    [this](PastMail& past) { past_.apply(std::move(past)); },
-                                    [this](FindRun& run) { past_.find_run(run); }},
+                                    [this](ReplayMail& mail) { replays_.apply(std::move(mail)); },
+                                    [this](FindRun& run) { replays_.find_run(run); }},
                    mail);
     }
     mail_.clear();
@@ -218,7 +218,7 @@ void SimulationLoop::answer_query() {
 }
 
 bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
-    return past_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+    return replays_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
                if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
                }
@@ -320,7 +320,7 @@ void SimulationLoop::fork(CommandMail& mail) {
     // Others are served meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    past_.begin_journey(origin->name, generation, [this, waiting, before](base::Result<TimeTravel::Arrival> arrival) {
+    replays_.begin_seek(origin->name, generation, [this, waiting, before](base::Result<Replays::SeekResult> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
         if (arrival) {
             return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
@@ -409,7 +409,7 @@ void SimulationLoop::mind_storage() {
     }
     simulation::Storage now;
     if (trouble) {
-        past_.stop_waiting();
+        replays_.stop_waiting();
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,
@@ -495,7 +495,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
                 track.recorder->follow(entry.world);
             }
             if (entry.replay) {
-                past_.follow(entry);
+                replays_.follow(entry);
             }
             ++taken;
             stopped = !entry.wants_tick();

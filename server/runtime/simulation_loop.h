@@ -23,8 +23,8 @@
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
+#include "server/runtime/replays.h"
 #include "server/runtime/snapshot.h"
-#include "server/runtime/time_travel.h"
 #include "server/simulation/laboratory.h"
 
 #include <deque>
@@ -65,7 +65,7 @@ class SimulationLoop {
     /// replay      a world that shows the run of a file.
     SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                    simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
-                   std::optional<TimeTravel::Replay> replay = {});
+                   std::optional<Replays::FileReplay> replay = {});
 
     /// Minds the mail and advances what is due, for about a slice per world. Returns when it wants to be called again
     /// if nothing comes; nullopt: not until then.
@@ -148,7 +148,7 @@ class SimulationLoop {
     recording::Recorder* recorder_;
     bool worlds_wait_ = false;                       // those that live, for the disk
     std::optional<Clock::time_point> waiting_since_; // for one that does write
-    TimeTravel past_;
+    Replays replays_;
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;
     SnapshotPool pool_;

@@ -14,9 +14,9 @@ namespace evod::runtime {
 class SimulationThread {
   public:
     /// Starts. Everything handed in outlives the thread.
-    SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-                     simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
-                     std::optional<TimeTravel::Replay> replay = {});
+    SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
+                     LoopOutputs outputs, simulation::Laboratory laboratory = {},
+                     recording::Recorder* recorder = nullptr, std::optional<Replays::FileReplay> replay = {});
     ~SimulationThread() { stop(); }
 
     /// Minds the mail that waits and ends; returns when it has.

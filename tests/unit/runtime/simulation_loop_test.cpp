@@ -675,7 +675,7 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         const auto file = run_file::RunFile::open_read_only(data->file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
-        const auto checkpoints = (*file)->checkpoints(0, run.moment().tick);
+        const auto checkpoints = (*file)->checkpoints().read(0, run.moment().tick);
         ASSERT_TRUE(checkpoints) << to_text(checkpoints.error());
         EXPECT_EQ(checkpoints->empty(), per_look == 1us);
         hashes[per_look != 1us] = run.hash();
@@ -790,8 +790,8 @@ class LoopWithADisk : public Loop {
         pause.mutable_pause()->set_world("long");
         ask(std::move(pause));
         std::string look;
-        mailbox.push(PastMail{OpenReplay{.world = "long", .at = {}, .owner = 1},
-                              [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+        mailbox.push(ReplayMail{OpenReplay{.world = "long", .at = {}, .owner = 1},
+                                [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
         pass_until([&] { return !look.empty(); });
         return look;
     }
@@ -845,11 +845,11 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     ask_run("w");
     pass_until([&] { return tick("w") > 300; });
     std::string look;
-    mailbox.push(PastMail{OpenReplay{.world = "w", .at = {}, .owner = 1},
-                          [&](const Laboratory&, const base::Result<std::string>& name) {
-                              ASSERT_TRUE(name) << to_text(name.error());
-                              look = *name;
-                          }});
+    mailbox.push(ReplayMail{OpenReplay{.world = "w", .at = {}, .owner = 1},
+                            [&](const Laboratory&, const base::Result<std::string>& name) {
+                                ASSERT_TRUE(name) << to_text(name.error());
+                                look = *name;
+                            }});
     pass_until([&] { return !look.empty(); });
     make_crowd();
     pass_until([&] { return thread.idle(); });
@@ -892,24 +892,24 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
     pass_until([&] { return tick("w") > 300; });
     std::size_t answered = 0, opened = 0;
     const auto open = [&](std::uint64_t owner) {
-        mailbox.push(PastMail{OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
-                              [&](const Laboratory&, const base::Result<std::string>& name) {
-                                  ++answered;
-                                  opened += name ? 1 : 0;
-                              }});
+        mailbox.push(ReplayMail{OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
+                                [&](const Laboratory&, const base::Result<std::string>& name) {
+                                    ++answered;
+                                    opened += name ? 1 : 0;
+                                }});
     };
     open(1);
     open(1);
-    mailbox.push(PastMail{OwnerGone{1}, {}});
+    mailbox.push(ReplayMail{OwnerGone{1}, {}});
     pass_until([&] { return answered == 2; });
     EXPECT_EQ(opened, 0u);
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
-    for (std::size_t i = 0; i <= TimeTravel::replays_max; ++i) {
+    for (std::size_t i = 0; i <= Replays::replays_max; ++i) {
         open(2);
     }
-    pass_until([&] { return answered == 2 + TimeTravel::replays_max + 1; });
-    EXPECT_EQ(opened, TimeTravel::replays_max) << "those on their way are counted";
-    mailbox.push(PastMail{OwnerGone{2}, {}});
+    pass_until([&] { return answered == 2 + Replays::replays_max + 1; });
+    EXPECT_EQ(opened, Replays::replays_max) << "those on their way are counted";
+    mailbox.push(ReplayMail{OwnerGone{2}, {}});
     kept.pass();
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
 }
@@ -935,8 +935,8 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
     ask_run("quick");
     pass_until([&] { return tick("quick") > 30; });
     std::string look;
-    mailbox.push(PastMail{OpenReplay{.world = "quick", .at = {}, .owner = 1},
-                          [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+    mailbox.push(ReplayMail{OpenReplay{.world = "quick", .at = {}, .owner = 1},
+                            [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
     pass_until([&] { return !look.empty(); });
 
     struct Shown {
@@ -945,8 +945,8 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
     };
     const auto shown_at = [&](const replay::WantedMoment& to, bool and_change) {
         std::optional<base::Result<std::string>> answer;
-        mailbox.push(PastMail{Seek{.world = look, .to = to, .owner = 1},
-                              [&](const Laboratory&, const base::Result<std::string>& name) { answer = name; }});
+        mailbox.push(ReplayMail{Seek{.world = look, .to = to, .owner = 1},
+                                [&](const Laboratory&, const base::Result<std::string>& name) { answer = name; }});
         if (and_change) {
             v1::Request change;
             change.mutable_set_parameters()->set_world("quick");
@@ -978,16 +978,16 @@ TEST_F(LoopWithADisk, SeeksEndWithTheirOwnerOrTheirPast) {
     std::vector<base::Result<std::string>> answers;
     const auto seek = [&](std::uint64_t tick) {
         mailbox.push(
-            PastMail{Seek{.world = look, .to = {.generation = {}, .tick = tick}, .owner = 2},
-                     [&](const Laboratory&, const base::Result<std::string>& name) { answers.push_back(name); }});
+            ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = tick}, .owner = 2},
+                       [&](const Laboratory&, const base::Result<std::string>& name) { answers.push_back(name); }});
     };
     seek(299);
-    mailbox.push(PastMail{OwnerGone{2}, {}});
+    mailbox.push(ReplayMail{OwnerGone{2}, {}});
     pass_until([&] { return answers.size() == 1; });
     EXPECT_FALSE(answers[0]);
     EXPECT_EQ(tick(look), 0u) << "the journey ended with its owner";
     seek(299);
-    mailbox.push(PastMail{CloseReplay{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
+    mailbox.push(ReplayMail{CloseReplay{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
     pass_until([&] { return answers.size() == 2; });
     EXPECT_FALSE(answers[1]);
 }
@@ -1005,11 +1005,11 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     while (seeks < 6 || on_the_way || clock.now() - began < 1s) {
         if (!on_the_way) {
             on_the_way = true;
-            mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}},
-                                  [&](const Laboratory&, const base::Result<std::string>& there) {
-                                      EXPECT_TRUE(there);
-                                      on_the_way = false;
-                                  }});
+            mailbox.push(ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}},
+                                    [&](const Laboratory&, const base::Result<std::string>& there) {
+                                        EXPECT_TRUE(there);
+                                        on_the_way = false;
+                                    }});
         }
         kept.pass();
     }
@@ -1038,11 +1038,11 @@ TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
     };
     const auto seek = [&](std::uint64_t to) {
         bool on_the_way = true;
-        mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = to}},
-                              [&](const Laboratory&, const base::Result<std::string>& there) {
-                                  EXPECT_TRUE(there);
-                                  on_the_way = false;
-                              }});
+        mailbox.push(ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = to}},
+                                [&](const Laboratory&, const base::Result<std::string>& there) {
+                                    EXPECT_TRUE(there);
+                                    on_the_way = false;
+                                }});
         pass_until([&] { return !on_the_way; });
     };
     clock.per_look = 50us;
@@ -1091,11 +1091,11 @@ TEST_F(LoopWithADisk, WhoAsksForThePastWhenTroubleBeginsIsShownWhatIsWritten) {
     ask_create("other");
     ask_create("another");
     bool answered = false;
-    mailbox.push(PastMail{OpenReplay{.world = "other", .at = {}, .owner = 1},
-                          [&](const Laboratory&, const base::Result<std::string>& name) {
-                              EXPECT_FALSE(name) << "its file could not be made";
-                              answered = true;
-                          }});
+    mailbox.push(ReplayMail{OpenReplay{.world = "other", .at = {}, .owner = 1},
+                            [&](const Laboratory&, const base::Result<std::string>& name) {
+                                EXPECT_FALSE(name) << "its file could not be made";
+                                answered = true;
+                            }});
     pass_until([&] { return answered; });
     EXPECT_EQ(state(), simulation::StorageState::Failing);
     // Two files cannot be made, which is one trouble, however often it is tried.

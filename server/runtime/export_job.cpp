@@ -1,9 +1,7 @@
-#include "server/runtime/export_thread.h"
+#include "server/runtime/export_job.h"
 
 #include "server/base/within_memory.h"
 #include "server/runtime/worker_pool.h"
-
-#include <pthread.h>
 
 #include <ostream>
 #include <streambuf>
@@ -19,17 +17,18 @@ namespace {
 
 Refusal over() {
     return {.code = RefusalCode::FailedPrecondition,
-            .message = "the export is over, or was given up because nobody went on with it: begin it again",
+            .message =
+                "the export is over, or was cancelled because its next part was not requested in time: begin it again",
             .violations = {},
             .reason = base::Reason::ExportEnded};
 }
 
 } // namespace
 
-/// Cuts what is written into parts; a stream on it goes bad when nobody wants more.
-class ExportThread::PartBuffer : public std::streambuf {
+/// Cuts what is written into parts; a stream on it fails when no more parts are requested.
+class ExportJob::PartBuffer : public std::streambuf {
   public:
-    PartBuffer(ExportThread& parts, const std::stop_token& stop) : parts_{parts}, stop_{stop} {}
+    PartBuffer(ExportJob& parts, const std::stop_token& stop) : parts_{parts}, stop_{stop} {}
 
   protected:
     int_type overflow(int_type c) override {
@@ -44,41 +43,47 @@ class ExportThread::PartBuffer : public std::streambuf {
     }
 
   private:
-    ExportThread& parts_;
+    ExportJob& parts_;
     const std::stop_token& stop_;
 };
 
-ExportThread::ExportThread(replay::Past run, const replay::WantedTable& wanted, std::chrono::milliseconds asked_within)
+ExportJob::ExportJob(jobs::JobQueue& jobs, replay::StoredRun run, const replay::WantedTable& wanted,
+                     std::chrono::milliseconds patience_time)
     : run_{std::move(run)}
     , wanted_{wanted}
-    , patience_{asked_within}
-    , thread_{[this](const std::stop_token& stop) { work(stop); }} {}
+    , patience_{patience_time}
+    , stop_{jobs.add([this](const std::stop_token& stop) { work(stop); })} {}
 
-ExportThread::~ExportThread() = default;
-
-void ExportThread::request_stop() {
-    thread_.request_stop();
+ExportJob::~ExportJob() {
+    stop_.request_stop();
+    std::unique_lock lock{mutex_};
+    changed_.wait(lock, [this] { return finished_; });
 }
 
-void ExportThread::next(Reply reply) {
+bool ExportJob::finished() {
+    const std::lock_guard lock{mutex_};
+    return finished_;
+}
+
+void ExportJob::next(Reply reply) {
     {
         const std::lock_guard lock{mutex_};
         if (!over_) {
             reply_ = std::move(reply);
-            asked_.notify_one();
+            changed_.notify_one();
             return;
         }
     }
     reply(over());
 }
 
-bool ExportThread::give(Part part, const std::stop_token& stop) {
+bool ExportJob::give(Part part, const std::stop_token& stop) {
     part.generations_left_out = generations_left_out_;
     Reply reply;
     {
         std::unique_lock lock{mutex_};
-        // What nobody asked for in time is not given later either: something would be missing.
-        over_ = over_ || !asked_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
+        // A part that was not requested in time is lost, so no later one is given either.
+        over_ = over_ || !changed_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
         if (over_) {
             return false;
         }
@@ -89,13 +94,13 @@ bool ExportThread::give(Part part, const std::stop_token& stop) {
     return true;
 }
 
-Result<void> ExportThread::write(const std::stop_token& stop) {
+Result<void> ExportJob::write(const std::stop_token& stop) {
     const auto file = run_.open();
     if (!file) {
         return file.error();
     }
-    if (auto held = (*file)->hold_still(); !held) {
-        return held;
+    if (auto pinned = (*file)->pin_snapshot(); !pinned) {
+        return pinned;
     }
     if (wanted_.table == replay::RunTable::Organisms || wanted_.table == replay::RunTable::Lineage) {
         generations_left_out_ = replay::generations_out_of_reach(**file);
@@ -106,8 +111,7 @@ Result<void> ExportThread::write(const std::stop_token& stop) {
     return replay::write_table({**file, *executor, stop}, wanted_, out);
 }
 
-void ExportThread::work(const std::stop_token& stop) {
-    pthread_setname_np(pthread_self(), "export"); // as `top -H` shows it
+void ExportJob::work(const std::stop_token& stop) {
     const Result<void> written = base::within_memory([&] { return write(stop); });
     if (written) {
         give({.text = std::move(text_), .last = true}, stop);
@@ -116,7 +120,7 @@ void ExportThread::work(const std::stop_token& stop) {
     {
         std::unique_lock lock{mutex_};
         if (!written) {
-            asked_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
+            changed_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
         }
         over_ = true;
         reply = std::exchange(reply_, {});
@@ -124,7 +128,9 @@ void ExportThread::work(const std::stop_token& stop) {
     if (reply) {
         reply(written ? over() : written.error());
     }
-    finished_.store(true, std::memory_order_release);
+    const std::lock_guard lock{mutex_};
+    finished_ = true;
+    changed_.notify_all(); // under the lock: the destructor may follow at once
 }
 
 } // namespace evod::runtime

@@ -1,4 +1,4 @@
-#include "server/runtime/export_thread.h"
+#include "server/runtime/export_job.h"
 
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class ExportThreadTest : public testing::Test {
   protected:
-    /// As many generations, and a tick of the next.
+    /// Records so many generations, and one tick of the next.
     void record(int generations, std::uint64_t keep_every = 1) {
         RunFile::Options options;
         options.keep_every = keep_every;
@@ -30,11 +30,11 @@ class ExportThreadTest : public testing::Test {
         }
         run.advance(1);
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-        past.emplace(*replay::Past::of_file(data.file_of("w")));
+        past.emplace(*replay::StoredRun::of_file(data.file_of("w")));
     }
-    static base::Result<ExportThread::Part> next(ExportThread& thread) {
-        std::promise<base::Result<ExportThread::Part>> part;
-        thread.next([&](base::Result<ExportThread::Part> came) { part.set_value(std::move(came)); });
+    static base::Result<ExportJob::Part> next(ExportJob& thread) {
+        std::promise<base::Result<ExportJob::Part>> part;
+        thread.next([&](base::Result<ExportJob::Part> came) { part.set_value(std::move(came)); });
         return part.get_future().get();
     }
     std::string whole(const replay::WantedTable& wanted) {
@@ -47,19 +47,20 @@ class ExportThreadTest : public testing::Test {
     recording::TemporaryFolder folder;
     run_file::DataFolder data{*run_file::DataFolder::open(folder.path())};
     base::InlineExecutor executor;
-    std::optional<replay::Past> past;
+    jobs::JobQueue jobs{{.name = "export", .threads_max = 8}};
+    std::optional<replay::StoredRun> past;
 };
 
 TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
     record(300, 100);
     const replay::WantedTable wanted{.table = RunTable::Organisms, .format = replay::Table::Format::JsonLines};
-    ExportThread thread{*past, wanted};
+    ExportJob thread{jobs, *past, wanted};
     std::string text;
     int parts = 0;
     for (bool last = false; !last; ++parts) {
         const auto part = next(thread);
         ASSERT_TRUE(part) << to_text(part.error());
-        EXPECT_TRUE(part->last || part->text.size() >= ExportThread::part_bytes);
+        EXPECT_TRUE(part->last || part->text.size() >= ExportJob::part_bytes);
         text += part->text;
         last = part->last;
     }
@@ -68,30 +69,30 @@ TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
     EXPECT_EQ(next(thread).error().code, RefusalCode::FailedPrecondition);
 }
 
-TEST_F(ExportThreadTest, TellsHowManyGenerationsAreLeftOut) {
+TEST_F(ExportThreadTest, ReportsHowManyGenerationsAreLeftOut) {
     const auto run_id = replay::record_other_model(data.file_of("w"), recording::small_world())->identity().run_id;
     past.emplace(std::vector{data.file_of("w")}, run_id);
     for (const auto& [table, left_out] :
          {std::pair{RunTable::Organisms, 4u}, std::pair{RunTable::Lineage, 4u}, std::pair{RunTable::Generations, 0u}}) {
-        ExportThread thread{*past, {.table = table}};
+        ExportJob thread{jobs, *past, {.table = table}};
         const auto part = next(thread);
         ASSERT_TRUE(part) << to_text(part.error());
         EXPECT_EQ(part->generations_left_out, left_out);
     }
 }
 
-TEST_F(ExportThreadTest, WhatIsWrongIsToldInsteadOfAPart) {
+TEST_F(ExportThreadTest, AnErrorIsReportedInsteadOfAPart) {
     record(2);
-    ExportThread thread{*past, {.table = RunTable::Population, .generation = 7}};
+    ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 7}};
     const auto part = next(thread);
     ASSERT_FALSE(part);
     EXPECT_EQ(part.error().code, RefusalCode::NotFound);
     EXPECT_EQ(part.error().violations.at(0).field, "generation");
 }
 
-TEST_F(ExportThreadTest, AnExportThatNobodyGoesOnWithIsGivenUpAndNeverCutShort) {
+TEST_F(ExportThreadTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     record(300);
-    ExportThread thread{*past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
+    ExportJob thread{jobs, *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
     const auto part = next(thread);
     ASSERT_FALSE(part);
@@ -99,8 +100,8 @@ TEST_F(ExportThreadTest, AnExportThatNobodyGoesOnWithIsGivenUpAndNeverCutShort) 
 }
 
 TEST_F(ExportThreadTest, StoppingEndsASimulationUnderWay) {
-    record(300, 1'000'000); // all but the first and the last to be simulated again
-    ExportThread thread{*past, {.table = RunTable::Population, .generation = 299}};
+    record(300, 1'000'000); // all but the first and the last are simulated again
+    ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 299}};
     thread.request_stop();
     const auto part = next(thread);
     ASSERT_FALSE(part);

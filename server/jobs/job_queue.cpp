@@ -1,0 +1,75 @@
+#include "server/jobs/job_queue.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace evod::jobs {
+
+JobQueue::JobQueue(Options options) : options_{std::move(options)} {
+    threads_.reserve(options_.threads_max);
+    if (options_.start_now) {
+        const std::lock_guard lock{mutex_};
+        start_thread();
+    }
+}
+
+JobQueue::~JobQueue() {
+    {
+        const std::lock_guard lock{mutex_};
+        stopping_ = true;
+        for (std::stop_source& job : running_) {
+            job.request_stop();
+        }
+    }
+    changed_.notify_all();
+    for (std::thread& thread : threads_) {
+        thread.join();
+    }
+}
+
+std::stop_source JobQueue::add(Job job) {
+    std::stop_source stop;
+    {
+        const std::lock_guard lock{mutex_};
+        waiting_.push_back({std::move(job), stop});
+        if (waiting_.size() > idle_threads_ && threads_.size() < options_.threads_max) {
+            start_thread();
+        }
+    }
+    changed_.notify_one();
+    return stop;
+}
+
+void JobQueue::start_thread() {
+    ++idle_threads_;
+    threads_.emplace_back([this] { work(); });
+}
+
+void JobQueue::work() {
+    pthread_setname_np(pthread_self(), options_.name.c_str());
+    if (options_.niceness != 0) {
+        // Linux has a niceness for each thread. If the call fails, the thread only competes more.
+        (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), options_.niceness);
+    }
+    std::unique_lock lock{mutex_};
+    while (true) {
+        changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+        if (stopping_) {
+            return;
+        }
+        Waiting next = std::move(waiting_.front());
+        waiting_.pop_front();
+        --idle_threads_;
+        running_.push_back(next.stop);
+        lock.unlock();
+        next.job(next.stop.get_token());
+        next.job = {};
+        lock.lock();
+        std::erase(running_, next.stop);
+        ++idle_threads_;
+    }
+}
+
+} // namespace evod::jobs

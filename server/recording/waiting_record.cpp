@@ -1,0 +1,50 @@
+#include "server/recording/waiting_record.h"
+
+#include "server/base/overloaded.h"
+
+#include <variant>
+
+namespace evod::recording {
+
+std::size_t bytes_of(const Record& record) {
+    constexpr std::size_t small = 256;
+    return std::visit(base::Overloaded{
+                          [](const run_file::JournalEntry& entry) {
+                              return small + entry.origin.request.size() + entry.answer.size();
+                          },
+                          [](const run_file::Inherited& inherited) {
+                              std::size_t bytes = small;
+                              for (const simulation::GenerationRows& rows : inherited.history) {
+                                  bytes += rows.size() * sizeof(simulation::GenerationStatistics);
+                              }
+                              return bytes;
+                          },
+                          [](const run_file::GenerationBegun& begun) {
+                              std::size_t bytes = small;
+                              for (const std::vector<std::uint32_t>& founders : begun.founders) {
+                                  bytes += founders.size() * sizeof(std::uint32_t);
+                              }
+                              for (const evolution::NextGeneration& born : begun.born) {
+                                  bytes += static_cast<std::size_t>(born.genes.cols()) *
+                                           (sizeof(float) * evolution::gene_count + sizeof(evolution::Parents));
+                              }
+                              return bytes;
+                          },
+                          [](const run_file::GenerationEnded& ended) {
+                              std::size_t bytes = small;
+                              bytes += ended.statistics.size() * sizeof(simulation::GenerationStatistics);
+                              for (const run_file::IslandOutcome& outcome : ended.outcomes) {
+                                  bytes +=
+                                      small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);
+                              }
+                              return bytes;
+                          },
+                          // A run has at most one waiting checkpoint.
+                          [](const run_file::Checkpoint&) { return std::size_t{0}; },
+                          [](const run_file::StoredCheckpoint&) { return std::size_t{0}; },
+                          [](const auto&) { return sizeof(run_file::HashRecord); },
+                      },
+                      record);
+}
+
+} // namespace evod::recording
