@@ -1,4 +1,4 @@
-// Build: what this program was made of.
+// Build: the commit, compiler and build type of this program.
 #pragma once
 
 #include <string>

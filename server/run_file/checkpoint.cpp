@@ -23,13 +23,13 @@ using simulation::Items;
 
 static_assert(std::endian::native == std::endian::little, "columns are written as they lie in memory");
 
-constexpr int compression_level = 1; // higher ones take much longer and save little: most of it is places
+constexpr int compression_level = 1; // higher levels take much longer and save little: most values are positions
 
 Refusal refusal(const char* message) {
     return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
 }
 
-/// Calls visit(column) for every column in order, each as a range and what is taken of its elements.
+/// Calls visit(range, member) for every column in order: the elements, and a function that returns their member.
 template <class Island, class Visit>
 void for_each_column(Island& island, Visit&& visit) {
     visit(
@@ -80,7 +80,7 @@ std::size_t bytes_of_statistics() {
     return bytes;
 }
 
-/// Of a state that is not compressed, its first byte included.
+/// The size of the uncompressed state, its first byte included.
 std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
     std::size_t bytes = 1;
     for (const IslandShape& shape : shapes) {
@@ -102,7 +102,7 @@ class Packer {
         EVOD_ASSERT(context_ != nullptr);
         ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, compression_level);
     }
-    /// The number of bytes that will come is part of what is written, so that a reader knows what to expect.
+    /// zstd writes the size of the contents, so that a reader can check it before it allocates.
     void expect(std::size_t bytes) { ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes); }
 
     template <class T>
@@ -152,7 +152,7 @@ class Packer {
     std::size_t used_ = 0; // of packed_
 };
 
-/// Takes values off the front; there are enough.
+/// Reads values from the front; the caller has checked the size.
 class Columns {
   public:
     explicit Columns(std::string_view bytes) : bytes_{bytes} {}
@@ -220,7 +220,7 @@ StoredCheckpoint pack(const Checkpoint& checkpoint) {
 }
 
 Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
-    // What it takes is known before any memory is taken for it.
+    // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
         return refusal("it has another size than such a world's state");

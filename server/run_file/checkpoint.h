@@ -1,7 +1,7 @@
-// Checkpoint: the islands of a world's state as bytes, columns compressed by zstd. The layout: docs/RUN_FILE.md.
+// Checkpoint: encodes the islands of a world's state as columns, compressed by zstd. The layout: docs/RUN_FILE.md.
 //
-// The bytes come from outside when they are read: how many there must be follows from what the islands hold at their
-// generation's beginning, so no more memory is taken than that, and what they say is judged by World::restore.
+// Bytes that are read come from an untrusted file. Their number follows from the shapes of the islands at the beginning
+// of the generation, so decoding allocates no more than that. World::restore() checks the values.
 #pragma once
 
 #include "server/base/result.h"
@@ -17,14 +17,14 @@ namespace evod::run_file {
 /// state.islands and state.ended, compressed.
 std::string pack(const simulation::WorldState& state);
 
-/// As a run file holds it.
+/// The form that a run file stores.
 StoredCheckpoint pack(const Checkpoint& checkpoint);
 
-/// Fills in state.islands and state.ended. Refused unless the bytes are a packed state of such islands.
+/// Fills in state.islands and state.ended. Refused unless the bytes are a compressed state of such islands.
 base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
                           simulation::WorldState& state);
 
-/// The same from bytes that are not compressed.
+/// The same from uncompressed bytes.
 base::Result<void> read_columns(std::string_view bytes, std::span<const simulation::IslandShape> shapes,
                                 simulation::WorldState& state);
 

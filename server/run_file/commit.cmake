@@ -7,7 +7,7 @@ if(Git_FOUND)
   set(git ${GIT_EXECUTABLE} --no-optional-locks -C ${SOURCE})
   execute_process(COMMAND ${git} rev-parse --show-cdup
     OUTPUT_VARIABLE above OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
-  if(NOT failed AND above STREQUAL "") # not within somebody else's
+  if(NOT failed AND above STREQUAL "") # not within another repository
     execute_process(COMMAND ${git} rev-parse --short=12 HEAD
       OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     execute_process(COMMAND ${git} status --porcelain --untracked-files=no

@@ -1,9 +1,11 @@
 #include "server/run_file/data_folder.h"
 
+#include "server/files/regular_file.h"
 #include "server/simulation/world_name.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -40,7 +42,7 @@ base::Result<DataFolder> DataFolder::open(const std::string& path) {
     if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
         const int why = errno;
         close(lock);
-        return unusable(path, why == EWOULDBLOCK ? "another server is using it; give this one another with --data"
+        return unusable(path, why == EWOULDBLOCK ? "another server is using it; name another folder with --data"
                                                  : std::strerror(why));
     }
     return DataFolder{path, lock};
@@ -87,6 +89,78 @@ base::Result<DataFolder::Files> DataFolder::files() const {
         std::sort(paths->begin(), paths->end());
     }
     return files;
+}
+
+base::Result<void> rename_run_file(const std::string& from, const std::string& to) {
+    std::error_code error, ignored;
+    // While a program reads the file, the log may be the only place of the last commits. So the log is linked under the
+    // new name before the file is renamed, where the file system supports links.
+    struct Companion {
+        const char* suffix;
+        bool exists = false, linked = false;
+    };
+    Companion companions[] = {{"-wal"}, {"-shm"}};
+    for (Companion& companion : companions) {
+        fs::remove(to + companion.suffix, ignored);
+        companion.exists = fs::exists(from + companion.suffix, ignored);
+        fs::create_hard_link(from + companion.suffix, to + companion.suffix, error);
+        companion.linked = !error;
+    }
+    fs::rename(from, to, error);
+    if (error) {
+        for (const Companion& companion : companions) {
+            fs::remove(to + companion.suffix, ignored);
+        }
+        return refusal(base::RefusalCode::Unavailable, from + " cannot be renamed to " + to + ": " + error.message());
+    }
+    for (const Companion& companion : companions) {
+        if (companion.exists && !companion.linked) {
+            fs::rename(from + companion.suffix, to + companion.suffix, ignored);
+        } else {
+            fs::remove(from + companion.suffix, ignored);
+        }
+    }
+    return {};
+}
+
+base::Result<void> remove_run_file(const std::string& path) {
+    std::error_code error, ignored;
+    fs::remove(path, error);
+    if (error) {
+        return refusal(base::RefusalCode::Unavailable, path + " cannot be removed: " + error.message());
+    }
+    for (const char* suffix : {"-wal", "-shm", "-journal"}) {
+        fs::remove(path + suffix, ignored);
+    }
+    return {};
+}
+
+base::Result<void> expect_file_with_one_name(const std::string& path) {
+    using base::RefusalCode;
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0) {
+        return {}; // opening the file reports the reason
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file; move it out of " +
+                                                         fs::path{path}.parent_path().string() +
+                                                         " to start without its world");
+    }
+    if (S_ISLNK(status.st_mode)) {
+        return refusal(RefusalCode::FailedPrecondition,
+                       path + " is a link, and another server may write to its target: replace it with a copy, or name "
+                              "the folder of the file itself with --data");
+    }
+    if (!S_ISREG(status.st_mode)) {
+        return refusal(RefusalCode::InvalidArgument,
+                       path + ": this is " + std::string{files::other_than_file(status.st_mode)} + ", not a run file");
+    }
+    if (status.st_nlink > 1) {
+        return refusal(RefusalCode::FailedPrecondition,
+                       path + " has another name, a hard link, under which another server may write to it: remove "
+                              "that name, or replace this one with a copy");
+    }
+    return {};
 }
 
 } // namespace evod::run_file

@@ -8,7 +8,7 @@ namespace evod::run_file {
 
 namespace {
 
-/// A path as a URI of SQLite, with which options can be given.
+/// A path as an SQLite URI with options.
 std::string uri_of(const std::string& path, const char* options) {
     std::string uri = "file:";
     for (const char c : path) {
@@ -41,16 +41,16 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     if (failed()) {
         return;
     }
-    // Whoever looks at the file from outside may hold a lock for a moment.
+    // Another program that reads the file may hold a lock for a moment.
     sqlite3_busy_timeout(handle, 2000);
-    // Damage is to be found, not to be worked around; nothing in a file may run code.
+    // Damage is reported, never worked around; nothing in a file may run code.
     sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     run("PRAGMA cell_size_check = ON");
     if (reads) {
         return;
     }
-    // In place of SQLite's own way, which lets the commit wait that makes the log long.
+    // Replaces SQLite's own hook, which would copy a long log within a commit.
     sqlite3_wal_hook(
         handle,
         [](void* self, sqlite3*, const char*, int pages) {
@@ -67,7 +67,7 @@ void Database::check(int code) {
     error_ = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
     if (const int system = handle_ ? sqlite3_system_errno(handle_.get()) : 0;
         (code & 0xff) == SQLITE_CANTOPEN && system != 0) {
-        error_ += std::string{": "} + std::strerror(system); // too many open files, and the like
+        error_ += std::string{": "} + std::strerror(system); // for example too many open files
     }
     damaged_ = (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
 }
@@ -149,7 +149,7 @@ void Statement::bind(int parameter, std::span<const std::byte> bytes) {
     }
 }
 
-void Statement::bind_nothing(int parameter) {
+void Statement::bind_null(int parameter) {
     if (!database_.failed()) {
         database_.check(sqlite3_bind_null(handle_.get(), parameter + 1));
     }
@@ -189,7 +189,7 @@ std::string Statement::bytes(int column) const {
     return {data, data == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 
-bool Statement::is_nothing(int column) const {
+bool Statement::is_null(int column) const {
     return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL;
 }
 

@@ -1,7 +1,7 @@
-// Database: SQLite, as little of it as run files need.
+// Database: the part of SQLite's interface that run files need.
 //
-// Errors       the first thing that goes wrong is kept, and everything after it is skipped: whoever has read or written
-//              asks failed() once, at the end.
+// Errors       the first error is kept, and every later call is skipped. So a caller reads or writes everything and calls
+//              failed() once, at the end.
 // Owner        one thread at a time.
 #pragma once
 
@@ -23,29 +23,29 @@ class Database {
         Create, // a new file; fails if there is one
         Write,
         Read,
-        ReadAtRest, // a file to which nobody writes, wherever it lies: no lock is taken
+        ReadAtRest, // a file to which no program writes: takes no lock and needs no write access to its folder
     };
-    /// vfs  SQLite's name of the way to the disk; nullptr is the usual one.
+    /// vfs  the name of an SQLite VFS (its interface to the disk); nullptr is the default one.
     Database(const std::string& path, Mode mode, const char* vfs = nullptr);
-    Database(const Database&) = delete; // SQLite knows where it is
+    Database(const Database&) = delete; // SQLite keeps its address
     Database& operator=(const Database&) = delete;
 
     bool failed() const { return !error_.empty(); }
-    /// One sentence; empty if nothing has gone wrong.
+    /// One sentence; empty for none.
     const std::string& error() const { return error_; }
-    /// Whether what went wrong is that the file is not, or no longer, a sound database.
+    /// Whether the error is that the file is no database, or a damaged one.
     bool damaged() const { return damaged_; }
 
-    /// Statements without parameters or rows.
+    /// Runs statements without parameters or rows.
     void run(const char* sql);
-    /// The whole number that a query gives; 0 if it gives none.
+    /// The whole number that a query returns; 0 for none.
     std::int64_t number(const char* sql);
-    /// How many pages the write-ahead log holds, as of the last commit here. It is not copied into the file by itself.
+    /// How many pages the write-ahead log has after the last commit here. SQLite does not copy it into the file by itself.
     std::uint32_t log_pages() const { return log_pages_; }
-    /// Copies into the file what the log holds, as far as nobody reads what was before. What cannot be copied stays in
-    /// the log. At most one of all who have the file open may be at it.
+    /// Copies pages of the log into the file, except those that a reader of an older snapshot prevents. At most one
+    /// thread at a time may do it for a file.
     void copy_log();
-    /// Makes a file with all that is in this database; if it is being read, what was there when that began.
+    /// Copies this database to a new file; within a read transaction, its snapshot.
     void copy_to(const std::string& path);
 
   private:
@@ -61,7 +61,7 @@ class Database {
     std::uint32_t log_pages_ = 0;
 };
 
-/// A prepared statement; lives no longer than its database.
+/// A prepared statement; the database outlives it.
 class Statement {
   public:
     Statement(Database& database, const std::string& sql);
@@ -71,18 +71,18 @@ class Statement {
     void bind(int parameter, double value);
     void bind(int parameter, std::string_view text);
     void bind(int parameter, std::span<const std::byte> bytes);
-    void bind_nothing(int parameter);
+    void bind_null(int parameter);
 
-    /// Whether there is a row, or one more. After the last, and after a failure, the statement may be used anew.
+    /// Steps to the next row. false: there is none, or an error; then the statement may be run again.
     bool row();
-    /// For statements without rows.
+    /// Runs a statement without rows.
     void done();
 
     std::int64_t integer(int column) const;
     double real(int column) const;
     std::string text(int column) const;
     std::string bytes(int column) const;
-    bool is_nothing(int column) const;
+    bool is_null(int column) const;
 
   private:
     struct Finalize {

@@ -1,4 +1,4 @@
-// Records: what a run file holds, as the program knows it. How it is laid out in tables is in docs/RUN_FILE.md.
+// Records: what the recorder writes to a run file and a replay reads from it. Their tables: docs/RUN_FILE.md.
 #pragma once
 
 #include "server/base/state_hash.h"
@@ -16,49 +16,49 @@
 
 namespace evod::run_file {
 
-/// What a run began with.
+/// What a run began with; written once.
 struct RunIdentity {
     std::string name; // of the world
     simulation::RunId run_id;
     base::Seed seed;
     parameters::Parameters parameters;
     std::string evod_version = EVOD_VERSION;
-    std::string build = build_text(); // of that evod; empty where the file does not tell
+    std::string build = build_text(); // of that evod; empty if the file does not state it
     std::uint32_t model_version = simulation::model_version;
-    std::int64_t began_unix_ms = 0; // the clock on the wall, for people; nothing depends on it
-    // A fork begins with a generation of another run; `parameters` are those that were asked for there.
+    std::int64_t began_unix_ms = 0; // wall clock, for information only
+    // A fork begins with a generation of another run; its `parameters` are those requested in that run.
     std::uint64_t first_generation = 1;
-    std::uint64_t first_tick = 0; // the ticks before it; with those of a generation over, it begins with a checkpoint
+    std::uint64_t first_tick = 0; // ticks before this run; a run that begins within a generation has a checkpoint here
     std::optional<simulation::RunId> forked_from = std::nullopt;
-    std::uint64_t inherited_generations = 0; // right before its first, of which it has its origin's statistics
-    simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
-    parameters::Schedule schedule = {};                // that it was created with, or its origin
+    std::uint64_t inherited_generations = 0;           // before its first one, whose statistics it has from its origin
+    simulation::FirstPopulation first_population = {}; // given to it or its origin; nullptr: drawn by seed
+    parameters::Schedule schedule = {};                // given to it or its origin
 };
 
-/// Who asked for a command, and how.
+/// Which client sent a command.
 struct Origin {
-    std::string client; // "user: program address", or "program address" where the session had no token
+    std::string client; // "user: program address"; "program address" if the session had no token
     std::string client_key;
     std::uint64_t request_id = 0;
     std::string request; // a serialized v1::Request
 };
 
-/// The user in Origin::client; empty: none. No program's name contains ": ".
+/// The user in Origin::client; empty for none. The name of a program never contains ": ".
 inline std::string user_of(const Origin& origin) {
     const auto end = origin.client.find(": ");
     return end == std::string::npos ? "" : origin.client.substr(0, end);
 }
 
-/// A command that was applied.
+/// A command that the simulation has applied.
 struct JournalEntry {
     std::uint64_t number = 0; // 1 for the first of the run
     std::uint64_t tick = 0;   // after which it was applied
     Origin origin;
-    std::string answer;             // the frame that its client got
-    simulation::RunControl control; // as it was then
+    std::string answer;             // the frame that its client received
+    simulation::RunControl control; // of the world after the command
 };
 
-/// A generation before its first tick; with the seed, all that follows from there.
+/// A generation before its first tick. With the seed and the journal, everything later follows from it.
 struct GenerationBegun {
     simulation::Opening opening;
     std::vector<evolution::NextGeneration> born; // one per island
@@ -67,17 +67,17 @@ struct GenerationBegun {
 /// The beginning of the generation that a world is in.
 GenerationBegun beginning_of(const simulation::World& world);
 
-/// What a fork has from its origin: the statistics of the generations before its own first.
+/// The statistics that a fork copies from its origin: of the generations before its first one.
 struct Inherited {
     simulation::World::History history;
 };
 /// world  a fork, in its first generation.
 Inherited inherited_by(const simulation::World& world);
 
-/// What became of a generation's organisms on one island, by id.
+/// The outcome of a generation on one island; vectors by organism id.
 struct IslandOutcome {
     std::vector<double> fitness;
-    std::vector<std::uint32_t> lived_ticks; // until death; 0 for those who lived on
+    std::vector<std::uint32_t> lived_ticks; // until death; 0 for organisms that lived to the end
     std::vector<simulation::CauseOfDeath> cause;
     friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
 };
@@ -86,48 +86,48 @@ struct GenerationEnded {
     std::vector<IslandOutcome> outcomes;                      // one per island
     std::vector<simulation::GenerationStatistics> statistics; // one per island
 };
-/// world  whose generation is over.
+/// world  its generation is over.
 GenerationEnded end_of(const simulation::World& world);
-/// "alive", "starved", "poisoned"; "unknown" for a number that is no cause.
+/// "alive", "starved", "poisoned"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);
 
-/// A world right after a tick, before anything was asked of it there; from here, too, all that follows can be
-/// simulated. What it has in common with its generation's beginning is told there.
+/// The state of a world right after a tick, before any command of that tick. Everything later can be simulated from it
+/// and the beginning of its generation, which it does not repeat.
 struct Checkpoint {
     simulation::WorldState state;
     base::StateHash hash;
-    std::uint64_t journal_entries = 0; // that came before it
+    std::uint64_t journal_entries = 0; // before it
 };
 Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor);
-/// The same as it is stored.
+/// The same as a run file stores it.
 struct StoredCheckpoint {
     simulation::Moment moment;
     parameters::ParameterSet parameters;
     base::StateHash hash;
     std::uint64_t journal_entries = 0;
-    std::string state; // the rest, packed (checkpoint.h)
+    std::string state; // the rest, compressed (checkpoint.h)
 };
 
 /// The state hash after a tick.
-struct HashLink {
+struct HashRecord {
     std::uint64_t tick = 0;
     base::StateHash hash;
 };
-/// After every tick that is a multiple of this.
-constexpr std::uint64_t ticks_per_link = 60;
+/// The recorder stores the state hash after every tick that is a multiple of this.
+constexpr std::uint64_t ticks_per_hash = 60;
 
-/// Which generations are no longer held whole, so that a file does not grow without end.
-struct Thinning {
-    // Up to this generation, and to the tick that ended it, only each keep_every-th is: generations as counted from the
-    // file's first, links as counted from tick 0.
+/// Which of the older generations are retained (retention.h).
+struct RetentionRule {
+    // Up to until_generation, each keep_every-th generation counted from the file's first; up to until_tick, where that
+    // generation ended, each keep_every-th hash counted from tick 0.
     std::uint64_t keep_every = 1, until_generation = 0, until_tick = 0;
 };
 
-/// How a file was left. Absent while a server has it open, and after one that did not end in order.
+/// How a server closed a file. There is none while a server has it open, or after a server that was killed.
 struct EndMark {
-    bool ended = false;     // reset or deleted: no world any more; else closed, to be gone on with
+    bool ended = false;     // the world was reset or deleted; otherwise the next server continues the run
     std::uint64_t tick = 0; // the last
-    std::uint64_t journal_entries = 0, generations = 0, links = 0;
+    std::uint64_t journal_entries = 0, generations = 0, hashes = 0; // numbers of rows
 };
 
 } // namespace evod::run_file

@@ -22,32 +22,32 @@ void RowChecksum::begin() {
     XXH3_64bits_update(state_, table_.data(), table_.size());
 }
 
-void RowChecksum::add_kind(char kind, std::uint64_t length) {
-    char head[1 + sizeof length] = {kind};
+void RowChecksum::add_type(char type, std::uint64_t length) {
+    char head[1 + sizeof length] = {type};
     std::memcpy(head + 1, &length, sizeof length);
     XXH3_64bits_update(state_, head, sizeof head);
 }
 
 void RowChecksum::add(std::int64_t value) {
-    add_kind('i', static_cast<std::uint64_t>(value));
+    add_type('i', static_cast<std::uint64_t>(value));
 }
 
 void RowChecksum::add(double value) {
-    add_kind('r', std::bit_cast<std::uint64_t>(value + 0.0)); // SQLite keeps −0 as 0
+    add_type('r', std::bit_cast<std::uint64_t>(value + 0.0)); // SQLite stores −0 as 0
 }
 
 void RowChecksum::add_text(std::string_view text) {
-    add_kind('t', text.size());
+    add_type('t', text.size());
     XXH3_64bits_update(state_, text.data(), text.size());
 }
 
 void RowChecksum::add_bytes(std::span<const std::byte> bytes) {
-    add_kind('b', bytes.size());
+    add_type('b', bytes.size());
     XXH3_64bits_update(state_, bytes.data(), bytes.size());
 }
 
-void RowChecksum::add_nothing() {
-    add_kind('n', 0);
+void RowChecksum::add_null() {
+    add_type('n', 0);
 }
 
 std::int64_t RowChecksum::finish() {
@@ -58,7 +58,7 @@ std::int64_t RowChecksum::finish() {
 
 namespace {
 
-std::string listed(const std::vector<std::string>& columns) {
+std::string joined(const std::vector<std::string>& columns) {
     std::string text;
     for (const std::string& column : columns) {
         text += column + ", ";
@@ -71,7 +71,7 @@ std::string insertion(const std::string& table, const std::vector<std::string>& 
     for (std::size_t i = 0; i < columns.size(); ++i) {
         places += "?, ";
     }
-    return "INSERT OR REPLACE INTO " + table + " (" + listed(columns) + ") VALUES (" + places + "?)";
+    return "INSERT OR REPLACE INTO " + table + " (" + joined(columns) + ") VALUES (" + places + "?)";
 }
 
 } // namespace
@@ -89,8 +89,8 @@ RowWriter& RowWriter::integer(std::optional<std::int64_t> value) {
     if (value) {
         return integer(*value);
     }
-    statement_.bind_nothing(column_++);
-    checksum_.add_nothing();
+    statement_.bind_null(column_++);
+    checksum_.add_null();
     return *this;
 }
 
@@ -104,8 +104,8 @@ RowWriter& RowWriter::real(std::optional<double> value) {
     if (value) {
         return real(*value);
     }
-    statement_.bind_nothing(column_++);
-    checksum_.add_nothing();
+    statement_.bind_null(column_++);
+    checksum_.add_null();
     return *this;
 }
 
@@ -135,10 +135,10 @@ std::int64_t RowWriter::finish() {
 }
 
 RowReader::RowReader(Database& database, const std::string& table, const std::vector<std::string>& columns,
-                     const std::string& condition, const std::vector<std::int64_t>& where)
-    : statement_{database, "SELECT " + listed(columns) + " FROM " + table + " WHERE " + condition}, checksum_{table} {
-    for (std::size_t i = 0; i < where.size(); ++i) {
-        statement_.bind(static_cast<int>(i), where[i]);
+                     const std::string& condition, const std::vector<std::int64_t>& values)
+    : statement_{database, "SELECT " + joined(columns) + " FROM " + table + " WHERE " + condition}, checksum_{table} {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        statement_.bind(static_cast<int>(i), values[i]);
     }
 }
 
@@ -155,11 +155,11 @@ std::int64_t RowReader::integer() {
 }
 
 std::optional<std::int64_t> RowReader::optional_integer() {
-    if (!statement_.is_nothing(column_)) {
+    if (!statement_.is_null(column_)) {
         return integer();
     }
     ++column_;
-    checksum_.add_nothing();
+    checksum_.add_null();
     return std::nullopt;
 }
 
@@ -170,11 +170,11 @@ double RowReader::real() {
 }
 
 std::optional<double> RowReader::optional_real() {
-    if (!statement_.is_nothing(column_)) {
+    if (!statement_.is_null(column_)) {
         return real();
     }
     ++column_;
-    checksum_.add_nothing();
+    checksum_.add_null();
     return std::nullopt;
 }
 

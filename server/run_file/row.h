@@ -1,7 +1,8 @@
-// Rows with a checksum: every row of a run file ends with a column `checksum`, XXH3 (64 bits) of the name of its table
-// and of what stands in its other columns, so that a changed row is told from a right one.
+// Row: writes and reads single rows of a table with their checksum.
 //
-// A row is hashed as: the table's name; per column its kind, its length if it has one, and its bytes, lowest first.
+// Every row of a run file ends with a column `checksum`: XXH3 (64 bits) of the name of its table and of its other
+// columns, in order. A column is hashed as a letter for its type, eight bytes (the number itself, or the length of what
+// follows), then the text or bytes; lowest byte first.
 #pragma once
 
 #include "server/run_file/database.h"
@@ -29,16 +30,16 @@ class RowChecksum {
     void add(double value);
     void add_text(std::string_view text);
     void add_bytes(std::span<const std::byte> bytes);
-    void add_nothing();
+    void add_null();
     std::int64_t finish();
 
   private:
-    void add_kind(char kind, std::uint64_t length);
+    void add_type(char type, std::uint64_t length);
     const std::string table_;
     XXH3_state_s* state_;
 };
 
-/// Writes rows of one table; what is there under the same key is replaced.
+/// Writes rows of one table; a row with the same key is replaced.
 class RowWriter {
   public:
     /// columns  without `checksum`.
@@ -47,14 +48,13 @@ class RowWriter {
     // The columns of a row in order, then finish().
     RowWriter& integer(std::int64_t value);
     RowWriter& integer(std::optional<std::int64_t> value);
-    RowWriter& natural(std::uint64_t value) { return integer(static_cast<std::int64_t>(value)); }
     RowWriter& real(double value);
     RowWriter& real(std::optional<double> value);
     RowWriter& text(std::string_view value);
     RowWriter& bytes(std::span<const std::byte> value);
-    /// The checksum of another row, which that of this one covers too.
+    /// Adds the checksum of another row to the checksum of this one.
     RowWriter& covers(std::int64_t checksum);
-    /// returns  its checksum.
+    /// returns  the checksum of the row.
     std::int64_t finish();
 
   private:
@@ -63,29 +63,28 @@ class RowWriter {
     int column_ = 0;
 };
 
-/// Reads rows of one table, in the order of its key.
+/// Reads rows of one table.
 class RowReader {
   public:
-    /// condition  in SQL, with "?" for the numbers of `where`; may be followed by an order.
+    /// condition  in SQL, with "?" for the numbers of `values`; may be followed by ORDER BY and LIMIT.
     RowReader(Database& database, const std::string& table, const std::vector<std::string>& columns,
-              const std::string& condition = "1", const std::vector<std::int64_t>& where = {});
+              const std::string& condition, const std::vector<std::int64_t>& values);
 
-    /// Whether there is one more row.
+    /// false: there are no more rows, or the database has failed.
     bool next();
 
     // The columns of a row in order, then sound().
     std::int64_t integer();
     std::optional<std::int64_t> optional_integer();
-    std::uint64_t natural() { return static_cast<std::uint64_t>(integer()); }
     double real();
     std::optional<double> optional_real();
     std::string text();
     std::string bytes();
-    /// As RowWriter has it.
+    /// As RowWriter::covers().
     void covers(std::int64_t checksum) { checksum_.add(checksum); }
-    /// Once all columns are read.
+    /// The stored checksum; after all columns have been read.
     std::int64_t checksum() const { return statement_.integer(column_); }
-    /// Whether the checksum is that of the row.
+    /// Whether the stored checksum is that of the columns.
     bool sound();
 
   private:

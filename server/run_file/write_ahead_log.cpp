@@ -38,7 +38,7 @@ struct Checksum {
     friend bool operator==(const Checksum&, const Checksum&) = default;
 };
 
-/// The checksum of what came before and of these bytes, a multiple of 8 of them.
+/// Continues a checksum with more bytes; their number is a multiple of 8.
 Checksum add(Checksum sum, Bytes bytes, bool words_are_big_endian) {
     const auto add_words = [&](auto word) {
         for (std::size_t at = 0; at < bytes.size(); at += 8) {
@@ -61,13 +61,13 @@ Salts salts_at(Bytes bytes, std::size_t at) {
 struct LogHead {
     bool sound = false;
     bool words_are_big_endian = false;
-    std::size_t page_bytes = 4096; // as evod's files have it, where the header is not sound
+    std::size_t page_bytes = 4096; // of evod's files, if the header is damaged
     Salts salts{};
     Checksum checksum;
 };
 
 LogHead read_head(Bytes bytes) {
-    constexpr std::uint32_t magic = 0x377f0682, version = 3007000; // the magic's last bit tells the order of bytes
+    constexpr std::uint32_t magic = 0x377f0682, version = 3007000; // the last bit of the magic is the byte order
     const std::uint32_t begin = big_endian(bytes, 0), page_bytes = big_endian(bytes, 8);
     LogHead head{.words_are_big_endian = (begin & 1) != 0, .salts = salts_at(bytes, 16), .checksum = {}};
     head.checksum = add({}, bytes.first(24), head.words_are_big_endian);
@@ -95,7 +95,7 @@ class Frame {
     bool is_commit() const { return big_endian(bytes_, 4) != 0; }
     Salts salts() const { return salts_at(bytes_, 8); }
     Checksum stored() const { return {big_endian(bytes_, 16), big_endian(bytes_, 20)}; }
-    /// What the checksum should be behind that of the frame before.
+    /// The checksum that follows from that of the frame before.
     Checksum computed(Checksum before) const {
         const Bytes bytes{bytes_};
         return add(add(before, bytes.first(8), words_are_big_endian_), bytes.subspan(frame_head_bytes),
@@ -107,10 +107,10 @@ class Frame {
     bool words_are_big_endian_;
 };
 
-/// How many frames of the log with these salts were on the disk, by its index; 0 if the index is of another log.
+/// The number of frames with these salts that the log's index counts; 0 if the index belongs to another log.
 std::uint64_t frames_known_to(ReadAt index, const Salts& salts) {
     constexpr std::size_t head_bytes = 48;
-    std::array<std::byte, 2 * head_bytes> both; // the header is there twice
+    std::array<std::byte, 2 * head_bytes> both; // the index has two copies of its header
     if (index(0, both) != both.size()) {
         return 0;
     }
@@ -135,7 +135,7 @@ std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index) {
     const Salts salts = head.sound ? head.salts : frame.salts();
     const std::uint64_t frames_known = frames_known_to(index, salts);
 
-    // Up to the first frame that is not as it was written.
+    // Up to the first frame with a wrong checksum.
     Checksum sum = head.checksum;
     std::uint64_t bad = 0;
     while (head.sound && frame.has_page() && frame.salts() == salts && frame.computed(sum) == frame.stored()) {
@@ -152,7 +152,7 @@ std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index) {
     // Whether a frame behind it continues a commit.
     struct {
         bool is_commit;
-        Checksum stored, computed; // of the bad frame, either may be right
+        Checksum stored, computed; // of the bad frame; either may be the right one
     } before{frame.is_commit(), frame.stored(), frame.computed(sum)};
     for (std::uint64_t next = bad + 1; frame.read(log, next); ++next) {
         const Checksum stored = frame.stored();
@@ -181,8 +181,8 @@ Result<void> check_log(const std::string& path_of_run_file, LogIndex index) {
     const auto read_index = [&](std::uint64_t offset, std::span<std::byte> bytes) {
         return index_file && *index_file ? (*index_file)->read_at(offset, bytes) : 0;
     };
-    // While a server writes, a frame may be read before it is whole, and those behind it after they are. It is whole
-    // when it is read again.
+    // While a server writes, this may read a frame before it is complete, and later frames after they are. A second
+    // reading finds it complete.
     std::optional<std::uint64_t> damage;
     Salts salts{};
     constexpr int attempts = 5;

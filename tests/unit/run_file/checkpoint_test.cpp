@@ -3,7 +3,7 @@
 #include "server/replay/archive.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
-#include "tests/support/older_run_file.h"
+#include "server/run_file/check.h"
 #include "tests/support/thread_executor.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
@@ -26,7 +26,7 @@ class CheckpointTest : public testing::Test {
   protected:
     CheckpointTest() : data{*DataFolder::open(folder.path())} {}
 
-    /// What a machine that stops now leaves.
+    /// The file as a failure of the machine would leave it now.
     std::unique_ptr<RunFile> file_left() {
         thread.reset();
         auto file = RunFile::open(data.file_of("w"), {});
@@ -35,13 +35,13 @@ class CheckpointTest : public testing::Test {
     }
     static std::vector<std::uint64_t> ticks_of(RunFile& file) {
         std::vector<std::uint64_t> ticks;
-        for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
+        for (const StoredCheckpoint& checkpoint : *file.checkpoints().read(0, file.contents().tick)) {
             ticks.push_back(checkpoint.moment.tick);
         }
         return ticks;
     }
     void expect_agrees(RunFile& file, std::uint64_t checkpoints) {
-        const auto checked = file.check();
+        const auto checked = check(file);
         EXPECT_TRUE(checked) << to_text(checked.error());
         const auto verified = verify(file, three_threads, [](const VerifyProgress&) {});
         ASSERT_TRUE(verified) << to_text(verified.error());
@@ -69,7 +69,7 @@ TEST_F(CheckpointTest, TheNewestThreeAreKept) {
     expect_agrees(*file, 3);
 }
 
-TEST_F(CheckpointTest, AWorldGoesOnFromOneAsIfItHadNeverStopped) {
+TEST_F(CheckpointTest, AWorldContinuesFromACheckpointExactly) {
     std::mt19937 random{1};
     for (int round = 0; round < 20; ++round) {
         folder.clear();
@@ -82,14 +82,14 @@ TEST_F(CheckpointTest, AWorldGoesOnFromOneAsIfItHadNeverStopped) {
             run.advance(1);
         }
         const std::uint64_t tick = run.world().moment().tick;
-        if (round % 2 == 0) { // not what a server does, but what a file may tell
+        if (round % 2 == 0) { // a server does not do this, but a file may contain it
             run.command(set_parameter("force_per_unit", 1.5));
         }
         run.checkpoint();
         run.command(set_parameter("force_per_unit", 2.0));  // at the same tick, but after it
         run.command(set_parameter("population_size", 17u)); // from the next generation on
         run.advance(random() % 100);
-        run.command(set_parameter("food_health", 4.0)); // so that this is the last moment the file tells of
+        run.command(set_parameter("food_health", 4.0)); // the last moment in the file
 
         const auto file = file_left();
         const auto rerun = Rerun::before(*file, tick, executor);
@@ -150,7 +150,7 @@ TEST_F(CheckpointTest, EveryTickIsReachedFromTheLastBeginningBeforeIt) {
     EXPECT_EQ(Rerun::before(*file, 401, executor).error().code, base::RefusalCode::NotFound);
 }
 
-TEST_F(CheckpointTest, OneThatIsNotAsItWasWrittenIsNamed) {
+TEST_F(CheckpointTest, ADamagedCheckpointIsNamed) {
     {
         RecordedRun run{data, *thread};
         run.advance(170);
@@ -162,26 +162,26 @@ TEST_F(CheckpointTest, OneThatIsNotAsItWasWrittenIsNamed) {
                                "UPDATE checkpoint SET state = CAST(x'00' || substr(state, 2) AS BLOB)"}) {
         change(data.file_of("w"), damage);
         const auto file = RunFile::open(data.file_of("w"), {});
-        for (const auto& refused : {(*file)->check().error(), recover(**file, executor).error()}) {
+        for (const auto& refused : {check(**file).error(), recover(**file, executor).error()}) {
             EXPECT_EQ(refused.code, base::RefusalCode::DataLoss);
             EXPECT_THAT(refused.message, HasSubstr("the row 170 of its table checkpoint"));
         }
     }
 }
 
-TEST_F(CheckpointTest, OneOfAnotherWorldIsNotLoadedAndTold) {
+TEST_F(CheckpointTest, ACheckpointOfAnotherWorldIsReported) {
     RecordedRun run{data, *thread};
     run.advance(170);
     const Checkpoint sound = checkpoint_of(run.world(), 0, executor);
     run.advance(20);
     const auto file = file_left();
-    const auto expect_told = [&](const Checkpoint& checkpoint, const char* why, const char* part) {
+    const auto expect_reported = [&](const Checkpoint& checkpoint, const char* why, const char* part) {
         file->begin();
         file->write(checkpoint);
         ASSERT_TRUE(file->commit());
         const auto refused = recover(*file, executor).error();
         EXPECT_EQ(refused.code, base::RefusalCode::DataLoss);
-        EXPECT_THAT(refused.message, HasSubstr("checkpoint after tick 170 is none of this run: "));
+        EXPECT_THAT(refused.message, HasSubstr("checkpoint after tick 170 does not belong to this run: "));
         EXPECT_THAT(refused.message, HasSubstr(why));
         const auto verified =
             verify(**RunFile::open_read_only(file->path()), three_threads, [](const VerifyProgress&) {});
@@ -193,21 +193,21 @@ TEST_F(CheckpointTest, OneOfAnotherWorldIsNotLoadedAndTold) {
     };
     Checkpoint other = sound;
     other.hash.low += 1;
-    expect_told(other, "another state hash", "the state hash");
+    expect_reported(other, "another state hash", "the state hash");
     other = sound;
     other.state.islands[1].food[3].x += 1;
-    expect_told(other, "another state hash", "the checkpoint: the place of food 3 on island 1");
+    expect_reported(other, "another state hash", "the checkpoint: the place of food 3 on island 1");
     other = sound;
     other.state.islands[0].food[3].x = -1;
-    expect_told(other, "where one is", "the checkpoint: the place of food 3 on island 0");
+    expect_reported(other, "where one is", "the checkpoint: the place of food 3 on island 0");
     other = sound;
     other.state.islands[0].crates.resize(1);
-    expect_told(other, "another size", "the checkpoint");
+    expect_reported(other, "another size", "the checkpoint");
     other = sound;
     other.state.parameters.active.damping = 0.5;
-    expect_told(other, "its parameters", "the checkpoint: the parameter damping, as it held");
+    expect_reported(other, "its parameters", "the checkpoint: the parameter damping, as it held");
     other = sound;
-    other.state.islands[0].counts.food_eaten += 1; // which no hash covers
+    other.state.islands[0].counts.food_eaten += 1; // no hash covers this
     file->begin();
     file->write(other);
     ASSERT_TRUE(file->commit());
@@ -216,7 +216,7 @@ TEST_F(CheckpointTest, OneOfAnotherWorldIsNotLoadedAndTold) {
     EXPECT_THAT(verified->difference->part, HasSubstr("the checkpoint: the counts on island 0"));
 }
 
-TEST_F(CheckpointTest, ThosePartsOfAPackedStateThatAreLeftAreRefused) {
+TEST_F(CheckpointTest, ATruncatedStateIsRefused) {
     RecordedRun run{data, *thread};
     run.advance(100);
     const simulation::WorldState state = run.world().state(executor);
@@ -232,7 +232,7 @@ TEST_F(CheckpointTest, ThosePartsOfAPackedStateThatAreLeftAreRefused) {
     for (int flip = 0; flip < 2000; ++flip) {
         std::string flipped = packed;
         flipped[random() % packed.size()] ^= static_cast<char>(1 << random() % 8);
-        if (unpack(flipped, shapes, again)) { // other numbers, but as many
+        if (unpack(flipped, shapes, again)) { // other values, the same number of them
             EXPECT_EQ(again.islands.size(), 2u);
         }
     }
@@ -243,75 +243,7 @@ TEST_F(CheckpointTest, ThosePartsOfAPackedStateThatAreLeftAreRefused) {
     EXPECT_FALSE(unpack(packed, others, again));
 }
 
-TEST_F(CheckpointTest, AFileOfTheFormatBeforeIsReadAndGoneOnWith) {
-    base::StateHash hash;
-    {
-        RecordedRun run{data, *thread};
-        run.advance(170);
-        run.recorder().close_all(run.laboratory());
-        hash = run.world().hash();
-    }
-    (void)file_left();
-    change(data.file_of("w"), support::as_of_format(1));
-    {
-        const auto file = RunFile::open_read_only(data.file_of("w"));
-        ASSERT_TRUE(file) << to_text(file.error());
-        expect_agrees(**file, 0);
-        EXPECT_EQ(recover(**file, executor)->world.hash(), hash);
-    }
-    {
-        const auto file = RunFile::open(data.file_of("w"), {});
-        const auto recovered = recover(**file, executor);
-        ASSERT_TRUE(recovered) << to_text(recovered.error());
-        (*file)->begin();
-        (*file)->write(checkpoint_of(recovered->world, 0, executor));
-        ASSERT_TRUE((*file)->commit());
-    }
-    const auto file = RunFile::open_read_only(data.file_of("w"));
-    ASSERT_TRUE(file) << to_text(file.error());
-    EXPECT_THAT(ticks_of(**file), ElementsAre(170));
-    expect_agrees(**file, 1);
-}
-
-TEST_F(CheckpointTest, AFileWithWholeOnesIsReadAndGoneOnWith) {
-    base::StateHash hash;
-    {
-        RecordedRun run{data, *thread};
-        run.advance(170);
-        run.checkpoint();
-        run.advance(30);
-        run.recorder().close_all(run.laboratory());
-        hash = run.world().hash();
-    }
-    (void)file_left();
-    change(data.file_of("w"), support::as_of_format(3));
-    {
-        const auto file = RunFile::open_read_only(data.file_of("w"));
-        ASSERT_TRUE(file) << to_text(file.error());
-        EXPECT_THAT(ticks_of(**file), ElementsAre(170));
-        expect_agrees(**file, 1);
-        EXPECT_EQ(Rerun::before(**file, 199, executor)->world().moment().tick, 170u);
-        EXPECT_EQ(recover(**file, executor)->world.hash(), hash);
-    }
-    {
-        const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
-        const auto recovered = recover(**file, executor);
-        ASSERT_TRUE(recovered) << to_text(recovered.error());
-        const StoredCheckpoint checkpoint = pack(checkpoint_of(recovered->world, 0, executor));
-        int parts = 1;
-        for (; !*(*file)->write_part(checkpoint); ++parts) {
-            EXPECT_THAT(ticks_of(**file), ElementsAre(170));
-        }
-        EXPECT_GT(parts, 3);
-    }
-    const auto file = RunFile::open_read_only(data.file_of("w"));
-    ASSERT_TRUE(file) << to_text(file.error());
-    EXPECT_THAT(ticks_of(**file), ElementsAre(170, 200));
-    expect_agrees(**file, 2);
-    EXPECT_EQ(recover(**file, executor)->world.hash(), hash);
-}
-
-TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
+TEST_F(CheckpointTest, ACheckpointCountsWithItsLastPart) {
     RecordedRun run{data, *thread};
     run.advance(170);
     const StoredCheckpoint checkpoint = pack(checkpoint_of(run.world(), 0, executor));
@@ -321,39 +253,39 @@ TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
     };
     {
         const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
-        EXPECT_FALSE(*(*file)->write_part(checkpoint));
-        EXPECT_FALSE(*(*file)->write_part(checkpoint));
+        EXPECT_FALSE(*(*file)->write_checkpoint_part(checkpoint));
+        EXPECT_FALSE(*(*file)->write_checkpoint_part(checkpoint));
     }
     EXPECT_EQ(part_count(), 2);
     {
         const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
         EXPECT_THAT(ticks_of(**file), ElementsAre());
         expect_agrees(**RunFile::open_read_only(data.file_of("w")), 0);
-        EXPECT_FALSE(*(*file)->tidy()) << "a file that is only opened stays as it is";
+        EXPECT_FALSE(*(*file)->purge_step()) << "a file that is only opened stays as it is";
         EXPECT_EQ(part_count(), 2);
-        // Once it is written to, what is left of one goes.
+        // The first write to the file deletes the orphaned parts.
         (*file)->begin();
         ASSERT_TRUE((*file)->commit());
-        EXPECT_TRUE(*(*file)->tidy());
-        EXPECT_FALSE(*(*file)->tidy());
+        EXPECT_TRUE(*(*file)->purge_step());
+        EXPECT_FALSE(*(*file)->purge_step());
         EXPECT_EQ(part_count(), 0);
-        EXPECT_FALSE(*(*file)->write_part(checkpoint));
-        EXPECT_FALSE(*(*file)->tidy()) << "one that is being written stays";
+        EXPECT_FALSE(*(*file)->write_checkpoint_part(checkpoint));
+        EXPECT_FALSE(*(*file)->purge_step()) << "one that is being written stays";
         EXPECT_EQ(part_count(), 1);
     }
     {
-        // From its beginning, over what is left.
+        // Written from its first part, over the orphaned ones.
         const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 200});
-        while (!*(*file)->write_part(checkpoint)) {
+        while (!*(*file)->write_checkpoint_part(checkpoint)) {
             EXPECT_THAT(ticks_of(**file), ElementsAre());
         }
         EXPECT_EQ(part_count(), static_cast<std::int64_t>((checkpoint.state.size() - 1) / 200));
-        const auto read = *(*file)->last_checkpoint(170);
+        const auto read = *(*file)->checkpoints().last(170);
         EXPECT_EQ(read->state, checkpoint.state);
         EXPECT_EQ(read->hash, checkpoint.hash);
         expect_agrees(**RunFile::open_read_only(data.file_of("w")), 1);
-        // A commit of which it was not known whether it had been done.
-        EXPECT_TRUE(*(*file)->write_part(checkpoint));
+        // A commit that was reported as failed and had succeeded.
+        EXPECT_TRUE(*(*file)->write_checkpoint_part(checkpoint));
         expect_agrees(**RunFile::open_read_only(data.file_of("w")), 1);
     }
     const std::int64_t parts = part_count();
@@ -372,12 +304,12 @@ TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
         change(data.file_of("w"), damage);
         {
             const auto file = RunFile::open_read_only(data.file_of("w"));
-            for (const auto& refused : {(*file)->check().error(), recover(**file, executor).error()}) {
+            for (const auto& refused : {check(**file).error(), recover(**file, executor).error()}) {
                 EXPECT_EQ(refused.code, base::RefusalCode::DataLoss) << damage;
                 EXPECT_THAT(refused.message, HasSubstr(named)) << damage;
             }
         }
-        ASSERT_TRUE(RunFile::remove(data.file_of("w")));
+        ASSERT_TRUE(run_file::remove_run_file(data.file_of("w")));
         std::filesystem::rename(sound, data.file_of("w"));
         EXPECT_EQ(part_count(), parts);
     }
@@ -400,7 +332,7 @@ TEST_F(CheckpointTest, ARunMayBeginWithOne) {
                                            .first_generation = 2,
                                            .first_tick = 170,
                                            .forked_from = simulation::RunId{1, 2}},
-                                          {}, &begun, &checkpoint);
+                                          {}, {begun, checkpoint});
         ASSERT_TRUE(file) << to_text(file.error());
         for (const auto& recovered : {recover(**file, executor), recover(**file, three_threads)}) {
             ASSERT_TRUE(recovered) << to_text(recovered.error());
@@ -445,11 +377,11 @@ TEST_F(CheckpointTest, ARunMayBeginWithOne) {
         database.run("DELETE FROM checkpoint WHERE tick = 170");
     }
     const auto file = RunFile::open_read_only(path);
-    EXPECT_THAT((*file)->check().error().message, HasSubstr("the row 170 of its table checkpoint"));
+    EXPECT_THAT(check(**file).error().message, HasSubstr("the row 170 of its table checkpoint"));
     EXPECT_THAT(Rerun::at(**file, 2, executor).error().message, HasSubstr("the checkpoint is missing"));
 }
 
-TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
+TEST_F(CheckpointTest, ACheckpointIsDueWhenSimulatingWouldTakeLong) {
     parameters::Parameters parameters = small_world();
     parameters.generation_s = 1000;
     simulation::World world{parameters, {1}};
@@ -462,12 +394,12 @@ TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
     EXPECT_TRUE(recorder.checkpoint_due(world, 1ms));
     recorder.make_checkpoint(world, executor);
     EXPECT_FALSE(recorder.checkpoint_due(world, 1s));
-    // Once it is written, it has cost something: at least fifty times that has to pass.
+    // The next one is due after fifty times what the last one took.
     ASSERT_TRUE(wait_until([&] { return thread->idle(); }));
     recorder.checkpoint_took(1s);
     EXPECT_FALSE(recorder.checkpoint_due(world, 48s));
     EXPECT_TRUE(recorder.checkpoint_due(world, 1h));
-    // A generation that has just begun needs none.
+    // No checkpoint is due right after the beginning of a generation.
     simulation::World next{small_world(), {1}};
     for (int tick = 0; tick < 120; ++tick) {
         next.advance_tick(executor);

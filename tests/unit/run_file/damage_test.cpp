@@ -1,11 +1,12 @@
-// Damaged run files: bits flipped, and ends cut off, of files left in order and of files as a killed server leaves
-// them, with a write-ahead log beside them. How often: FLIPS and CUTS, for each way to leave a file.
+// Damaged run files: flips bits and truncates files that a server closed, and files with a write-ahead log that a killed
+// server left. FLIPS and CUTS are the numbers of cases for each kind of file.
 //
-// Never a wrong world: damage is named, or it hit what nobody reads, or, where there is a log, the file is taken for
-// what it was at an earlier moment, with everything up to there and nothing after it.
+// The result is never a wrong world. Damage is reported; or it hit unused bytes; or, if there is a log, the file is read as
+// of an earlier moment, with everything up to there and nothing after it.
 #include "server/replay/archive.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
+#include "server/run_file/check.h"
 #include "tests/support/everyday.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -49,16 +50,16 @@ void write_content(const std::string& path, const Content& content) {
     }
 }
 
-/// Everything that a sound file tells, as one text.
-std::string told_by(RunFile& file) {
+/// The contents of a sound file, as one text.
+std::string contents_of(RunFile& file) {
     std::ostringstream text;
     text << file.identity().name << ' ' << to_text(file.identity().run_id) << ' ' << file.identity().seed.value << '\n';
-    for (const JournalEntry& entry : *file.journal()) {
+    for (const JournalEntry& entry : *file.journal().read()) {
         text << entry.number << ' ' << entry.tick << ' ' << entry.origin.client << ' ' << entry.origin.client_key << ' '
              << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
     }
-    for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
-        const auto begun = *file.beginning_of(generation);
+    for (std::uint64_t generation = 1; generation <= file.generations().last(); ++generation) {
+        const auto begun = *file.generations().beginning_of(generation);
         text << generation << ' ' << begun->opening.moment.tick << ' ' << begun->opening.parameters.revision << '\n';
         for (const evolution::NextGeneration& born : begun->born) {
             text << born.genes << '\n';
@@ -66,7 +67,7 @@ std::string told_by(RunFile& file) {
                 text << first << ' ' << second << ' ';
             }
         }
-        if (const auto ended = *file.outcome_of(generation)) {
+        if (const auto ended = *file.generations().outcome_of(generation)) {
             for (const IslandOutcome& outcome : ended->outcomes) {
                 for (std::size_t i = 0; i < outcome.fitness.size(); ++i) {
                     text << outcome.fitness[i] << ' ' << outcome.lived_ticks[i] << ' ' << name_of(outcome.cause[i])
@@ -74,26 +75,26 @@ std::string told_by(RunFile& file) {
                 }
             }
         }
-        if (generation < file.last_generation()) {
-            for (const simulation::GenerationStatistics& statistics : *file.statistics_of(generation)) {
+        if (generation < file.generations().last()) {
+            for (const simulation::GenerationStatistics& statistics : *file.generations().statistics_of(generation)) {
                 simulation::for_each_number(statistics, [&](const std::string&, auto value) { text << value << ' '; });
             }
         }
     }
-    for (const HashLink& link : *file.links(0, file.contents().tick)) {
+    for (const HashRecord& link : *file.hashes(0, file.contents().tick)) {
         text << link.tick << ' ' << to_text(link.hash) << '\n';
     }
-    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints().read(0, file.contents().tick)) {
         text << checkpoint.moment.tick << ' ' << to_text(checkpoint.hash) << ' ' << checkpoint.state << '\n';
     }
     return text.str();
 }
 
 enum class Left {
-    Closed,     // in order
-    Killed,     // nothing but the log has been written since the file was made
-    Restarted,  // the log began anew in mid run, over what it held before; there were no commands any more
-    HalfCopied, // of what the log holds, some has been copied into the file, and some has not
+    Closed,     // by a server
+    Killed,     // everything since the creation of the file is in the log alone
+    Restarted,  // SQLite restarted the log over its earlier frames; no command came after that
+    HalfCopied, // a part of the log has been copied into the file
 };
 
 class DamageTest : public testing::TestWithParam<Left> {
@@ -125,8 +126,8 @@ class DamageTest : public testing::TestWithParam<Left> {
             }
             if (tick == middle && GetParam() == Left::HalfCopied) {
                 reading = *RunFile::open_read_only(path);
-                EXPECT_TRUE(reading->hold_still());
-                EXPECT_EQ(reading->last_generation(), 3u);
+                EXPECT_TRUE(reading->pin_snapshot());
+                EXPECT_EQ(reading->generations().last(), 3u);
             }
             if (tick == middle && GetParam() == Left::Restarted) {
                 copy_log(path);
@@ -156,7 +157,7 @@ class DamageTest : public testing::TestWithParam<Left> {
         place = folder.path() + "/copy.evod";
     }
 
-    /// What SQLite does by itself when the log has grown.
+    /// Copies the log into the file, as SQLite does with a long log.
     static void copy_log(const std::string& path) {
         Database database{path, Database::Mode::Write};
         database.run("PRAGMA wal_checkpoint(PASSIVE)");
@@ -175,7 +176,7 @@ class DamageTest : public testing::TestWithParam<Left> {
         }
     }
 
-    /// What a server would go on with.
+    /// Whether a server recovers the run, or refuses the file.
     void expect_no_other_world(const Content& damaged) {
         write_content(place, damaged);
         const auto file = RunFile::open(place, {});
@@ -196,23 +197,23 @@ class DamageTest : public testing::TestWithParam<Left> {
         }
     }
 
-    /// What a reader would be told.
-    void expect_nothing_wrong_told(const Content& damaged) {
+    /// Whether a reader finds the run's records, or an error.
+    void expect_nothing_wrong_read(const Content& damaged) {
         write_content(place, damaged);
         const auto file = RunFile::open_read_only(place);
-        if (!file || !(*file)->check()) {
+        if (!file || !check(**file)) {
             ++named;
             return;
         }
-        const std::string told = told_by(**file);
-        ++(told == whole ? unread : earlier);
-        if (!known.insert(told).second) {
+        const std::string contents = contents_of(**file);
+        ++(contents == whole ? unread : earlier);
+        if (!known.insert(contents).second) {
             return;
         }
         ASSERT_FALSE(sound.log.empty());
         const std::uint64_t tick = (*file)->contents().tick;
-        expect_first_commands(*(*file)->journal(), tick);
-        for (const HashLink& link : *(*file)->links(0, tick)) {
+        expect_first_commands(*(*file)->journal().read(), tick);
+        for (const HashRecord& link : *(*file)->hashes(0, tick)) {
             EXPECT_EQ(link.hash, hashes.at(link.tick));
         }
         const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
@@ -222,7 +223,7 @@ class DamageTest : public testing::TestWithParam<Left> {
     }
 
     void expect_never_wrong(const Content& damaged) {
-        expect_nothing_wrong_told(damaged);
+        expect_nothing_wrong_read(damaged);
         expect_no_other_world(damaged);
     }
 
@@ -230,16 +231,16 @@ class DamageTest : public testing::TestWithParam<Left> {
         write_content(place, sound);
         const auto file = RunFile::open_read_only(place);
         ASSERT_TRUE(file) << to_text(file.error());
-        const auto checked = (*file)->check();
+        const auto checked = check(**file);
         ASSERT_TRUE(checked) << to_text(checked.error());
-        EXPECT_EQ((*file)->checkpoints(0, last_tick)->size(), 3u);
-        whole = told_by(**file);
+        EXPECT_EQ((*file)->checkpoints().read(0, last_tick)->size(), 3u);
+        whole = contents_of(**file);
         known.insert(whole);
         ASSERT_EQ(sound.log.empty(), GetParam() == Left::Closed);
     }
 
     static constexpr std::uint64_t middle = 260, last_tick = 545;
-    // In memory where that can be: a disk is slow to say, twice for each flip, that it has everything.
+    // In memory if possible: each flip needs two syncs, which are slow on a disk.
     TemporaryFolder folder{std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()};
     base::InlineExecutor executor;
     std::vector<base::StateHash> hashes; // by tick
@@ -247,17 +248,17 @@ class DamageTest : public testing::TestWithParam<Left> {
     std::vector<std::uint64_t> commands; // the tick of each
     Content sound;
     std::string place, whole;
-    std::set<std::string> known; // what has been told and is right
+    std::set<std::string> known; // contents that have been checked
     int named = 0, unread = 0, earlier = 0;
 };
 
-/// Where what is written decides how the rest is read: the first of these bytes, each so many bytes from one to the
+/// Bytes that determine how the others are read: the first of them, and the distance from one to the
 /// next.
 struct Heads {
     std::size_t first, bytes, distance;
 };
 
-TEST_P(DamageTest, AFlippedBitIsNamedOrChangesNothingThatIsRead) {
+TEST_P(DamageTest, AFlippedBitIsReportedOrHarmless) {
     std::mt19937 random{5};
     const auto flip = [&](std::string& bytes, std::size_t byte) {
         bytes[byte] = static_cast<char>(bytes[byte] ^ (1 << random() % 8));
@@ -292,7 +293,7 @@ TEST_P(DamageTest, AFlippedBitIsNamedOrChangesNothingThatIsRead) {
 TEST_P(DamageTest, APageThatHidesItsLastRowIsNamed) {
     constexpr std::size_t page_bytes = 4096;
     for (std::size_t page = 0; page < sound.file.size(); page += page_bytes) {
-        const std::size_t head = page == 0 ? 100 : page; // the file's own head comes before the first page's
+        const std::size_t head = page == 0 ? 100 : page; // the first page begins with the file header
         const char kind = sound.file[head];
         if ((kind != 0x0a && kind != 0x0d) || sound.file[head + 4] == 0) { // leaves of SQLite's trees, and their rows
             continue;
@@ -324,7 +325,7 @@ TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
     EXPECT_EQ(earlier > 0, GetParam() != Left::Closed);
 }
 
-TEST_P(DamageTest, AServerDoesNotStartOverAFileThatHoldsNothingOfTheRunAndLeavesItAsItIs) {
+TEST_P(DamageTest, AServerLeavesAnEmptiedFileAndDoesNotStart) {
     constexpr std::size_t page_bytes = 4096, head_bytes = 100;
     const Content damages[] = {{"", sound.log},
                                {"", ""},
@@ -348,13 +349,13 @@ TEST_P(DamageTest, AServerDoesNotStartOverAFileThatHoldsNothingOfTheRunAndLeaves
     }
 }
 
-/// A file that was created holds by itself which run it is, so that what does not is known to be damaged.
-TEST_P(DamageTest, WithoutItsLogAFileStillTellsItsRun) {
+/// A new file contains its identity without its log, so a file without one is damaged.
+TEST_P(DamageTest, AFileIsReadableWithoutItsLog) {
     write_content(place, {sound.file, ""});
     const auto file = RunFile::open_read_only(place);
     ASSERT_TRUE(file) << to_text(file.error());
     EXPECT_EQ((*file)->identity().name, "w");
-    EXPECT_GE((*file)->last_generation(), 1u);
+    EXPECT_GE((*file)->generations().last(), 1u);
 }
 
 void PrintTo(Left left, std::ostream* out) {

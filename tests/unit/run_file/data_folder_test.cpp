@@ -1,7 +1,8 @@
 #include "server/run_file/data_folder.h"
 
 #include "server/replay/archive.h"
-#include "server/replay/past.h"
+#include "server/replay/stored_run.h"
+#include "server/run_file/check.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -19,7 +20,7 @@ using namespace replay;
 
 using testing::HasSubstr;
 
-TEST(DataFolder, KeepsASecondServerOut) {
+TEST(DataFolder, ASecondServerIsRefused) {
     TemporaryFolder folder;
     {
         const auto first = DataFolder::open(folder.path() + "/new/folder");
@@ -31,13 +32,13 @@ TEST(DataFolder, KeepsASecondServerOut) {
     EXPECT_TRUE(DataFolder::open(folder.path() + "/new/folder"));
 }
 
-TEST(DataFolder, IsRefusedWhereThereCanBeNone) {
+TEST(DataFolder, AnImpossibleFolderIsRefused) {
     TemporaryFolder folder;
     std::ofstream{folder.path() + "/file"} << "text";
     EXPECT_THAT(DataFolder::open(folder.path() + "/file").error().message, HasSubstr(folder.path() + "/file"));
 }
 
-TEST(DataFolder, TellsRunsOfWorldsFromEndedOnes) {
+TEST(DataFolder, DistinguishesLiveRunsFromEndedOnes) {
     TemporaryFolder folder;
     const auto data = DataFolder::open(folder.path());
     const std::string ended = data->ended_file_of("b", {0xabc, 1});
@@ -70,7 +71,7 @@ class ArchiveTest : public testing::Test {
     base::StateHash hash;
 };
 
-TEST_F(ArchiveTest, BringsAWorldBackAndGoesOnWritingIt) {
+TEST_F(ArchiveTest, RecoversAWorldAndContinuesItsFile) {
     record(100);
     for (const std::uint64_t tick : {100u, 190u, 280u}) { // the last moment of each time
         const auto archive = open();
@@ -89,12 +90,12 @@ TEST_F(ArchiveTest, BringsAWorldBackAndGoesOnWritingIt) {
         (*archive)->recorder().close_all(laboratory);
         (*archive)->close();
         const auto file = RunFile::open_read_only(folder.path() + "/w.evod");
-        const auto checked = (*file)->check();
+        const auto checked = check(**file);
         EXPECT_TRUE(checked) << to_text(checked.error());
     }
 }
 
-TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
+TEST_F(ArchiveTest, ADamagedFileIsNamedAndPreventsTheStart) {
     record(200);
     {
         Database database{folder.path() + "/w.evod", Database::Mode::Write};
@@ -108,7 +109,7 @@ TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
     EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
 }
 
-TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
+TEST_F(ArchiveTest, AForeignFileIsRefusedWithARemedy) {
     const std::string path = folder.path() + "/w.evod";
     const auto expect_refused = [&](const std::string& why, const std::string& way_out) {
         const auto archive = open();
@@ -133,12 +134,12 @@ TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
     expect_refused(" was made with evod 0.0.1", "`evod export`");
 }
 
-TEST_F(ArchiveTest, AFolderInThePlaceOfARunFileIsRefusedWithTheWayOut) {
+TEST_F(ArchiveTest, AFolderInPlaceOfARunFileIsRefusedWithARemedy) {
     std::filesystem::create_directory(folder.path() + "/w.evod");
     EXPECT_THAT(open().error().message, HasSubstr("w.evod: this is a folder, not a run file; move it out of "));
 }
 
-TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderEach) {
+TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderBoth) {
     namespace fs = std::filesystem;
     record(60);
     const std::string path = folder.path() + "/w.evod", elsewhere = folder.path() + "/elsewhere.of";
@@ -161,18 +162,18 @@ TEST_F(ArchiveTest, AFileThatLostItsFirstStatisticsIsNamed) {
     EXPECT_THAT(open().error().message, HasSubstr("is damaged: the row 1 of its table statistics"));
 }
 
-TEST_F(ArchiveTest, AFileThatLostItsEndIsNamedToWhoLooksBack) {
+TEST_F(ArchiveTest, AReplayReportsAFileThatLostItsEnd) {
     record(400);
     const std::string path = folder.path() + "/w.evod";
-    ASSERT_TRUE(Past::of_file(path));
+    ASSERT_TRUE(StoredRun::of_file(path));
     Database{path, Database::Mode::Write}.run(
         "DELETE FROM generation WHERE generation = (SELECT max(generation) FROM generation)");
-    EXPECT_THAT(Past::of_file(path).error().message, HasSubstr("end mark"));
+    EXPECT_THAT(StoredRun::of_file(path).error().message, HasSubstr("end mark"));
 }
 
-TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
+TEST_F(ArchiveTest, AnUnfinishedNewFileIsDeleted) {
     const std::string next = DataFolder::next_file_of(folder.path() + "/w.evod");
-    { // as far as it is made before the first commit
+    { // as it is before the first commit
         const auto begun = RunFile::begin_new(next, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {});
         ASSERT_TRUE(begun);
         std::filesystem::copy_file(next, folder.path() + "/begun.evod-next");
@@ -189,7 +190,7 @@ TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
     }
 }
 
-TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
+TEST_F(ArchiveTest, ATakenNameLeavesNoPartOfANewWorld) {
     const std::string path = folder.path() + "/w.evod";
     std::ofstream{path};
     EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
@@ -205,7 +206,7 @@ TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
 }
 
-TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
+TEST_F(ArchiveTest, AFileOfAnEndedRunIsRenamed) {
     record(100);
     {
         const auto file = RunFile::open(folder.path() + "/w.evod", {});
@@ -224,7 +225,7 @@ TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
     EXPECT_EQ(answers[0].answer, "answer 1");
 }
 
-TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
+TEST_F(ArchiveTest, TheAnswersOfAResetRunAreKept) {
     {
         auto data = DataFolder::open(folder.path());
         StorageThread thread{{}};
@@ -243,17 +244,17 @@ TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
         remembered.push_back(entry.origin.request_id);
     }
     EXPECT_THAT(remembered, testing::UnorderedElementsAre(1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u));
-    EXPECT_EQ(remembered.back(), 9u); // of the run that goes on
+    EXPECT_EQ(remembered.back(), 9u); // of the run that continues
 }
 
-/// A world that was reset, as a crash can leave it.
+/// The files of a reset world, as a crash can leave them.
 class Replacing : public ArchiveTest {
   protected:
     Replacing() : path{folder.path() + "/w.evod"}, next{DataFolder::next_file_of(path)} {
         auto data = DataFolder::open(folder.path());
         StorageThread thread{{}};
         RecordedRun run{*data, thread};
-        run.advance(60); // the last that is told before its end mark
+        run.advance(60); // the last tick before its end mark
         old_hash = run.world().hash();
         run.reset({9}, {3, 4});
         run.advance(50);
@@ -273,25 +274,25 @@ class Replacing : public ArchiveTest {
     base::StateHash old_hash;
 };
 
-TEST_F(Replacing, IsOver) {
+TEST_F(Replacing, TheReplacementIsComplete) {
     expect_world(hash);
     EXPECT_TRUE(std::filesystem::exists(ended));
 }
 
-TEST_F(Replacing, TheNewRunHasNotItsNameYet) {
+TEST_F(Replacing, TheNewRunHasNoNameYet) {
     std::filesystem::rename(path, next);
     expect_world(hash);
     EXPECT_TRUE(std::filesystem::exists(ended));
 }
 
-TEST_F(Replacing, TheOldRunHasItsEndMarkAndStillItsName) {
+TEST_F(Replacing, TheOldRunHasAnEndMarkAndStillItsName) {
     std::filesystem::rename(path, next);
     std::filesystem::rename(ended, path);
     expect_world(hash);
     EXPECT_TRUE(std::filesystem::exists(ended));
 }
 
-TEST_F(Replacing, TheOldRunGoesOnWhileItHasNoEndMark) {
+TEST_F(Replacing, TheOldRunContinuesWithoutAnEndMark) {
     std::filesystem::rename(path, next);
     std::filesystem::rename(ended, path);
     {
@@ -302,7 +303,7 @@ TEST_F(Replacing, TheOldRunGoesOnWhileItHasNoEndMark) {
     EXPECT_FALSE(std::filesystem::exists(ended));
 }
 
-TEST_F(Replacing, ANewRunThatIsNotWholeIsForgotten) {
+TEST_F(Replacing, AnIncompleteNewRunIsDeleted) {
     std::filesystem::remove(path);
     std::filesystem::rename(ended, path);
     {

@@ -4,6 +4,7 @@
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
+#include "server/run_file/check.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -21,7 +22,7 @@ class KeepEveryTest : public testing::Test {
   protected:
     KeepEveryTest() : data{*DataFolder::open(folder.path())} {}
 
-    /// A run of 41 generations and a half; its file is left as if the machine stopped.
+    /// A run of 41.5 generations; its file is as a failure of the machine leaves it.
     void record(const RunFile::Options& options) {
         begun.clear();
         StorageThread thread{options};
@@ -46,18 +47,18 @@ class KeepEveryTest : public testing::Test {
     }
     static std::vector<std::uint64_t> held(RunFile& file) {
         std::vector<std::uint64_t> generations;
-        for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
-            if (*file.beginning_of(generation)) {
+        for (std::uint64_t generation = 1; generation <= file.generations().last(); ++generation) {
+            if (*file.generations().beginning_of(generation)) {
                 generations.push_back(generation);
             } else {
-                EXPECT_FALSE(*file.outcome_of(generation));
+                EXPECT_FALSE(*file.generations().outcome_of(generation));
             }
         }
         return generations;
     }
-    /// That nothing has been lost.
+    /// Checks that nothing is lost.
     void expect_whole(RunFile& run) {
-        const auto checked = run.check();
+        const auto checked = check(run);
         ASSERT_TRUE(checked) << to_text(checked.error());
         auto recovered = recover(run, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
@@ -85,7 +86,7 @@ class KeepEveryTest : public testing::Test {
     base::StateHash hash;
 };
 
-TEST_F(KeepEveryTest, HoldsEachFifthGenerationAndTheLastInASmallerFile) {
+TEST_F(KeepEveryTest, RetainsEachFifthGenerationAndTheLast) {
     record({.durability = Durability::Relaxed});
     const auto whole_bytes = std::filesystem::file_size(data.file_of("w"));
     folder.clear();
@@ -96,7 +97,7 @@ TEST_F(KeepEveryTest, HoldsEachFifthGenerationAndTheLastInASmallerFile) {
     expect_whole(*run);
 }
 
-TEST_F(KeepEveryTest, IsThinnedFurtherWhereItIsLargeAllTheSame) {
+TEST_F(KeepEveryTest, ALargeFileRetainsStillFewerGenerations) {
     record({.durability = Durability::Relaxed, .vfs = nullptr, .file_bytes_max = 60 << 10, .keep_every = 5});
     const auto run = file();
     const auto generations = held(*run);
@@ -105,13 +106,13 @@ TEST_F(KeepEveryTest, IsThinnedFurtherWhereItIsLargeAllTheSame) {
     expect_whole(*run);
 }
 
-TEST_F(KeepEveryTest, IsTheFilesOwnWhateverAServerIsToldLater) {
+TEST_F(KeepEveryTest, AFileKeepsTheRetentionItBeganWith) {
     for (const std::uint64_t later : {1u, 2u, 7u}) {
         folder.clear();
         record({.durability = Durability::Relaxed, .keep_every = 5});
         auto opened = RunFile::open(data.file_of("w"), {.durability = Durability::Relaxed, .keep_every = later});
         ASSERT_TRUE(opened) << to_text(opened.error());
-        EXPECT_EQ((*opened)->keep_every(), 5u);
+        EXPECT_EQ((*opened)->retention().keep_every(), 5u);
         auto rerun = Rerun::at(**opened, 42, executor);
         ASSERT_TRUE(rerun) << to_text(rerun.error());
         (*opened)->begin();
@@ -121,8 +122,8 @@ TEST_F(KeepEveryTest, IsTheFilesOwnWhateverAServerIsToldLater) {
             if (world.moment().generation_tick == 1 && world.moment().generation > 42) {
                 (*opened)->write(beginning_of(world));
             }
-            if (world.moment().tick % ticks_per_link == 0) {
-                (*opened)->write(HashLink{world.moment().tick, world.hash()});
+            if (world.moment().tick % ticks_per_hash == 0) {
+                (*opened)->write(HashRecord{world.moment().tick, world.hash()});
             }
             if (world.generation_over()) {
                 (*opened)->write(end_of(world));

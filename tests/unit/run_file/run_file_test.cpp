@@ -1,9 +1,12 @@
 #include "server/run_file/run_file.h"
 
+#include "server/replay/verify.h"
+#include "server/run_file/check.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -47,7 +50,7 @@ class RunFileTest : public testing::Test {
     TemporaryFolder folder;
 };
 
-TEST_F(RunFileTest, WhatOthersPutIntoTheSchemaIsRefused) {
+TEST_F(RunFileTest, AddedTriggersAndViewsAreRefused) {
     const std::string path = recorded(), sound = content_of(path);
     const std::string endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT ";
     const std::pair<const char*, std::string> additions[] = {
@@ -75,7 +78,7 @@ TEST_F(RunFileTest, WhatOthersPutIntoTheSchemaIsRefused) {
     }
 }
 
-TEST_F(RunFileTest, ATableThatIsMissingIsNamed) {
+TEST_F(RunFileTest, AMissingTableIsNamed) {
     const std::string path = recorded();
     change(path, "DROP TABLE outcome");
     const auto refused = RunFile::open_read_only(path);
@@ -84,7 +87,7 @@ TEST_F(RunFileTest, ATableThatIsMissingIsNamed) {
     EXPECT_THAT(refused.error().message, HasSubstr("it lacks the table \"outcome\""));
 }
 
-TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
+TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
     const RunIdentity identity{.name = "w",
                                .run_id = {0x0123456789abcdef, 0xfedcba9876543210},
                                .seed = {~std::uint64_t{0}},
@@ -117,7 +120,7 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
         (*file)->begin();
         (*file)->write(begun);
         (*file)->write(entry);
-        (*file)->write(HashLink{60, {1, ~std::uint64_t{0}}});
+        (*file)->write(HashRecord{60, {1, ~std::uint64_t{0}}});
         (*file)->write(ended);
         (*file)->write(second);
         ASSERT_TRUE((*file)->commit());
@@ -133,7 +136,7 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     EXPECT_THAT(build_text(), HasSubstr(" for ")); // this processor
     EXPECT_FALSE(*(*file)->end_mark());
 
-    const auto journal = *(*file)->journal();
+    const auto journal = *(*file)->journal().read();
     ASSERT_EQ(journal.size(), 1u);
     EXPECT_EQ(journal[0].tick, entry.tick);
     EXPECT_EQ(journal[0].origin.client, entry.origin.client);
@@ -146,7 +149,7 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     EXPECT_TRUE(journal[0].control.endless && journal[0].control.paused);
 
     for (const auto& [generation, expected] : {std::pair{1u, &begun}, {2u, &second}}) {
-        const auto read = *(*file)->beginning_of(generation);
+        const auto read = *(*file)->generations().beginning_of(generation);
         ASSERT_TRUE(read);
         EXPECT_EQ(read->opening.moment.tick, expected->opening.moment.tick);
         EXPECT_EQ(read->opening.moment.simulated_s, expected->opening.moment.simulated_s);
@@ -161,22 +164,22 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
             EXPECT_EQ(read->born[island].clamped_count, expected->born[island].clamped_count);
         }
     }
-    const auto outcome = *(*file)->outcome_of(1);
+    const auto outcome = *(*file)->generations().outcome_of(1);
     ASSERT_TRUE(outcome);
     EXPECT_EQ(outcome->outcomes, ended.outcomes);
     ASSERT_EQ(outcome->statistics.size(), 2u);
     EXPECT_EQ(outcome->statistics[1].fitness_median, ended.statistics[1].fitness_median);
-    EXPECT_FALSE(*(*file)->outcome_of(2));
-    EXPECT_FALSE(*(*file)->beginning_of(3));
-    EXPECT_EQ((*(*file)->links(0, 60))[0].hash.high, ~std::uint64_t{0});
-    EXPECT_EQ((*(*file)->history(10, 10)).size(), 1u);
-    EXPECT_EQ((*file)->contents().tick, 121u); // a generation is written once its first tick is over
+    EXPECT_FALSE(*(*file)->generations().outcome_of(2));
+    EXPECT_FALSE(*(*file)->generations().beginning_of(3));
+    EXPECT_EQ((*(*file)->hashes(0, 60))[0].hash.high, ~std::uint64_t{0});
+    EXPECT_EQ((*(*file)->generations().history(10, 10)).size(), 1u);
+    EXPECT_EQ((*file)->contents().tick, 121u); // a generation is recorded after its first tick
 }
 
-TEST_F(RunFileTest, IsSoundWhenARunHasBeenWritten) {
+TEST_F(RunFileTest, AWrittenRunIsSound) {
     const auto file = RunFile::open_read_only(recorded());
     ASSERT_TRUE(file) << to_text(file.error());
-    const auto checked = (*file)->check();
+    const auto checked = check(**file);
     ASSERT_TRUE(checked) << to_text(checked.error());
     const auto mark = *(*file)->end_mark();
     ASSERT_TRUE(mark);
@@ -184,10 +187,10 @@ TEST_F(RunFileTest, IsSoundWhenARunHasBeenWritten) {
     EXPECT_EQ(mark->tick, 540u);
     EXPECT_EQ(mark->journal_entries, 2u);
     EXPECT_EQ(mark->generations, 5u);
-    EXPECT_EQ(mark->links, 9u);
+    EXPECT_EQ(mark->hashes, 9u);
 }
 
-TEST_F(RunFileTest, NamesTheTableThatIsNotAsItWasWritten) {
+TEST_F(RunFileTest, ADamagedTableIsNamed) {
     const std::string path = recorded(), sound = content_of(path);
     for (const auto& [sql, named] : {
              std::pair{"UPDATE run SET value = '8' WHERE key = 'seed'", "seed"},
@@ -211,14 +214,14 @@ TEST_F(RunFileTest, NamesTheTableThatIsNotAsItWasWritten) {
         put(path, sound);
         ASSERT_NO_FATAL_FAILURE(change(path, sql));
         const auto file = RunFile::open_read_only(path);
-        const base::Refusal refused = file ? (*file)->check().error() : file.error();
+        const base::Refusal refused = file ? check(**file).error() : file.error();
         EXPECT_EQ(refused.code, RefusalCode::DataLoss) << sql;
         EXPECT_THAT(refused.message, HasSubstr(named)) << sql;
         EXPECT_THAT(refused.message, HasSubstr(path)) << sql;
     }
 }
 
-TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
+TEST_F(RunFileTest, OtherFilesAreRefused) {
     const std::string path = folder.path() + "/other.evod";
     const auto refused = [&] { return RunFile::open(path, {}).error(); };
     EXPECT_EQ(refused().code, RefusalCode::Unavailable); // not there
@@ -234,12 +237,64 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
     }
     EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
     std::filesystem::remove(path);
-    const std::string newer = recorded();
-    change(newer, "PRAGMA user_version = 5");
-    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 5"));
 }
 
-TEST_F(RunFileTest, AnOlderFileDoesNotTellItsBuild) {
+TEST_F(RunFileTest, OtherFormatsAreRefused) {
+    const std::string path = recorded();
+    change(path, "PRAGMA user_version = 5");
+    EXPECT_THAT(RunFile::open(path, {}).error().message, HasSubstr("a newer evod: its format is version 5"));
+    change(path, "PRAGMA user_version = 3");
+    const base::Refusal older = RunFile::open_read_only(path).error();
+    EXPECT_THAT(older.message, HasSubstr("an older evod: its format is version 3, this evod reads version 4"));
+    EXPECT_EQ(older.code, RefusalCode::FailedPrecondition);
+}
+
+/// Recorded by evod 0.2.0 before its tables were declared in rows.h: a fork within generation 3 that ran to generation 7.
+TEST_F(RunFileTest, AStoredFileOfFormat4IsReadAndContinued) {
+    const std::string path = folder.path() + "/stored.evod";
+    std::filesystem::copy_file(std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_4.evod", path);
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    {
+        const auto file = RunFile::open_read_only(path);
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto checked = check(**file);
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        EXPECT_EQ((*file)->identity().first_tick, 290u);
+        EXPECT_EQ((*file)->journal().read()->size(), 7u);
+        EXPECT_EQ((*file)->checkpoints().read(0, 1000)->size(), 1u);
+        EXPECT_EQ((*file)->generations().history(7, 100)->size(), 6u);
+        base::InlineExecutor executor;
+        if (!(*file)->other_model()) {
+            const auto verified = replay::verify(**file, executor, [](const replay::VerifyProgress&) {});
+            ASSERT_TRUE(verified) << to_text(verified.error());
+            EXPECT_FALSE(verified->difference);
+        }
+    }
+    const auto file = RunFile::open(path, {});
+    ASSERT_TRUE(file) << to_text(file.error());
+    (*file)->begin();
+    (*file)->write(EndMark{.tick = (*file)->last_tick()});
+    ASSERT_TRUE((*file)->commit());
+    EXPECT_TRUE(check(**file));
+}
+
+TEST_F(RunFileTest, ANewFileHasTheSchemaOfAStoredOne) {
+    const auto schema_of = [](const std::string& path) {
+        Database database{path, Database::Mode::ReadAtRest};
+        std::string schema;
+        for (Statement rows{database, "SELECT type || name || rootpage || sql FROM sqlite_schema"}; rows.row();) {
+            schema += rows.text(0) + "\n";
+        }
+        return schema;
+    };
+    const std::string stored =
+        (std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_4.evod").string();
+    const std::string path = folder.path() + "/new.evod";
+    ASSERT_TRUE(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}));
+    EXPECT_EQ(schema_of(path), schema_of(stored));
+}
+
+TEST_F(RunFileTest, AFileMayLackItsBuild) {
     const std::string path = recorded();
     change(path, "DELETE FROM run WHERE key = 'build'");
     const auto file = RunFile::open_read_only(path);
@@ -247,7 +302,7 @@ TEST_F(RunFileTest, AnOlderFileDoesNotTellItsBuild) {
     EXPECT_EQ((*file)->identity().build, "");
 }
 
-TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {
+TEST_F(RunFileTest, AnExistingFileIsNotOverwritten) {
     const std::string path = recorded();
     EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
               RefusalCode::AlreadyExists);

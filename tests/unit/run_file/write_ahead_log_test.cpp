@@ -1,5 +1,5 @@
-// Write-ahead logs as a killed program leaves them: with flipped bits, truncated, and with frames of earlier cycles or
-// of transactions that were rolled back behind the end.
+// Write-ahead logs of a killed program: with flipped bits, truncated, and with frames of earlier cycles or of rolled-back
+// transactions behind the end.
 #include "server/run_file/write_ahead_log.h"
 
 #include "tests/unit/recording/recorded_run.h"
@@ -61,7 +61,7 @@ class WriteAheadLogTest : public testing::Test {
     void commit(int pages) { run("INSERT INTO t (x) VALUES (randomblob(" + std::to_string(pages * 4000) + "))"); }
     std::string log() const { return bytes_of_file(path + "-wal"); }
     std::string index() const { return bytes_of_file(path + "-shm"); }
-    /// How many frames a log holds that SQLite would read.
+    /// The number of frames that SQLite would read.
     std::size_t frames() const { return database.log_pages(); }
 
     /// Flips bits of every frame up to `end`, each by itself: every bit of its head, and some of its page.
@@ -121,7 +121,7 @@ TEST_F(WriteAheadLogTest, WithoutItsIndexAllButTheLastCommitIsChecked) {
     });
 }
 
-TEST_F(WriteAheadLogTest, ALogThatIsCutAnywhereIsSound) {
+TEST_F(WriteAheadLogTest, ALogTruncatedAnywhereIsSound) {
     for (const int pages : {1, 3, 2}) {
         commit(pages);
     }
@@ -153,7 +153,7 @@ TEST_F(WriteAheadLogTest, ALastWriteTornOverAnEarlierCycleIsSound) {
               [&](const std::string& flipped, std::size_t) { EXPECT_TRUE(damage_in(flipped, index())); });
 }
 
-TEST_F(WriteAheadLogTest, FramesOfARolledBackTransactionAreNoDamage) {
+TEST_F(WriteAheadLogTest, FramesOfARolledBackTransactionAreSound) {
     run("PRAGMA cache_size = 5");
     commit(2);
     run("BEGIN");
@@ -171,7 +171,7 @@ TEST_F(WriteAheadLogTest, FramesOfARolledBackTransactionAreNoDamage) {
               [&](const std::string& flipped, std::size_t) { EXPECT_TRUE(damage_in(flipped, known)); });
 }
 
-TEST_F(WriteAheadLogTest, ALogThatIsBeingWrittenIsSound) {
+TEST_F(WriteAheadLogTest, ALogIsSoundWhileItIsWritten) {
     std::atomic<bool> stop = false;
     std::atomic<int> commits = 0;
     std::jthread writer{[&] {
@@ -191,7 +191,7 @@ TEST_F(WriteAheadLogTest, ALogThatIsBeingWrittenIsSound) {
     EXPECT_FALSE(database.failed()) << database.error();
 }
 
-TEST_F(WriteAheadLogTest, TheRefusalSaysHowToAcceptTheLoss) {
+TEST_F(WriteAheadLogTest, TheRefusalStatesHowToAcceptTheLoss) {
     for (const int pages : {1, 3, 2, 1}) {
         commit(pages);
     }

@@ -4,6 +4,7 @@
 #include "server/replay/mismatch.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
+#include "server/run_file/check.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -19,17 +20,17 @@ using namespace replay;
 
 constexpr std::int64_t bytes_max = 300 << 10;
 
-/// A hundred generations in a file that has room for some thirty of them whole.
-class ThinningTest : public testing::Test {
+/// A hundred generations in a file with room for some thirty whole ones.
+class RetentionTest : public testing::Test {
   protected:
-    ThinningTest() : data{*DataFolder::open(folder.path())} {
+    RetentionTest() : data{*DataFolder::open(folder.path())} {
         StorageThread thread{{.durability = Durability::Relaxed, .vfs = nullptr, .file_bytes_max = bytes_max}};
         RecordedRun run{data, thread};
         hashes.push_back(run.world().hash());
         for (int tick = 1; tick <= 12'050; ++tick) {
             if (tick % 1000 == 70) {
                 run.command(set_parameter("mutation_chance", 0.1 + tick * 1e-5));
-                // So that the file is written, and thinned, many times.
+                // Many commits, so that the retention is reduced several times.
                 EXPECT_TRUE(wait_until([&] { return thread.idle(); }));
             }
             run.advance(1);
@@ -52,28 +53,28 @@ class ThinningTest : public testing::Test {
     std::vector<GenerationEnded> ended;
 };
 
-TEST_F(ThinningTest, KeepsTheFileSmallAndTheRunWhole) {
+TEST_F(RetentionTest, TheFileStaysSmallAndTheRunComplete) {
     EXPECT_LT(std::filesystem::file_size(data.file_of("w")), 2 * bytes_max);
     const auto file = RunFile::open_read_only(data.file_of("w"));
     ASSERT_TRUE(file) << to_text(file.error());
-    const auto checked = (*file)->check();
+    const auto checked = check(**file);
     ASSERT_TRUE(checked) << to_text(checked.error());
-    EXPECT_EQ((*file)->last_generation(), 101u);
-    EXPECT_EQ((*file)->journal()->size(), 12u);
-    EXPECT_EQ((*file)->history(1000, 1000)->size(), 100u);
+    EXPECT_EQ((*file)->generations().last(), 101u);
+    EXPECT_EQ((*file)->journal().read()->size(), 12u);
+    EXPECT_EQ((*file)->generations().history(1000, 1000)->size(), 100u);
 
     std::vector<std::uint64_t> held;
     for (std::uint64_t generation = 1; generation <= 101; ++generation) {
-        if (*(*file)->beginning_of(generation)) {
+        if (*(*file)->generations().beginning_of(generation)) {
             held.push_back(generation);
         } else {
-            EXPECT_FALSE(*(*file)->outcome_of(generation)) << generation;
+            EXPECT_FALSE(*(*file)->generations().outcome_of(generation)) << generation;
         }
     }
     EXPECT_LT(held.size(), 60u);
     EXPECT_EQ(held.front(), 1u);
     EXPECT_EQ(held.back(), 101u);
-    // Evenly: among the older ones every second, or fourth, …; the newest are all there.
+    // Evenly: every second or fourth or … of the older ones, and all of the newest.
     const std::uint64_t step = held[1] - held[0];
     EXPECT_GE(step, 2u);
     EXPECT_EQ(held[2] - held[1], step);
@@ -84,10 +85,10 @@ TEST_F(ThinningTest, KeepsTheFileSmallAndTheRunWhole) {
     EXPECT_EQ(recovered->world.hash(), hashes.back());
 }
 
-TEST_F(ThinningTest, WhatWasTakenOutIsSimulatedAgain) {
+TEST_F(RetentionTest, PurgedGenerationsAreSimulatedAgain) {
     const auto file = RunFile::open_read_only(data.file_of("w"));
     for (const std::uint64_t generation : {2u, 8u, 15u, 40u}) {
-        ASSERT_FALSE(*(*file)->beginning_of(generation));
+        ASSERT_FALSE(*(*file)->generations().beginning_of(generation));
         auto rerun = Rerun::at(**file, generation, executor);
         ASSERT_TRUE(rerun) << to_text(rerun.error());
         EXPECT_EQ(rerun->world().moment().generation, generation);
@@ -100,12 +101,12 @@ TEST_F(ThinningTest, WhatWasTakenOutIsSimulatedAgain) {
     const auto forked = fork(**file, 8, data.file_of("fork"), "fork", {}, executor);
     ASSERT_TRUE(forked) << to_text(forked.error());
     const auto other = RunFile::open_read_only(data.file_of("fork"));
-    EXPECT_TRUE((*other)->beginning_of(8)->has_value());
+    EXPECT_TRUE((*other)->generations().beginning_of(8)->has_value());
 }
 
-TEST_F(ThinningTest, EveryGenerationIsReadWhole) {
+TEST_F(RetentionTest, EveryGenerationIsReadWhole) {
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    ASSERT_TRUE((*file)->hold_still());
+    ASSERT_TRUE((*file)->pin_snapshot());
     GenerationReader reader{**file, executor};
     const auto read = [&](std::uint64_t generation) {
         SCOPED_TRACE(generation);
@@ -127,9 +128,9 @@ TEST_F(ThinningTest, EveryGenerationIsReadWhole) {
     }
 }
 
-TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
+TEST_F(RetentionTest, LineageIsCompleteForwardsAndBackwards) {
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    ASSERT_TRUE((*file)->hold_still());
+    ASSERT_TRUE((*file)->pin_snapshot());
     std::vector<std::vector<Family>> generations;
     const auto forwards = each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
         generations.push_back(families);
@@ -150,7 +151,7 @@ TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
                 for (std::size_t organism = 0; organism < there.parents.size(); ++organism) {
                     const auto [first, second] = there.parents[organism];
                     strangers += first.island != island;
-                    // Whoever was kept has the genes of whom it is said to be, on whatever island that one lived.
+                    // A survivor has the genes of its parent, whatever island the parent lived on.
                     if (organism < there.survivor_count) {
                         EXPECT_TRUE(
                             (begun[generation - 1].born[island].genes.col(static_cast<Eigen::Index>(organism)) ==
@@ -166,17 +167,17 @@ TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
     EXPECT_GT(strangers, 0u);
 }
 
-TEST_F(ThinningTest, ALinkThatIsMissingWithoutHavingBeenTakenOutIsNamed) {
+TEST_F(RetentionTest, AMissingHashThatIsRetainedIsReported) {
     {
         Database database{data.file_of("w"), Database::Mode::Write};
         database.run(
             "DELETE FROM state_hash WHERE tick = (SELECT tick FROM state_hash ORDER BY tick LIMIT 1 OFFSET 3)");
     }
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    EXPECT_EQ((*file)->check().error().code, base::RefusalCode::DataLoss);
+    EXPECT_EQ(check(**file).error().code, base::RefusalCode::DataLoss);
 }
 
-TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
+TEST(Retention, PurgesInSmallSteps) {
     const TemporaryFolder folder;
     DataFolder data = *DataFolder::open(folder.path());
     base::InlineExecutor executor;
@@ -195,7 +196,7 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
     const auto held_in = [](RunFile& file) {
         std::vector<std::uint64_t> generations;
         for (std::uint64_t generation = 1; generation <= 41; ++generation) {
-            if (*file.beginning_of(generation)) {
+            if (*file.generations().beginning_of(generation)) {
                 generations.push_back(generation);
             }
         }
@@ -206,18 +207,18 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
     };
     const auto generations = [&] { return rows("generation) FROM population"); };
     const auto expect_whole = [&](RunFile& file) {
-        const auto checked = file.check();
+        const auto checked = check(file);
         EXPECT_TRUE(checked) << to_text(checked.error());
         const auto recovered = recover(file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_GE(recovered->world.moment().tick, 4860u) << "its last hash";
         EXPECT_EQ(recovered->world.hash(), hashes[recovered->world.moment().tick]);
-        for (const HashLink& link : *file.links(0, 4900)) {
+        for (const HashRecord& link : *file.hashes(0, 4900)) {
             EXPECT_EQ(link.hash, hashes[link.tick]);
         }
     };
     const std::vector<std::uint64_t> halved = [] {
-        std::vector<std::uint64_t> odd; // counted from the first; and the last two, which may be written to
+        std::vector<std::uint64_t> odd; // counted from the first; and the last two, which are never purged
         for (std::uint64_t generation = 1; generation <= 39; generation += 2) {
             odd.push_back(generation);
         }
@@ -228,30 +229,30 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
         const auto file = RunFile::open(path, {.file_bytes_max = 1000});
         ASSERT_TRUE(file) << to_text(file.error());
         ASSERT_TRUE((*file)->is_large());
-        ASSERT_TRUE((*file)->thin_if_large());
+        ASSERT_TRUE((*file)->shrink_if_large());
         EXPECT_EQ(held_in(**file), halved);
         EXPECT_EQ(generations(), 41) << "nothing is taken out yet";
         EXPECT_FALSE((*file)->is_large()) << "as far as is known before it is";
-        ASSERT_TRUE((*file)->thin_if_large());
+        ASSERT_TRUE((*file)->shrink_if_large());
         EXPECT_EQ(held_in(**file), halved);
         expect_whole(**file);
-        EXPECT_TRUE(*(*file)->tidy()); // that no part of a checkpoint is left over
-        EXPECT_TRUE(*(*file)->tidy());
+        EXPECT_TRUE(*(*file)->purge_step()); // finds that there are no orphaned parts
+        EXPECT_TRUE(*(*file)->purge_step());
         EXPECT_LT(generations(), 41);
         EXPECT_GE(generations(), std::ssize(halved));
         expect_whole(**file);
     }
-    // Whoever opens it next finishes it.
+    // After the file is opened again, the purge is completed.
     const auto file = RunFile::open(path, {});
-    EXPECT_FALSE(*(*file)->tidy()) << "a file that is only opened stays as it is";
+    EXPECT_FALSE(*(*file)->purge_step()) << "a file that is only opened stays as it is";
     (*file)->begin();
     ASSERT_TRUE((*file)->commit());
     int times = 0;
-    while (*(*file)->tidy()) {
+    while (*(*file)->purge_step()) {
         ASSERT_LT(++times, 1000);
     }
     EXPECT_EQ(generations(), std::ssize(halved));
-    EXPECT_EQ(rows("tick) FROM state_hash"), std::ssize(*(*file)->links(0, 4900)));
+    EXPECT_EQ(rows("tick) FROM state_hash"), std::ssize(*(*file)->hashes(0, 4900)));
     EXPECT_LT(rows("tick) FROM state_hash"), 60);
     EXPECT_EQ(held_in(**file), halved);
     expect_whole(**file);

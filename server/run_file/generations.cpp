@@ -1,0 +1,328 @@
+#include "server/run_file/generations.h"
+
+#include "server/run_file/rows.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::run_file {
+namespace {
+
+using base::Result;
+
+std::string accounts_text(std::uint64_t generation) {
+    return "the selection accounts of generation " + std::to_string(generation);
+}
+
+std::vector<std::int64_t> value_of(std::uint64_t generation) {
+    return {static_cast<std::int64_t>(generation)};
+}
+
+constexpr const char* of_generation = "generation = ? ORDER BY island";
+constexpr const char* from_generation_to = "generation >= ? AND generation < ? ORDER BY generation, island";
+
+} // namespace
+
+struct Generations::Writers {
+    explicit Writers(Database& database)
+        : generation{database}
+        , population{database}
+        , founders{database}
+        , account{database}
+        , outcome{database}
+        , statistics{database} {}
+
+    TableWriter<GenerationTable> generation;
+    TableWriter<PopulationTable> population;
+    TableWriter<FoundersTable> founders;
+    TableWriter<SelectionAccountTable> account;
+    TableWriter<OutcomeTable> outcome;
+    TableWriter<StatisticsTable> statistics;
+};
+
+Generations::Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
+                         Retention& retention)
+    : database_{database}, identity_{identity}, parameter_sets_{parameter_sets}, retention_{retention} {}
+
+Generations::~Generations() = default;
+
+Generations::Writers& Generations::writers() {
+    if (!writers_) {
+        writers_ = std::make_unique<Writers>(database_.database);
+    }
+    return *writers_;
+}
+
+std::uint64_t Generations::at_tick(std::uint64_t tick) {
+    return std::max(
+        identity_.first_generation,
+        database_.natural("SELECT max(generation) FROM generation WHERE first_tick < " + std::to_string(tick)));
+}
+
+Result<std::optional<simulation::Opening>> Generations::opening_of(std::uint64_t generation) {
+    TableReader<GenerationTable> reader{database_.database, "generation = ?", value_of(generation)};
+    GenerationTable::Row row;
+    if (!reader.next(row)) {
+        return database_.unless_failed(std::optional<simulation::Opening>{});
+    }
+    if (!reader.sound()) {
+        return database_.damaged(row_text(GenerationTable::name, generation));
+    }
+    const auto set = parameter_sets_.read(row.parameters);
+    if (!set) {
+        return set.error();
+    }
+    return std::optional{simulation::Opening{.moment = row.moment, .parameters = *set, .progress = row.progress}};
+}
+
+Result<std::vector<evolution::NextGeneration>> Generations::born_in(const simulation::Opening& opening) {
+    std::vector<evolution::NextGeneration> islands;
+    TableReader<PopulationTable> rows{database_.database, of_generation, value_of(opening.moment.generation)};
+    const auto bad = [&] {
+        return database_.damaged("the population of generation " + std::to_string(opening.moment.generation) +
+                                 " on island " + std::to_string(islands.size()));
+    };
+    PopulationTable::Row row{};
+    while (rows.next(row)) {
+        const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
+        if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
+            (!row.born.parents.empty() && row.born.parents.size() != organisms)) { // the first generation has none
+            return bad();
+        }
+        islands.push_back(std::move(row.born));
+    }
+    if (database_.failed()) {
+        return database_.failure();
+    }
+    if (islands.size() != opening.parameters.active.island_count) {
+        return bad();
+    }
+    return islands;
+}
+
+Result<simulation::Founders> Generations::founders_of(const GenerationBegun& begun) {
+    simulation::Founders islands;
+    const std::uint64_t generation = begun.opening.moment.generation;
+    const auto bad = [&] { return database_.damaged("the founders of generation " + std::to_string(generation)); };
+    TableReader<FoundersTable> rows{database_.database, of_generation, value_of(generation)};
+    bool known = true;
+    FoundersTable::Row row{};
+    while (rows.next(row)) {
+        if (!rows.sound() || row.island != islands.size() || row.island >= begun.born.size()) {
+            return bad();
+        }
+        known &= row.founders.size() == static_cast<std::size_t>(begun.born[row.island].genes.cols());
+        if (!known && !row.founders.empty()) {
+            return bad();
+        }
+        islands.push_back(std::move(row.founders));
+    }
+    if (database_.failed()) {
+        return database_.failure();
+    }
+    if (islands.size() != begun.born.size()) {
+        return bad();
+    }
+    return known ? std::move(islands) : simulation::Founders{};
+}
+
+Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation, std::size_t island_count) {
+    Accounts islands;
+    TableReader<SelectionAccountTable> rows{database_.database, of_generation, value_of(generation)};
+    SelectionAccountTable::Row row;
+    while (rows.next(row)) {
+        if (!rows.sound() || row.island != islands.size()) {
+            return database_.damaged(accounts_text(generation));
+        }
+        islands.push_back(row.account);
+    }
+    if (database_.failed() || islands.size() != island_count) {
+        return database_.damaged(accounts_text(generation));
+    }
+    return islands;
+}
+
+Result<std::optional<GenerationBegun>> Generations::beginning_of(std::uint64_t generation) {
+    auto opening = opening_of(generation);
+    if (!opening) {
+        return opening.error();
+    }
+    if (!*opening || !retention_.is_retained(generation)) {
+        return std::optional<GenerationBegun>{};
+    }
+    auto born = born_in(**opening);
+    if (!born) {
+        return born.error();
+    }
+    GenerationBegun begun{.opening = **opening, .born = *std::move(born)};
+    auto founders = founders_of(begun);
+    if (!founders) {
+        return founders.error();
+    }
+    begun.founders = *std::move(founders);
+    const auto accounts = accounts_of(generation, begun.born.size());
+    if (!accounts) {
+        return accounts.error();
+    }
+    for (std::size_t island = 0; island < accounts->size(); ++island) {
+        begun.born[island].account = (*accounts)[island];
+    }
+    return std::optional{std::move(begun)};
+}
+
+Result<std::optional<GenerationEnded>> Generations::outcome_of(std::uint64_t generation) {
+    GenerationEnded ended{.generation = generation, .outcomes = {}, .statistics = {}};
+    const auto bad = [&] { return database_.damaged("the outcome of generation " + std::to_string(generation)); };
+    TableReader<OutcomeTable> rows{database_.database, of_generation, value_of(generation)};
+    OutcomeTable::Row row{};
+    while (rows.next(row)) {
+        const std::size_t organisms = row.outcome.fitness.size();
+        if (!rows.sound() || row.island != ended.outcomes.size() || row.outcome.lived_ticks.size() != organisms ||
+            row.outcome.cause.size() != organisms) {
+            return bad();
+        }
+        ended.outcomes.push_back(std::move(row.outcome));
+    }
+    if (database_.failed()) {
+        return database_.failure();
+    }
+    if (ended.outcomes.empty() && !retention_.is_retained(generation)) {
+        return std::optional<GenerationEnded>{};
+    }
+    auto statistics = statistics_of(generation);
+    if (!statistics) {
+        return statistics.error();
+    }
+    ended.statistics = *std::move(statistics);
+    if (ended.outcomes.size() != ended.statistics.size()) {
+        return bad();
+    }
+    if (ended.outcomes.empty()) {
+        return std::optional<GenerationEnded>{};
+    }
+    return std::optional{std::move(ended)};
+}
+
+Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of(std::uint64_t generation) {
+    std::vector<simulation::GenerationStatistics> statistics;
+    TableReader<StatisticsTable> rows{database_.database, of_generation, value_of(generation)};
+    simulation::GenerationStatistics island;
+    while (rows.next(island)) {
+        if (!rows.sound() || island.island != statistics.size()) {
+            return database_.damaged("a row of the statistics of generation " + std::to_string(generation));
+        }
+        statistics.push_back(island);
+    }
+    if (database_.failed()) {
+        return database_.failure();
+    }
+    if (statistics.empty()) {
+        return statistics;
+    }
+    const auto accounts = accounts_of(generation, statistics.size());
+    if (!accounts) {
+        return accounts.error();
+    }
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+        statistics[i].account = (*accounts)[i];
+    }
+    return statistics;
+}
+
+Result<simulation::World::History> Generations::history(std::uint64_t before, std::size_t count) {
+    simulation::World::History history;
+    const std::uint64_t own = identity_.first_generation;
+    const std::uint64_t first =
+        std::max(own - identity_.inherited_generations, before - std::min<std::uint64_t>(before, count));
+    if (first < own) {
+        if (auto read = read_history(InheritedStatisticsTable::name, first, std::min(own, before), history); !read) {
+            return read.error();
+        }
+        if (first + history.size() < std::min(own, before)) {
+            return database_.damaged(row_text(InheritedStatisticsTable::name, first + history.size()));
+        }
+    }
+    if (auto read = read_history(StatisticsTable::name, std::max(first, own), before, history); !read) {
+        return read.error();
+    }
+    if (first + history.size() < std::min(before, last())) { // every generation before the last has ended
+        return database_.damaged(row_text(StatisticsTable::name, first + history.size()));
+    }
+    return history;
+}
+
+Result<void> Generations::read_history(const char* table, std::uint64_t first, std::uint64_t end,
+                                       simulation::World::History& history) {
+    const std::vector<std::int64_t> range{static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
+    TableReader<StatisticsTable> numbers{database_.database, from_generation_to, range, table};
+    // The accounts of the same generations, and of one more if the last has not ended.
+    TableReader<SelectionAccountTable> accounts{database_.database, from_generation_to, range};
+    std::uint64_t expected = first;
+    std::vector<simulation::GenerationStatistics> rows; // of the generation `expected`
+    simulation::GenerationStatistics statistics;
+    SelectionAccountTable::Row account;
+    while (numbers.next(statistics)) {
+        if (statistics.island == 0 && !rows.empty()) {
+            history.emplace_back(std::exchange(rows, {}));
+            ++expected;
+        }
+        if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size()) {
+            return database_.damaged(row_text(table, expected));
+        }
+        if (!accounts.next(account) || !accounts.sound() || account.generation != expected ||
+            account.island != statistics.island) {
+            return database_.damaged(accounts_text(expected));
+        }
+        statistics.account = account.account;
+        rows.push_back(statistics);
+    }
+    if (!rows.empty()) {
+        history.emplace_back(std::move(rows));
+    }
+    return database_.unless_failed();
+}
+
+void Generations::write(const Inherited& inherited) {
+    TableWriter<InheritedStatisticsTable> statistics{database_.database};
+    for (const simulation::GenerationRows& generation : inherited.history) {
+        for (const simulation::GenerationStatistics& island : generation) {
+            statistics.write(island);
+            writers().account.write(SelectionAccountTable::Row{island.generation, island.island, island.account});
+        }
+    }
+}
+
+void Generations::write(const GenerationBegun& begun) {
+    const simulation::Opening& opening = begun.opening;
+    const std::uint64_t generation = opening.moment.generation;
+    const std::int64_t parameters = parameter_sets_.number_of(opening.parameters);
+    writers().generation.write(GenerationTable::Row{opening.moment, parameters, opening.progress});
+    const std::vector<std::uint32_t> unknown;
+    for (std::size_t island = 0; island < begun.born.size(); ++island) {
+        const evolution::NextGeneration& born = begun.born[island];
+        writers().population.write(
+            PopulationTable::View{generation, island, static_cast<std::uint64_t>(born.genes.cols()), born});
+        writers().founders.write(
+            FoundersTable::View{generation, island, begun.founders.empty() ? unknown : begun.founders[island]});
+        writers().account.write(SelectionAccountTable::Row{generation, island, born.account});
+    }
+    // The generation before was retained only while it was the last.
+    const std::uint64_t before = generation - 1;
+    if (before <= identity_.first_generation || (before - identity_.first_generation) % retention_.keep_every() == 0) {
+        return;
+    }
+    for (const char* table : {"population", "founders", "outcome", "checkpoint"}) {
+        database_.run("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before));
+    }
+}
+
+void Generations::write(const GenerationEnded& ended) {
+    for (std::size_t island = 0; island < ended.outcomes.size(); ++island) {
+        writers().outcome.write(OutcomeTable::View{ended.generation, island, ended.outcomes[island]});
+    }
+    for (const simulation::GenerationStatistics& statistics : ended.statistics) {
+        writers().statistics.write(statistics);
+    }
+}
+
+} // namespace evod::run_file

@@ -1,0 +1,68 @@
+// Generations: the tables of a run file that describe generations: how each began, its populations, founders and
+// selection accounts, and what came of it, its outcomes and statistics.
+//
+// Owner        a RunFile.
+#pragma once
+
+#include "server/run_file/parameter_sets.h"
+#include "server/run_file/records.h"
+#include "server/run_file/retention.h"
+#include "server/run_file/run_database.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::run_file {
+
+class Generations {
+  public:
+    /// Everything passed in outlives this.
+    Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
+                Retention& retention);
+    ~Generations();
+
+    /// The newest generation that has begun; 0 for none.
+    std::uint64_t last() { return database_.natural("SELECT max(generation) FROM generation"); }
+    /// The newest generation that has ended; 0 for none.
+    std::uint64_t last_ended() { return database_.natural("SELECT max(generation) FROM statistics"); }
+    /// The generation in which the run was after this tick; the first if the run had not begun.
+    std::uint64_t at_tick(std::uint64_t tick);
+
+    /// Nothing if the generation has not begun.
+    base::Result<std::optional<simulation::Opening>> opening_of(std::uint64_t generation);
+    /// Nothing if the generation has not begun, or is not retained.
+    base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
+    /// Nothing if the generation has not ended, or is not retained.
+    base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
+    /// One entry per island; empty if the generation has not ended.
+    base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
+    /// The statistics of the last `count` generations before this one, oldest first; a fork's include inherited ones.
+    base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
+
+    void write(const Inherited& inherited);
+    void write(const GenerationBegun& begun);
+    void write(const GenerationEnded& ended);
+
+  private:
+    struct Writers;
+    using Accounts = std::vector<std::optional<evolution::SelectionAccount>>;
+
+    base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
+    base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
+    /// One per island; also of generations that a fork inherited.
+    base::Result<Accounts> accounts_of(std::uint64_t generation, std::size_t island_count);
+    /// Appends to `history` the generations of a table of statistics from `first` up to, not including, `end`.
+    base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
+                                    simulation::World::History& history);
+    Writers& writers();
+
+    RunDatabase& database_;
+    const RunIdentity& identity_;
+    ParameterSets& parameter_sets_;
+    Retention& retention_;
+    std::unique_ptr<Writers> writers_;
+};
+
+} // namespace evod::run_file

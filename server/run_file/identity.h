@@ -1,0 +1,19 @@
+// Identity: the tables `run` and `first_population` of a run file: what the run began with.
+#pragma once
+
+#include "server/run_file/records.h"
+#include "server/run_file/run_database.h"
+
+namespace evod::run_file {
+
+struct StoredIdentity {
+    RunIdentity run;
+    std::uint64_t keep_every = 1; // Retention::keep_every()
+};
+
+void write_identity(RunDatabase& database, const StoredIdentity& identity);
+
+/// DATA_LOSS where a row is damaged, missing or contradicts another one.
+base::Result<StoredIdentity> read_identity(RunDatabase& database);
+
+} // namespace evod::run_file

@@ -1,0 +1,43 @@
+#include "server/run_file/parameter_sets.h"
+
+#include "server/parameters/experiment.h"
+#include "server/run_file/rows.h"
+
+namespace evod::run_file {
+
+base::Result<parameters::ParameterSet> ParameterSets::read(std::int64_t number) {
+    if (read_ && read_->number == number) {
+        return read_->set;
+    }
+    TableReader<ParametersTable> reader{database_.database, "number = ?", {number}};
+    ParametersTable::Row row;
+    const bool found = reader.next(row);
+    const auto active = parameters::parse_experiment(row.active);
+    const auto requested = parameters::parse_experiment(row.requested);
+    if (!found || !reader.sound() || !active || !requested) {
+        return database_.damaged(row_text(ParametersTable::name, static_cast<std::uint64_t>(number)));
+    }
+    parameters::ParameterSet set;
+    set.revision = row.revision;
+    set.active = active->parameters;
+    set.requested = requested->parameters;
+    read_ = Numbered{number, set};
+    return set;
+}
+
+std::int64_t ParameterSets::number_of(const parameters::ParameterSet& set) {
+    using parameters::Written;
+    if (written_ && written_->set.revision == set.revision && written_->set.active == set.active &&
+        written_->set.requested == set.requested) {
+        return written_->number;
+    }
+    const std::int64_t number =
+        1 + (written_ ? written_->number : database_.number("SELECT max(number) FROM parameters"));
+    TableWriter<ParametersTable>{database_.database}.write(
+        ParametersTable::Row{number, set.revision, to_experiment_text(set.active, Written::Everything),
+                             to_experiment_text(set.requested, Written::Everything)});
+    written_ = Numbered{number, set};
+    return number;
+}
+
+} // namespace evod::run_file

@@ -1,0 +1,298 @@
+// Rows: every table of a run file, declared once (table.h). What the columns mean: docs/RUN_FILE.md.
+//
+// The declarations are the format. A change of a name, type or order makes another format.
+#pragma once
+
+#include "server/run_file/records.h"
+#include "server/run_file/table.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace evod::run_file {
+
+struct RunTable {
+    static constexpr const char* name = "run";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        std::string key, value;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("key", row.key);
+        column("value", row.value);
+    }
+};
+
+struct FirstPopulationTable {
+    static constexpr const char* name = "first_population";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        std::uint64_t island = 0, organism_count = 0;
+        evolution::GeneMatrix chromosomes;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("island", row.island);
+        column("organism_count", row.organism_count);
+        column("chromosomes", Blob{row.chromosomes});
+    }
+};
+
+struct ParametersTable {
+    static constexpr const char* name = "parameters";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        std::int64_t number = 0;
+        std::uint64_t revision = 0;
+        std::string active, requested; // experiment files
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("number", row.number);
+        column("revision", row.revision);
+        column("active", row.active);
+        column("requested", row.requested);
+    }
+};
+
+struct JournalTable {
+    static constexpr const char* name = "journal";
+    static constexpr std::size_t key_columns = 1;
+    using Row = JournalEntry;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("number", row.number);
+        column("tick", row.tick);
+        column("client", row.origin.client);
+        column("client_key", row.origin.client_key);
+        column("request_id", row.origin.request_id);
+        column("request", Blob{row.origin.request});
+        column("answer", Blob{row.answer});
+        column("endless", row.control.endless);
+        column("until_generation", row.control.until_generation);
+        column("until_tick", row.control.until_tick);
+        column("paused", pause_column(row.control));
+        column("speed", row.control.speed);
+    }
+
+  private:
+    template <class Control>
+    static auto pause_column(Control& control) {
+        using Flag = std::remove_reference_t<decltype((control.paused))>;
+        return PauseColumn<Flag>{control.paused, control.leased};
+    }
+};
+
+struct GenerationTable {
+    static constexpr const char* name = "generation";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        simulation::Moment moment;
+        std::int64_t parameters = 0; // ParametersTable::Row::number
+        evolution::Progress progress;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.moment.generation);
+        column("first_tick", row.moment.tick);
+        column("simulated_s", row.moment.simulated_s);
+        column("parameters", row.parameters);
+        column("generations_over", row.progress.generations);
+        column("stagnant", row.progress.stagnant);
+        column("best_fitness", row.progress.best_fitness);
+        column("last_best_fitness", row.progress.last_best_fitness);
+        column("last_died_out", row.progress.last_died_out);
+    }
+};
+
+struct PopulationTable {
+    static constexpr const char* name = "population";
+    static constexpr std::size_t key_columns = 2;
+    template <class Born>
+    struct RowOf {
+        std::uint64_t generation, island, organism_count;
+        Born born;
+    };
+    using Row = RowOf<evolution::NextGeneration>;
+    using View = RowOf<const evolution::NextGeneration&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("organism_count", row.organism_count);
+        column("elite_count", row.born.elite_count);
+        column("survivor_count", row.born.survivor_count);
+        column("clamped_count", row.born.clamped_count);
+        column("chromosomes", Blob{row.born.genes});
+        column("parents", Blob{row.born.parents});
+    }
+};
+
+struct FoundersTable {
+    static constexpr const char* name = "founders";
+    static constexpr std::size_t key_columns = 2;
+    template <class Founders>
+    struct RowOf {
+        std::uint64_t generation, island;
+        Founders founders; // empty: not known
+    };
+    using Row = RowOf<std::vector<std::uint32_t>>;
+    using View = RowOf<const std::vector<std::uint32_t>&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("founders", Blob{row.founders});
+    }
+};
+
+struct SelectionAccountTable {
+    static constexpr const char* name = "selection_account";
+    static constexpr std::size_t key_columns = 2;
+    static constexpr bool one_line = true;
+    struct Row {
+        std::uint64_t generation = 0, island = 0;
+        std::optional<evolution::SelectionAccount> account;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("", AccountColumns<std::remove_reference_t<decltype((row.account))>>{row.account});
+    }
+};
+
+struct OutcomeTable {
+    static constexpr const char* name = "outcome";
+    static constexpr std::size_t key_columns = 2;
+    template <class Outcome>
+    struct RowOf {
+        std::uint64_t generation, island;
+        Outcome outcome;
+    };
+    using Row = RowOf<IslandOutcome>;
+    using View = RowOf<const IslandOutcome&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("fitness", Blob{row.outcome.fitness});
+        column("lived_ticks", Blob{row.outcome.lived_ticks});
+        column("cause", Blob{row.outcome.cause});
+    }
+};
+
+struct StatisticsTable {
+    static constexpr const char* name = "statistics";
+    static constexpr std::size_t key_columns = 2;
+    static constexpr bool one_line = true;
+    using Row = simulation::GenerationStatistics;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        simulation::for_each_number(row, column);
+    }
+};
+
+/// The statistics of the generations of its origin before a fork's first one.
+struct InheritedStatisticsTable : StatisticsTable {
+    static constexpr const char* name = "inherited_statistics";
+};
+
+struct StateHashTable {
+    static constexpr const char* name = "state_hash";
+    static constexpr std::size_t key_columns = 1;
+    using Row = HashRecord;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("tick", row.tick);
+        column("low", row.hash.low);
+        column("high", row.hash.high);
+    }
+};
+
+struct CheckpointRowTable {
+    static constexpr const char* name = "checkpoint";
+    static constexpr std::size_t key_columns = 1;
+    template <class State>
+    struct RowOf {
+        simulation::Moment moment;
+        std::int64_t parameters = 0; // ParametersTable::Row::number
+        std::uint64_t journal_entries = 0;
+        base::StateHash hash;
+        CoveredChecksums parts; // of the rows of CheckpointPartTable, in order
+        State state;            // what follows the parts
+    };
+    using Row = RowOf<std::string>;
+    using View = RowOf<const std::span<const std::byte>&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("tick", row.moment.tick);
+        column("generation", row.moment.generation);
+        column("generation_tick", row.moment.generation_tick);
+        column("simulated_s", row.moment.simulated_s);
+        column("parameters", row.parameters);
+        column("journal_entries", row.journal_entries);
+        column("low", row.hash.low);
+        column("high", row.hash.high);
+        column("", row.parts);
+        column("state", Blob{row.state});
+    }
+};
+
+struct CheckpointPartTable {
+    static constexpr const char* name = "checkpoint_part";
+    static constexpr std::size_t key_columns = 2;
+    template <class Bytes>
+    struct RowOf {
+        std::uint64_t tick, part;
+        Bytes bytes;
+    };
+    using Row = RowOf<std::string>;
+    using View = RowOf<const std::span<const std::byte>&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("tick", row.tick);
+        column("part", row.part);
+        column("bytes", Blob{row.bytes});
+    }
+};
+
+/// The retention rules of a file; the row with the greatest number holds.
+struct ThinnedTable {
+    static constexpr const char* name = "thinned";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        std::uint64_t number = 0;
+        RetentionRule rule;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("number", row.number);
+        column("keep_every", row.rule.keep_every);
+        column("until_generation", row.rule.until_generation);
+        column("until_tick", row.rule.until_tick);
+    }
+};
+
+struct EndMarkTable {
+    static constexpr const char* name = "end_mark";
+    static constexpr std::size_t key_columns = 1;
+    struct Row {
+        std::uint64_t number = 1;
+        std::string how; // "ended" or "closed"
+        EndMark mark;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("number", row.number);
+        column("how", row.how);
+        column("tick", row.mark.tick);
+        column("journal_entries", row.mark.journal_entries);
+        column("generations", row.mark.generations);
+        column("links", row.mark.hashes);
+    }
+};
+
+} // namespace evod::run_file

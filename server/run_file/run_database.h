@@ -1,0 +1,58 @@
+// Run database: the SQLite database of one run file, with its path for error messages.
+//
+// Owner        the RunFile; its tables refer to it.
+// Threads      one at a time.
+#pragma once
+
+#include "server/base/result.h"
+#include "server/run_file/database.h"
+
+#include <string>
+#include <utility>
+
+namespace evod::run_file {
+
+struct RunDatabase {
+    const std::string path;
+    Database database;
+
+    RunDatabase(std::string file, Database::Mode mode, const char* vfs)
+        : path{std::move(file)}, database{path, mode, vfs} {}
+
+    bool failed() const { return database.failed(); }
+    void run(const std::string& sql) { database.run(sql.c_str()); }
+    /// The whole number that a query returns; 0 for none.
+    std::int64_t number(const std::string& sql) { return database.number(sql.c_str()); }
+    std::uint64_t natural(const std::string& sql) { return static_cast<std::uint64_t>(number(sql)); }
+
+    void begin() { run("BEGIN IMMEDIATE"); }
+    /// After a failure it is not known whether the transaction is in the file.
+    base::Result<void> commit() {
+        run("COMMIT");
+        return unless_failed();
+    }
+
+    /// The error of the database, with the path: DATA_LOSS if SQLite found damage, otherwise UNAVAILABLE.
+    base::Refusal failure() const;
+    /// DATA_LOSS: `what` differs from what was written.
+    base::Refusal damaged(const std::string& what) const;
+    /// The value, or failure() if the database has failed.
+    template <class T>
+    base::Result<T> unless_failed(T value) const {
+        if (failed()) {
+            return failure();
+        }
+        return value;
+    }
+    base::Result<void> unless_failed() const {
+        if (failed()) {
+            return failure();
+        }
+        return {};
+    }
+};
+
+/// "the row 7 of its table journal"
+std::string row_text(const std::string& table, std::uint64_t key);
+
+} // namespace evod::run_file

@@ -1,0 +1,126 @@
+#include "server/run_file/schema.h"
+
+#include "server/run_file/rows.h"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace evod::run_file {
+namespace {
+
+using base::RefusalCode;
+using base::Result;
+
+/// A row of SQLite's table sqlite_schema.
+struct SchemaRow {
+    std::string type, name, table, sql;
+    friend auto operator<=>(const SchemaRow&, const SchemaRow&) = default;
+};
+using Schema = std::set<SchemaRow>;
+
+constexpr const char* all_of_schema = "SELECT type, name, tbl_name, sql FROM sqlite_schema";
+
+SchemaRow read_schema_row(const Statement& row) {
+    return {.type = row.text(0), .name = row.text(1), .table = row.text(2), .sql = row.text(3)};
+}
+
+template <class... Tables>
+void create_tables(Database& database) {
+    (database.run(create_statement<Tables>().c_str()), ...);
+}
+
+/// The order of the tables is part of the format: it determines the numbers of their first pages.
+void create_all_tables(Database& database) {
+    create_tables<RunTable, FirstPopulationTable, ParametersTable, JournalTable, GenerationTable, PopulationTable,
+                  OutcomeTable, StateHashTable, ThinnedTable, EndMarkTable, StatisticsTable, InheritedStatisticsTable,
+                  CheckpointRowTable, CheckpointPartTable, FoundersTable, SelectionAccountTable>(database);
+}
+
+/// Files that began with a format before 4 may lack this table.
+constexpr std::string_view optional_table = FirstPopulationTable::name;
+
+const Schema& expected_schema() {
+    static const Schema expected = [] {
+        Database database{":memory:", Database::Mode::Write};
+        create_all_tables(database);
+        Schema schema;
+        for (Statement rows{database, all_of_schema}; rows.row();) {
+            schema.insert(read_schema_row(rows));
+        }
+        return schema;
+    }();
+    return expected;
+}
+
+/// As a message names it: `the table "run"`. The name may come from an untrusted file.
+std::string described(const SchemaRow& row) {
+    constexpr std::size_t name_bytes_max = 64;
+    std::string text = "the " + row.type.substr(0, name_bytes_max) + " \"" + row.name.substr(0, name_bytes_max) + '"';
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
+    return text;
+}
+
+Result<void> check_tables(RunDatabase& database) {
+    Schema found;
+    for (Statement rows{database.database, all_of_schema}; rows.row();) {
+        SchemaRow row = read_schema_row(rows);
+        if (!expected_schema().contains(row)) {
+            return refusal(RefusalCode::DataLoss, database.path + " is not as evod wrote it: " + described(row) +
+                                                      " does not belong to a run file and could change what is read");
+        }
+        found.insert(std::move(row));
+    }
+    if (database.failed()) {
+        return database.failure();
+    }
+    const Schema& expected = expected_schema();
+    for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // a table before its indices
+        if (!found.contains(*row) && row->table != optional_table) {
+            return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks " + described(*row));
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+void create_schema(RunDatabase& database) {
+    database.run("PRAGMA application_id = " + std::to_string(application_id));
+    database.run("PRAGMA user_version = " + std::to_string(format_version));
+    create_all_tables(database.database);
+}
+
+bool is_empty(RunDatabase& database) {
+    return database.number("PRAGMA application_id") == 0 &&
+           database.number("SELECT count(*) FROM sqlite_schema") == 0 && !database.failed();
+}
+
+base::Refusal empty_file(const std::string& path) {
+    return refusal(RefusalCode::DataLoss, path + " is damaged: the file is empty");
+}
+
+Result<void> check_schema(RunDatabase& database) {
+    const std::int64_t application = database.number("PRAGMA application_id");
+    const std::int64_t format = database.number("PRAGMA user_version");
+    if (database.failed()) {
+        return database.failure();
+    }
+    if (is_empty(database)) {
+        return empty_file(database.path);
+    }
+    if (application != application_id) {
+        return refusal(RefusalCode::InvalidArgument, database.path + " is not a run file of evod");
+    }
+    if (format != format_version) {
+        return refusal(RefusalCode::FailedPrecondition,
+                       database.path + " was written by " + (format > format_version ? "a newer" : "an older") +
+                           " evod: its format is version " + std::to_string(format) + ", this evod reads version " +
+                           std::to_string(format_version));
+    }
+    return check_tables(database);
+}
+
+} // namespace evod::run_file

@@ -1,0 +1,295 @@
+// Table: a table of a run file, declared once. Its CREATE, INSERT and SELECT statements and the checksum of its rows
+// follow from that declaration.
+//
+// A table is a type with these members (rows.h has all of them):
+//
+//   name                   the table's name in the file
+//   key_columns            how many of the first columns form the primary key
+//   Row                    one row as it is read
+//   columns(row, column)   calls column("name", member) for each column, in order; a template, so that a struct with the
+//                          same member names can be written without copying its contents into a Row
+//
+// The type of a member determines the type of its column: whole numbers, bool and enumerators INTEGER, double REAL,
+// std::string TEXT, Blob BLOB; std::optional allows NULL.
+#pragma once
+
+#include "server/evolution/chromosome.h"
+#include "server/evolution/price.h"
+#include "server/run_file/row.h"
+
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace evod::run_file {
+
+/// A member that is stored as a BLOB, lowest byte first: a string, a span, a vector of numbers or a matrix of genes.
+template <class Container>
+struct Blob {
+    Container& value;
+};
+template <class Container>
+Blob(Container&) -> Blob<Container>;
+
+/// One INTEGER column for the two flags of a run's control: 0 running, 1 paused, 2 paused until a lease ends.
+template <class Flag>
+struct PauseColumn {
+    Flag &paused, &leased;
+};
+
+/// The columns of a selection account; all are NULL if there is no account.
+template <class Account>
+struct AccountColumns {
+    Account& account;
+};
+
+/// No column: checksums of other rows that the row's checksum covers at this place.
+struct CoveredChecksums {
+    std::vector<std::int64_t> values;
+    std::function<void()> read = {}; // fills in `values` when a row is read; called after the columns before this place
+};
+
+struct Column {
+    std::string name, type; // "REAL NOT NULL"
+};
+
+/// Collects the columns of a table.
+class DescribeColumns {
+  public:
+    template <class T>
+    void operator()(const std::string& name, const T&) {
+        columns.push_back({name, type_of(static_cast<T*>(nullptr))});
+    }
+    template <class Account>
+    void operator()(const std::string&, const AccountColumns<Account>&) {
+        evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) {
+            columns.push_back({name, "REAL"});
+        });
+    }
+    void operator()(const std::string&, const CoveredChecksums&) {}
+
+    std::vector<Column> columns;
+
+  private:
+    template <class T>
+    static std::string type_of(T*) {
+        return std::is_floating_point_v<T> ? "REAL NOT NULL" : "INTEGER NOT NULL";
+    }
+    template <class T>
+    static std::string type_of(std::optional<T>*) {
+        return std::is_floating_point_v<T> ? "REAL" : "INTEGER";
+    }
+    template <class T>
+    static std::string type_of(Blob<T>*) {
+        return "BLOB NOT NULL";
+    }
+    static std::string type_of(std::string*) { return "TEXT NOT NULL"; }
+};
+
+template <class Table>
+std::vector<Column> columns_of() {
+    DescribeColumns describe;
+    typename Table::Row row{};
+    Table::columns(row, describe);
+    return std::move(describe.columns);
+}
+
+template <class Table>
+std::vector<std::string> column_names() {
+    std::vector<std::string> names;
+    for (Column& column : columns_of<Table>()) {
+        names.push_back(std::move(column.name));
+    }
+    return names;
+}
+
+/// The CREATE statement. Its text is part of every file: a file whose schema has another one is refused.
+std::string create_statement(const std::string& table, const std::vector<Column>& columns, std::size_t key_columns,
+                             bool one_line);
+
+template <class Table>
+std::string create_statement() {
+    return create_statement(
+        Table::name, columns_of<Table>(), Table::key_columns, requires { Table::one_line; });
+}
+
+/// Binds the columns of a row.
+class PutColumns {
+  public:
+    explicit PutColumns(RowWriter& writer) : writer_{writer} {}
+
+    template <class T>
+    void operator()(const std::string&, const T& value) {
+        if constexpr (std::is_floating_point_v<T>) {
+            writer_.real(value);
+        } else {
+            writer_.integer(static_cast<std::int64_t>(value));
+        }
+    }
+    void operator()(const std::string&, const std::string& value) { writer_.text(value); }
+    void operator()(const std::string&, const std::optional<double>& value) { writer_.real(value); }
+    void operator()(const std::string&, const std::optional<std::uint64_t>& value) {
+        writer_.integer(value ? std::optional{static_cast<std::int64_t>(*value)} : std::nullopt);
+    }
+    template <class T>
+    void operator()(const std::string&, const Blob<T>& blob) {
+        writer_.bytes(bytes_of(blob.value));
+    }
+    template <class T>
+    void operator()(const std::string&, const PauseColumn<T>& pause) {
+        writer_.integer(std::int64_t{pause.paused} + pause.leased);
+    }
+    template <class T>
+    void operator()(const std::string&, const AccountColumns<T>& columns) {
+        evolution::for_each_number(columns.account,
+                                   [&](const std::string&, std::optional<double> value) { writer_.real(value); });
+    }
+    void operator()(const std::string&, const CoveredChecksums& covered) {
+        for (const std::int64_t checksum : covered.values) {
+            writer_.covers(checksum);
+        }
+    }
+
+  private:
+    static std::span<const std::byte> bytes_of(const std::span<const std::byte>& bytes) { return bytes; }
+    static std::span<const std::byte> bytes_of(const std::string& bytes) { return std::as_bytes(std::span{bytes}); }
+    template <class T>
+    static std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+        return std::as_bytes(std::span{values});
+    }
+    static std::span<const std::byte> bytes_of(const evolution::GeneMatrix& genes) {
+        return std::as_bytes(std::span{genes.data(), static_cast<std::size_t>(genes.size())});
+    }
+
+    RowWriter& writer_;
+};
+
+/// Reads the columns of a row; well_formed is false if a BLOB has a size that its member cannot have.
+class GetColumns {
+  public:
+    explicit GetColumns(RowReader& reader) : reader_{reader} {}
+
+    template <class T>
+    void operator()(const std::string&, T& value) {
+        if constexpr (std::is_floating_point_v<T>) {
+            value = reader_.real();
+        } else if constexpr (std::is_same_v<T, bool>) {
+            value = reader_.integer() != 0;
+        } else {
+            value = static_cast<T>(reader_.integer());
+        }
+    }
+    void operator()(const std::string&, std::string& value) { value = reader_.text(); }
+    void operator()(const std::string&, std::optional<double>& value) { value = reader_.optional_real(); }
+    void operator()(const std::string&, std::optional<std::uint64_t>& value) {
+        const auto read = reader_.optional_integer();
+        value = read ? std::optional{static_cast<std::uint64_t>(*read)} : std::nullopt;
+    }
+    template <class T>
+    void operator()(const std::string&, const Blob<T>& blob) {
+        well_formed &= read_into(blob.value, reader_.bytes());
+    }
+    template <class T>
+    void operator()(const std::string&, const PauseColumn<T>& pause) {
+        const std::int64_t value = reader_.integer();
+        pause.paused = value != 0;
+        pause.leased = value == 2;
+    }
+    template <class T>
+    void operator()(const std::string&, const AccountColumns<T>& columns) {
+        columns.account = evolution::account_from([&] { return reader_.optional_real(); });
+    }
+    void operator()(const std::string&, CoveredChecksums& covered) {
+        covered.values.clear();
+        if (covered.read) {
+            covered.read();
+        }
+        for (const std::int64_t checksum : covered.values) {
+            reader_.covers(checksum);
+        }
+    }
+
+    bool well_formed = true;
+
+  private:
+    static bool read_into(std::string& to, std::string bytes) {
+        to = std::move(bytes);
+        return true;
+    }
+    template <class T>
+    static bool read_into(std::vector<T>& to, const std::string& bytes) {
+        to.resize(bytes.size() / sizeof(T));
+        if (!to.empty()) {
+            std::memcpy(to.data(), bytes.data(), to.size() * sizeof(T));
+        }
+        return bytes.size() % sizeof(T) == 0;
+    }
+    static bool read_into(evolution::GeneMatrix& to, const std::string& bytes) {
+        constexpr std::size_t organism_bytes = evolution::gene_count * sizeof(float);
+        to.resize(evolution::gene_count, static_cast<Eigen::Index>(bytes.size() / organism_bytes));
+        if (to.size() > 0) {
+            std::memcpy(to.data(), bytes.data(), static_cast<std::size_t>(to.size()) * sizeof(float));
+        }
+        return bytes.size() % organism_bytes == 0;
+    }
+
+    RowReader& reader_;
+};
+
+/// Writes rows of a table; a row with the same key is replaced.
+template <class Table>
+class TableWriter {
+  public:
+    explicit TableWriter(Database& database, const std::string& table = Table::name)
+        : writer_{database, table, column_names<Table>()} {}
+
+    /// row  a Table::Row, or a struct with members of the same names.
+    ///
+    /// returns  the checksum of the row.
+    template <class Row>
+    std::int64_t write(const Row& row) {
+        PutColumns put{writer_};
+        Table::columns(row, put);
+        return writer_.finish();
+    }
+
+  private:
+    RowWriter writer_;
+};
+
+/// Reads rows of a table.
+template <class Table>
+class TableReader {
+  public:
+    /// condition  in SQL, with "?" for the numbers of `values`; may be followed by ORDER BY and LIMIT.
+    TableReader(Database& database, const std::string& condition, const std::vector<std::int64_t>& values = {},
+                const std::string& table = Table::name)
+        : reader_{database, table, column_names<Table>(), condition, values} {}
+
+    /// false: there are no more rows, or the database has failed.
+    bool next(typename Table::Row& row) {
+        if (!reader_.next()) {
+            return false;
+        }
+        GetColumns get{reader_};
+        Table::columns(row, get);
+        checksum_ = reader_.checksum();
+        sound_ = reader_.sound() && get.well_formed;
+        return true;
+    }
+    /// Whether the row that was read last has the checksum of its contents.
+    bool sound() const { return sound_; }
+    std::int64_t checksum() const { return checksum_; }
+
+  private:
+    RowReader reader_;
+    bool sound_ = false;
+    std::int64_t checksum_ = 0;
+};
+
+} // namespace evod::run_file
