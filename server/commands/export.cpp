@@ -4,6 +4,7 @@
 #include "server/commands/common_options.h"
 #include "server/experiments/bundle.h"
 #include "server/replay/run_tables.h"
+#include "server/run_file/check.h"
 #include "server/runtime/worker_pool.h"
 
 #include <cerrno>
@@ -112,10 +113,10 @@ Result<void> export_to(const ExportOptions& options) {
     if (!file) {
         return file.error();
     }
-    if (auto held = (*file)->hold_still(); !held) {
+    if (auto held = (*file)->pin_snapshot(); !held) {
         return held;
     }
-    const Result<void> sound = (*file)->check();
+    const Result<void> sound = check(**file);
     if (!sound && !options.bundle.empty()) {
         return sound;
     }

@@ -25,7 +25,7 @@ int fork(const ForkOptions& options) {
     if (!origin) {
         return fail(to_text(origin.error()));
     }
-    if (const auto held = (*origin)->hold_still(); !held) { // what is thinned meanwhile is still there
+    if (const auto held = (*origin)->pin_snapshot(); !held) { // what is thinned meanwhile is still there
         return fail(to_text(held.error()));
     }
     const auto folder = run_file::DataFolder::open(options.data_folder);

@@ -92,7 +92,7 @@ Result<std::string> rerun_text(run_file::RunFile& file) {
     if (!changes) {
         return changes.error();
     }
-    const std::uint64_t generations = file.last_generation_ended();
+    const std::uint64_t generations = file.generations().last_ended();
     if (identity.forked_from) {
         return "The run is a fork: it begins in generation " + std::to_string(identity.first_generation) +
                ", at tick " + std::to_string(identity.first_tick) +
@@ -125,7 +125,7 @@ Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file
            to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
            " |\n| made with | evod " + identity.evod_version + ", model version " + model +
            (identity.build.empty() ? "" : ", built from " + identity.build) + " |\n| generations that have ended | " +
-           std::to_string(file.last_generation_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
+           std::to_string(file.generations().last_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
            " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
            std::to_string(simulation::model_version) + ", built from " + run_file::build_text() +
            " |\n\nAny evod of model version " + model +

@@ -20,7 +20,7 @@ RunWriter::~RunWriter() {
         return;
     }
     file_->reset();
-    (void)run_file::RunFile::remove(unfinished_); // at worst it is left there, under a name that nobody reads
+    (void)run_file::remove_run_file(unfinished_); // at worst it is left there, under a name that nobody reads
 }
 
 base::Result<void> RunWriter::follow(const simulation::World& world) {
@@ -28,14 +28,14 @@ base::Result<void> RunWriter::follow(const simulation::World& world) {
         return file_.error();
     }
     run_file::RunFile& file = **file_;
-    news_.tell(world, [&file](const auto& record) { file.write(record); });
+    news_.report(world, [&file](const auto& record) { file.write(record); });
     if (!world.generation_over()) {
         return {};
     }
     if (auto committed = file.commit(); !committed) {
         return committed;
     }
-    if (auto thinned = file.thin_if_large(); !thinned) {
+    if (auto thinned = file.shrink_if_large(); !thinned) {
         return thinned;
     }
     file.begin();
@@ -51,14 +51,14 @@ base::Result<void> RunWriter::finish() {
     if (auto committed = file.commit(); !committed) {
         return committed;
     }
-    if (auto settled = file.settle(); !settled) {
+    if (auto settled = file.merge_log(); !settled) {
         return settled;
     }
     file_->reset();
     if (auto kept = NewFile::keep(unfinished_); !kept) {
         return kept;
     }
-    if (auto named = run_file::RunFile::rename(unfinished_, path_); !named) {
+    if (auto named = run_file::rename_run_file(unfinished_, path_); !named) {
         return named;
     }
     return NewFile::keep(std::filesystem::path{path_}.parent_path().string());

@@ -24,7 +24,7 @@ Archive::Archive(run_file::DataFolder folder, const run_file::RunFile::Options& 
 
 namespace {
 
-/// Whether a run's file has the end mark of one that is over.
+/// Whether a file has the end mark of an ended run.
 Result<bool> is_over(run_file::RunFile& file) {
     const auto mark = file.end_mark();
     if (!mark) {
@@ -33,7 +33,7 @@ Result<bool> is_over(run_file::RunFile& file) {
     return *mark && (*mark)->ended;
 }
 
-/// Why there is no server with such a file, and what can be done.
+/// Adds what the operator can do to the reason why a file prevents the start.
 Refusal with_ways_out(Refusal why, const std::string& folder) {
     const std::string move = "move it, and its -wal if there is one, out of " + folder;
     if (why.code == RefusalCode::DataLoss) {
@@ -46,8 +46,8 @@ Refusal with_ways_out(Refusal why, const std::string& folder) {
     return why;
 }
 
-/// A world was to begin, or to begin again. Once the run that it had has its end mark, the one that waits beside it is
-/// whole and takes its place; before that it is as if nobody had asked.
+/// Completes or undoes the creation or reset of a world that a crash interrupted. If the old run has its end mark, the
+/// new run beside it is complete and takes its place; otherwise the new one is deleted.
 Result<void> finish_replacing(const run_file::DataFolder& folder, const std::string& path) {
     const std::string next = run_file::DataFolder::next_file_of(path);
     std::error_code error;
@@ -61,24 +61,24 @@ Result<void> finish_replacing(const run_file::DataFolder& folder, const std::str
             return over.error();
         }
         if (!*over) {
-            return run_file::RunFile::remove(next);
+            return run_file::remove_run_file(next);
         }
         const run_file::RunIdentity identity = (*old)->identity();
         old->reset();
-        if (auto moved = run_file::RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id));
+        if (auto moved = run_file::rename_run_file(path, folder.ended_file_of(identity.name, identity.run_id));
             !moved) {
             return moved;
         }
     } else {
-        const auto unmade = run_file::RunFile::holds_nothing(next);
+        const auto unmade = run_file::is_empty_file(next);
         if (!unmade) {
             return unmade.error();
         }
         if (*unmade) {
-            return run_file::RunFile::remove(next);
+            return run_file::remove_run_file(next);
         }
     }
-    return run_file::RunFile::rename(next, path);
+    return run_file::rename_run_file(next, path);
 }
 
 } // namespace
@@ -102,13 +102,13 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
         return files.error();
     }
     for (const std::string& file : files->strange) {
-        log::warn("{} is left alone: a run file is called NAME.evod, and that is no name of a world", file);
+        log::warn("{} is ignored: a run file is called NAME.evod, where NAME is a name of a world", file);
     }
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
     std::vector<std::string> ended = files->ended;
     for (const std::string& file : files->of_worlds) {
-        const auto brought = archive->bring_back(file, options, executor);
+        const auto brought = archive->recover_world(file, options, executor);
         if (!brought) {
             return with_ways_out(brought.error(), path);
         }
@@ -136,12 +136,12 @@ void Archive::remember(const std::vector<std::string>& paths) {
     for (Ended& run : runs) {
         const auto file = run_file::RunFile::open_read_only(run.path);
         if (!file) {
-            continue; // no world depends on it; whoever opens it is told
+            continue; // no world depends on it; opening it later reports the reason
         }
-        const std::uint64_t last = (*file)->last_journal_entry();
+        const std::uint64_t last = (*file)->journal().last_number();
         const std::uint64_t count = std::min<std::uint64_t>(
-            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // that which ended it
-        if (auto entries = (*file)->journal(last + 1 - count)) {
+            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // the command that ended the run
+        if (auto entries = (*file)->journal().read(last + 1 - count)) {
             run.last = *std::move(entries);
         }
         for (const run_file::JournalEntry& entry : run.last) {
@@ -156,9 +156,9 @@ void Archive::remember(const std::vector<std::string>& paths) {
     answers_ = std::move(answers);
 }
 
-Result<std::string> Archive::bring_back(const std::string& path, const run_file::RunFile::Options& options,
-                                        base::Executor& executor) {
-    // With relaxed durability the index may be on the disk before the log, should the machine fail.
+Result<std::string> Archive::recover_world(const std::string& path, const run_file::RunFile::Options& options,
+                                           base::Executor& executor) {
+    // With relaxed durability, a failure of the machine may leave a newer index than log on the disk.
     const auto index =
         options.durability == run_file::Durability::Full ? run_file::LogIndex::Read : run_file::LogIndex::Unread;
     if (auto sound = run_file::check_log(path, index); !sound) {
@@ -174,10 +174,10 @@ Result<std::string> Archive::bring_back(const std::string& path, const run_file:
         return over.error();
     }
     if (*over) {
-        // It was to be renamed next.
+        // The server was stopped before it renamed the file.
         file->reset();
         const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
-        if (auto renamed = run_file::RunFile::rename(path, ended); !renamed) {
+        if (auto renamed = run_file::rename_run_file(path, ended); !renamed) {
             return renamed.error();
         }
         return ended;
@@ -188,14 +188,14 @@ Result<std::string> Archive::bring_back(const std::string& path, const run_file:
         return recovered.error();
     }
     const run_file::EndMark contents = (*file)->contents();
-    const std::uint64_t generations_ended = (*file)->last_generation_ended();
+    const std::uint64_t generations_ended = (*file)->generations().last_ended();
     const auto name = std::filesystem::path{path}.stem().string();
-    log::info({.world = name}, "world \"{}\" goes on from generation {}, tick {} of {}{}", name,
+    log::info({.world = name}, "world \"{}\" continues from generation {}, tick {} of {}{}", name,
               recovered->world.moment().generation, recovered->world.moment().tick, path,
-              was_closed ? "" : ", which was left without being closed");
+              was_closed ? "" : ", which no server has closed");
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
-    recording::RunRecorder& run = recorder_->go_on(name, *std::move(file), contents, generations_ended);
+    recording::RunRecorder& run = recorder_->resume(name, *std::move(file), contents, generations_ended);
     run.follow(entry->world);
     laboratory_.adopt(std::move(entry));
     identities_.push_back(identity);

@@ -18,17 +18,17 @@ using base::Result;
 Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
     const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
     return {.code = RefusalCode::NotFound,
-            .message = std::string{"no such "} + field + " has bred in this run: there are " + there_are,
+            .message = std::string{"no such "} + field + " has bred in this run: allowed " + there_are,
             .violations = {{field, there_are, std::to_string(got)}},
             .reason = base::Reason::MomentNotFound};
 }
 
-/// The generation of the parents.
+/// The number of the parents' generation.
 Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreeding& wanted) {
-    const std::uint64_t first = file.identity().first_generation, last = file.last_generation();
+    const std::uint64_t first = file.identity().first_generation, last = file.generations().last();
     if (last <= first) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "no generation of this run has bred yet: it is in its first",
+                       .message = "no generation of this run has bred yet: the run is in its first one",
                        .violations = {},
                        .reason = base::Reason::NotBredYet};
     }
@@ -39,7 +39,7 @@ Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreedin
     return generation;
 }
 
-/// Lets those migrate who did, and tells who came to the island.
+/// Repeats the migration before breeding. Returns the migrants that came to the island.
 std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const parameters::Parameters& parameters,
                                         base::Seed seed, std::uint32_t island) {
     const std::uint64_t generation = parents.ended->generation;
@@ -60,9 +60,9 @@ std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const paramete
 
 bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descendants,
                 const evolution::NextGeneration& stored) {
-    return std::ranges::all_of(descendants, [&](const auto& told) {
-        return told.id < stored.parents.size() && told.parents == stored.parents[told.id] &&
-               (told.genes == stored.genes.col(told.id)).all();
+    return std::ranges::all_of(descendants, [&](const auto& descendant) {
+        return descendant.id < stored.parents.size() && descendant.parents == stored.parents[descendant.id] &&
+               (descendant.genes == stored.genes.col(descendant.id)).all();
     });
 }
 
@@ -96,13 +96,13 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         return no_such("island", 0, islands - 1, wanted.island);
     }
     if (!parents->ended || children->begun.born.size() != islands) {
-        return damaged(" has bred another one, of which the file cannot tell");
+        return damaged(" has bred, but its outcome or the next generation is missing");
     }
 
     Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
     const base::Seed seed = file.identity().seed;
     const bool shuffled = bred.parameters.shuffle_fitness;
-    std::vector<std::vector<double>> own; // fitness, per island, where it is shuffled
+    std::vector<std::vector<double>> own; // fitness per island before shuffling
     for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
         own.push_back(parents->ended->outcomes[island].fitness);
     }
@@ -129,7 +129,7 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         }
     }
     if (!are_stored(bred.record.descendants, children->begun.born[bred.island])) {
-        return damaged(" has bred other descendants than those that are stored");
+        return damaged(" has bred other descendants than the stored ones");
     }
     return bred;
 }

@@ -1,6 +1,6 @@
-// Breeding: how a generation of a run bred the next, worked out again from what its file tells of both.
+// Breeding: recomputes how a generation of a run bred the next one, from the records of both in its file.
 //
-// Determinism  the descendants are compared with those that are stored.
+// Determinism  the recomputed descendants are compared with the stored ones.
 #pragma once
 
 #include "server/base/executor.h"
@@ -13,8 +13,8 @@
 namespace evod::replay {
 
 struct WantedBreeding {
-    std::optional<std::uint64_t> generation; // of the parents; nothing: the last that was bred from
-    std::uint64_t seen_from = 0;             // the generation from which that is looked for
+    std::optional<std::uint64_t> generation; // of the parents; nothing: the last one before `seen_from`
+    std::uint64_t seen_from = 0;             // a viewer's present generation
     std::uint32_t island = 0;
     evolution::WantedRows rows;
 };
@@ -22,14 +22,15 @@ struct WantedBreeding {
 struct Bred {
     std::uint64_t generation = 0; // of the parents
     std::uint32_t island = 0;
-    parameters::Parameters parameters; // as they held
+    parameters::Parameters parameters; // in effect when it bred
     evolution::BreedingRecord record;
 };
 
-/// file  held still. stop: when asked for, it is given up: refused with UNAVAILABLE.
+/// file  with a pinned snapshot.
+/// stop  cancels the work: refused with UNAVAILABLE.
 ///
-/// Refused where GenerationReader is, where there are no such generation and island, or none has been bred from yet,
-/// where the run follows another model, and with DATA_LOSS where the file tells of other descendants.
+/// Refused where GenerationReader is, if there is no such generation or island, if no generation has bred yet, if the run
+/// follows another model, and with DATA_LOSS if the stored descendants differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
                                const std::stop_token& stop);
 

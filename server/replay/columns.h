@@ -1,4 +1,4 @@
-// Columns: what the tables that are read again, or written in two places, have in common.
+// Columns: the columns of tables that two programs write, or that evod reads again.
 #pragma once
 
 #include "server/replay/table.h"
@@ -9,11 +9,11 @@
 
 namespace evod::replay {
 
-/// Of every statistic of a generation.
+/// The columns of the statistics table.
 std::vector<std::string> statistics_columns();
 void write_row(Table& table, const simulation::GenerationStatistics& statistics);
 
-/// Of a population that a world can begin with.
+/// The columns of a population with which a world can begin.
 std::vector<std::string> population_columns();
 
 } // namespace evod::replay

@@ -4,6 +4,8 @@
 #include "server/replay/rerun.h"
 
 #include <chrono>
+#include <utility>
+#include <vector>
 
 namespace evod::replay {
 
@@ -18,12 +20,12 @@ base::Result<simulation::World> world_at(run_file::RunFile& origin, std::optiona
         }
         return std::move(last->world);
     }
-    if (*generation < origin.identity().first_generation || *generation > origin.last_generation()) {
+    if (*generation < origin.identity().first_generation || *generation > origin.generations().last()) {
         return base::Refusal{.code = base::RefusalCode::NotFound,
-                             .message = origin.path() + " does not hold the beginning of that generation",
+                             .message = origin.path() + " has no such generation",
                              .violations = {{"generation",
                                              std::to_string(origin.identity().first_generation) + " to " +
-                                                 std::to_string(origin.last_generation()),
+                                                 std::to_string(origin.generations().last()),
                                              std::to_string(*generation)}},
                              .reason = base::Reason::MomentNotFound};
     }
@@ -44,12 +46,15 @@ base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<s
         return world.error();
     }
     world->become_fork();
-    const run_file::Inherited inherited = run_file::inherited_by(*world);
     const simulation::Moment moment = world->moment();
-    const run_file::GenerationBegun begun = run_file::beginning_of(*world);
-    // Within a generation its beginning is not enough: what came since is known to the origin alone.
-    const auto checkpoint =
-        moment.generation_tick > 0 ? std::optional{run_file::checkpoint_of(*world, 0, executor)} : std::nullopt;
+    run_file::Inherited inherited = run_file::inherited_by(*world);
+    const std::uint64_t inherited_generations = inherited.history.size();
+    std::vector<run_file::RunFile::Record> first{run_file::beginning_of(*world)};
+    // Within a generation its beginning is not enough: the journal since then is in the file of the origin.
+    if (moment.generation_tick > 0) {
+        first.emplace_back(run_file::checkpoint_of(*world, 0, executor));
+    }
+    first.emplace_back(std::move(inherited));
     using namespace std::chrono;
     const auto file = run_file::RunFile::create(
         path,
@@ -61,10 +66,10 @@ base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<s
          .first_generation = moment.generation,
          .first_tick = moment.tick,
          .forked_from = origin.identity().run_id,
-         .inherited_generations = inherited.history.size(),
+         .inherited_generations = inherited_generations,
          .first_population = origin.identity().first_population,
          .schedule = origin.identity().schedule},
-        {.keep_every = origin.keep_every()}, &begun, checkpoint ? &*checkpoint : nullptr, &inherited);
+        {.keep_every = origin.retention().keep_every()}, first);
     if (!file) {
         return file.error();
     }

@@ -16,14 +16,14 @@ Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& w
 }
 
 Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
-    if (file_.held_at_or_before(generation) != generation) {
+    if (file_.retention().at_or_before(generation) != generation) {
         return simulate(generation);
     }
-    auto begun = file_.beginning_of(generation);
+    auto begun = file_.generations().beginning_of(generation);
     if (!begun) {
         return begun.error();
     }
-    auto ended = file_.outcome_of(generation);
+    auto ended = file_.generations().outcome_of(generation);
     if (!ended) {
         return ended.error();
     }
@@ -32,25 +32,25 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
     }
     WholeGeneration whole{*std::move(*begun), *std::move(ended)};
     if (whole.ended) {
-        bool goes_together = whole.ended->outcomes.size() == whole.begun.born.size();
-        for (std::size_t i = 0; goes_together && i < whole.begun.born.size(); ++i) {
-            goes_together =
+        bool matches = whole.ended->outcomes.size() == whole.begun.born.size();
+        for (std::size_t i = 0; matches && i < whole.begun.born.size(); ++i) {
+            matches =
                 whole.ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole.begun.born[i].genes.cols());
         }
-        if (!goes_together) {
-            return damaged(generation, "has another outcome than its organisms can have");
+        if (!matches) {
+            return damaged(generation, "has an outcome for another number of organisms");
         }
     }
     return whole;
 }
 
 Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
-    if (auto stands = stand_before(generation); !stands) {
-        return stands.error();
+    if (auto advanced = advance_to_generation(generation); !advanced) {
+        return advanced.error();
     }
     const simulation::World& world = rerun_->world();
     WholeGeneration whole{run_file::beginning_of(world), {}};
-    const auto statistics = file_.statistics_of(generation);
+    const auto statistics = file_.generations().statistics_of(generation);
     if (!statistics) {
         return statistics.error();
     }
@@ -64,16 +64,15 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
     }
     whole.ended = run_file::end_of(world);
     if (const auto mismatch = compare(*statistics, whole.ended->statistics)) {
-        return damaged(generation,
-                       "simulated again has other statistics than those that are stored: " + mismatch->part +
-                           ": stored " + mismatch->stored + ", simulated again " + mismatch->simulated);
+        return damaged(generation, "simulated again has other statistics than the stored ones: " + mismatch->part +
+                                       ": stored " + mismatch->stored + ", simulated again " + mismatch->simulated);
     }
     return whole;
 }
 
 Result<void> GenerationReader::advance_tick() {
     if (stop_.stop_requested()) {
-        return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was given up", .violations = {}};
+        return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was cancelled", .violations = {}};
     }
     rerun_->advance_tick(executor_);
     if (const auto& fault = rerun_->changes().fault()) {
@@ -82,9 +81,10 @@ Result<void> GenerationReader::advance_tick() {
     return {};
 }
 
-Result<void> GenerationReader::stand_before(std::uint64_t generation) {
-    const std::uint64_t held = file_.held_at_or_before(generation);
-    if (!rerun_ || rerun_->world().moment().generation >= generation || rerun_->world().moment().generation < held) {
+Result<void> GenerationReader::advance_to_generation(std::uint64_t generation) {
+    const std::uint64_t retained = file_.retention().at_or_before(generation);
+    if (!rerun_ || rerun_->world().moment().generation >= generation ||
+        rerun_->world().moment().generation < retained) {
         if (auto refused = file_.other_model()) {
             return *refused;
         }
@@ -95,7 +95,7 @@ Result<void> GenerationReader::stand_before(std::uint64_t generation) {
             }
             changes_ = *std::move(changes);
         }
-        auto rerun = Rerun::begun_at(file_, held, nullptr, *changes_, 0, executor_);
+        auto rerun = Rerun::begun_at(file_, retained, nullptr, *changes_, 0, executor_);
         if (!rerun) {
             return rerun.error();
         }
@@ -109,7 +109,7 @@ Result<void> GenerationReader::stand_before(std::uint64_t generation) {
         } else if (rerun_->world().outcome() == evolution::Outcome::Running) {
             rerun_->turn_over(executor_);
         } else {
-            return damaged(generation, "begins after the run was over");
+            return damaged(generation, "begins after the end of the run");
         }
     }
     return {};

@@ -16,10 +16,10 @@ namespace {
 using base::Refusal;
 using base::Result;
 
-/// What a family tree needs of a generation.
+/// The part of a generation that lineage needs.
 struct Births {
     std::uint64_t generation = 0;
-    parameters::Parameters parameters; // by which it was bred
+    parameters::Parameters parameters; // with which it was bred
     struct Island {
         std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
         std::vector<evolution::Parents> parents;
@@ -45,7 +45,7 @@ Births births_of(WholeGeneration whole) {
 
 using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // by island, then organism
 
-/// Who bred in every place of `parents` when `children` were bred; nothing where nobody knows.
+/// The organism in every place of `parents` when `children` were bred; nothing if not known.
 std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile& file, const Births& parents,
                                                         const Births& children) {
     std::vector<std::vector<Place>> places(parents.islands.size());
@@ -74,7 +74,7 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
     return places;
 }
 
-/// None where nobody knows.
+/// Empty if not known.
 Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& children, const Births& parents) {
     const auto places = breeders(file, parents, children);
     if (!places) {
@@ -86,7 +86,7 @@ Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& chi
             if (island >= places->size() || std::max(pair.first, pair.second) >= (*places)[island].size()) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = file.path() + " is damaged: generation " +
-                                          std::to_string(children.generation) + " has parents that never lived",
+                                          std::to_string(children.generation) + " has parents that did not exist",
                                .violations = {}};
             }
             found[island].push_back({(*places)[island][pair.first], (*places)[island][pair.second]});
@@ -95,7 +95,7 @@ Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& chi
     return found;
 }
 
-/// next  the generation after it, with its parents; nullptr if there is none, or it is out of reach.
+/// next  the generation after it, with its parents; nullptr if there is none, or it cannot be read.
 std::vector<Family> families_of(const Births& births, ParentPlaces parents, const Births* next,
                                 const ParentPlaces& next_parents) {
     std::vector<Family> families;
@@ -124,7 +124,7 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
     return families;
 }
 
-/// Reads backwards, from one generation that is held to the next.
+/// Reads backwards, from one retained generation to the one before.
 class BackwardReader {
   public:
     BackwardReader(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop)
@@ -133,7 +133,7 @@ class BackwardReader {
     Result<Births> read(std::uint64_t generation) {
         auto found = read_.extract(generation);
         if (found.empty()) {
-            for (std::uint64_t next = file_.held_at_or_before(generation); next <= generation; ++next) {
+            for (std::uint64_t next = file_.retention().at_or_before(generation); next <= generation; ++next) {
                 auto whole = reader_.read(next);
                 if (!whole) {
                     return whole.error();
@@ -148,27 +148,27 @@ class BackwardReader {
   private:
     run_file::RunFile& file_;
     GenerationReader reader_;
-    std::map<std::uint64_t, Births> read_; // of those that are not held, and the one before them
+    std::map<std::uint64_t, Births> read_; // generations that are not retained, and the retained one before them
 };
 
 } // namespace
 
 Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                             OfFamilies told) {
+                             OfFamilies report) {
     GenerationReader reader{file, executor, stop};
-    const std::uint64_t last = file.last_generation();
+    const std::uint64_t last = file.generations().last();
     std::optional<Births> births;
     ParentPlaces parents;
     const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
         if (!is_in_reach(file, generation)) {
-            const auto opening = file.opening_of(generation);
+            const auto opening = file.generations().opening_of(generation);
             if (!opening) {
                 return opening.error();
             }
-            if (!*opening) { // the last may be very far away
+            if (!*opening) { // a damaged number of the last generation may be very large
                 return Refusal{.code = base::RefusalCode::DataLoss,
-                               .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
-                                          ", and not of generation " + std::to_string(generation),
+                               .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
+                                          ", but not generation " + std::to_string(generation),
                                .violations = {}};
             }
             return {};
@@ -202,7 +202,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
             next_parents = *std::move(found);
         }
         if (births &&
-            !told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents))) {
+            !report(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents))) {
             break;
         }
         births = std::move(next);
@@ -212,11 +212,11 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
 }
 
 Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor,
-                                       const std::stop_token& stop, OfFamilies told) {
+                                       const std::stop_token& stop, OfFamilies report) {
     BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;
-    if (generation < file.last_generation() && is_in_reach(file, generation + 1)) {
+    if (generation < file.generations().last() && is_in_reach(file, generation + 1)) {
         auto read = reader.read(generation + 1);
         if (!read) {
             return read.error();
@@ -249,7 +249,7 @@ Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t ge
             }
             parents = *std::move(found);
         }
-        if (!told(generation, families_of(*births, parents, next ? &*next : nullptr, next_parents)) || !before) {
+        if (!report(generation, families_of(*births, parents, next ? &*next : nullptr, next_parents)) || !before) {
             return {};
         }
         next = *std::move(births);

@@ -1,8 +1,8 @@
-// Lineage: who came from whom, from island to island too.
+// Lineage: the parents of organisms, across islands too.
 //
-// What is stored of an organism's parents are their places on its own island, in the generation before. Where migrants
-// had come to that island, the organism in such a place was a copy of one that lived on another: that one is told. Who
-// migrated follows from the fitness of the generation that had ended.
+// The file stores an organism's parents as places on its own island, in the generation before. If a migrant had taken
+// such a place, it was a copy of an organism of another island, and lineage reports that organism. The migrants follow
+// from the fitness of the generation that had ended.
 #pragma once
 
 #include "server/base/executor.h"
@@ -24,25 +24,26 @@ struct Place {
 /// One island's part of a generation; vectors by organism.
 struct Family {
     std::uint32_t organism_count = 0;
-    std::vector<std::array<Place, 2>> parents; // in the generation before; empty where nobody knows
-    bool initial = false;                      // nobody bred them
+    std::vector<std::array<Place, 2>> parents; // in the generation before; empty if not known
+    bool initial = false;                      // the organisms have no parents
     std::uint32_t elite_count = 0, survivor_count = 0;
     std::vector<double> fitness; // empty while the generation has not ended
-    // In the next generation: organisms bred from this one, and places in which it was kept itself. Empty if none has
-    // begun, and where nobody knows.
+    // In the next generation: the number of children, and of places in which the organism itself survived. Empty if the
+    // next generation has not begun or is not known.
     std::vector<std::uint32_t> child_count, kept_count;
 };
 
-/// families  one per island. Returns whether to go on.
+/// families  one per island. Returns whether to continue.
 using OfFamilies = base::FunctionRef<bool(std::uint64_t generation, const std::vector<Family>& families)>;
 
-// Of a run that follows another model nobody knows what is not held, nor who migrated.
+// If a run follows another model, its generations that are not retained and its migrants are not known.
 
-/// Every generation that has begun and is in reach, in order.
+/// Calls `report` for every generation that has begun and can be read, in order.
 base::Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                                   OfFamilies told);
-/// From this generation back to the file's first, or the last that is in reach. Refused where GenerationReader is.
+                                   OfFamilies report);
+/// The same from this generation back to the file's first one, or the last that can be read. Refused where
+/// GenerationReader is.
 base::Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation,
-                                             base::Executor& executor, const std::stop_token& stop, OfFamilies told);
+                                             base::Executor& executor, const std::stop_token& stop, OfFamilies report);
 
 } // namespace evod::replay

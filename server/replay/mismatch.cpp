@@ -14,7 +14,7 @@ using simulation::IslandState;
 using Found = std::optional<Mismatch>;
 
 std::string text_of(double value) {
-    return protocol::number_text(value + 0.0); // SQLite keeps −0 as 0
+    return protocol::number_text(value + 0.0); // SQLite stores −0 as 0
 }
 /// "3 4.5 6"
 template <class... Numbers>
@@ -99,7 +99,7 @@ Found compare_part(const std::string& which, const parameters::Parameters& store
                     parameters::to_text(parameter.get(stored)), parameters::to_text(parameter.get(simulated))};
 }
 
-/// Where nobody knows the stored one, as in files of before there were any, there is nothing to compare.
+/// Equal if no account is stored: then it is not known.
 Found compare_account(const std::string& name, const std::string& of_island,
                       const std::optional<evolution::SelectionAccount>& stored,
                       const std::optional<evolution::SelectionAccount>& simulated) {
@@ -258,7 +258,7 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
     if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
         return found;
     }
-    // A run that begins by a reset goes on counting revisions.
+    // After a reset, a run continues the revision numbers of the run before.
     if (stored.moment.generation > 1) {
         if (auto found = compare_part("the revision of the parameters", stored.parameters.revision,
                                       simulated.parameters.revision)) {
@@ -279,7 +279,7 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
                                   other.last_best_fitness)) {
         return found;
     }
-    return compare_part("the progress: whether everyone had died", one.last_died_out, other.last_died_out);
+    return compare_part("the progress: whether all had died out", one.last_died_out, other.last_died_out);
 }
 
 Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {

@@ -1,4 +1,4 @@
-// Mismatch: what differs between something as it is stored and the same as it is simulated.
+// Mismatch: finds the first difference between a stored record and the same one simulated again.
 #pragma once
 
 #include "server/run_file/records.h"
@@ -9,13 +9,14 @@
 
 namespace evod::replay {
 
-/// One number, for people.
+/// One differing number, as text.
 struct Mismatch {
     std::string part; // "the fitness of organism 3 on island 0"
     std::string stored, simulated;
 };
 
-// The first that is found; nothing if the two are the same. Numbers are compared exactly; −0 is 0, as SQLite keeps it.
+// The first difference; nothing if there is none. Numbers are compared exactly, except that −0 equals 0: SQLite stores
+// −0 as 0.
 
 std::optional<Mismatch> compare(const simulation::Opening& stored, const simulation::Opening& simulated);
 // One entry per island.
@@ -28,7 +29,7 @@ std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatisti
                                 const std::vector<simulation::GenerationStatistics>& simulated);
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
 std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
-/// Of parameters that were asked for.
+/// Of requested parameters.
 std::optional<Mismatch> compare_requested(const parameters::Parameters& stored,
                                           const parameters::Parameters& simulated);
 

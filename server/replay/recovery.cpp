@@ -1,6 +1,7 @@
 #include "server/replay/recovery.h"
 
 #include "server/replay/rerun.h"
+#include "server/run_file/check.h"
 
 #include <utility>
 
@@ -18,13 +19,13 @@ base::Refusal not_recovered(const run_file::RunFile& file, const std::string& wh
 } // namespace
 
 Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
-    if (auto whole = file.check_end_mark(); !whole) {
+    if (auto whole = check_end_mark(file); !whole) {
         return whole.error();
     }
     if (auto refused = file.other_model()) {
         return *refused;
     }
-    auto journal = file.journal();
+    auto journal = file.journal().read();
     if (!journal) {
         return journal.error();
     }
@@ -33,21 +34,21 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
         return changes.error();
     }
     const std::uint64_t last_tick = file.last_tick();
-    auto rerun = Rerun::before(file, file.generation_at(last_tick), last_tick, *changes,
+    auto rerun = Rerun::before(file, file.generations().at_tick(last_tick), last_tick, *changes,
                                simulation::World::history_generations_kept, executor);
     if (!rerun) {
         return rerun.error();
     }
     const std::uint64_t from = rerun->world().moment().tick;
-    const auto links = file.links(from, last_tick);
-    if (!links) {
-        return links.error();
+    const auto hashes = file.hashes(from, last_tick);
+    if (!hashes) {
+        return hashes.error();
     }
-    for (const run_file::HashLink& link : *links) {
-        rerun->advance_to(link.tick, executor);
-        if (rerun->world().moment().tick != link.tick || rerun->world().hash() != link.hash) {
-            return not_recovered(file, "simulated again, tick " + std::to_string(link.tick) +
-                                           " has another state hash than the one that is stored");
+    for (const run_file::HashRecord& hash : *hashes) {
+        rerun->advance_to(hash.tick, executor);
+        if (rerun->world().moment().tick != hash.tick || rerun->world().hash() != hash.hash) {
+            return not_recovered(file, "simulated again, tick " + std::to_string(hash.tick) +
+                                           " has another state hash than the stored one");
         }
     }
     rerun->advance_to(last_tick, executor);
@@ -55,7 +56,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
         return *fault;
     }
     if (rerun->world().moment().tick != last_tick) {
-        return not_recovered(file, "it tells of tick " + std::to_string(last_tick) + ", and the run is over at tick " +
+        return not_recovered(file, "it contains tick " + std::to_string(last_tick) + ", but the run ends at tick " +
                                        std::to_string(rerun->world().moment().tick));
     }
     Recovered recovered{std::move(*rerun).take(), {}, *std::move(journal)};

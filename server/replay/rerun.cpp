@@ -21,11 +21,11 @@ Refusal damaged(const run_file::RunFile& file, const std::string& what) {
 }
 
 Refusal not_to_be_had(const std::string& path, const ParameterChange& change) {
-    return damaged(path, "entry " + std::to_string(change.entry) +
-                             " of its journal asks for parameters that no world can have");
+    return damaged(path,
+                   "entry " + std::to_string(change.entry) + " of its journal has parameters that no world can have");
 }
 
-/// The command that a request was; nothing if it is none that this program knows.
+/// The command in a request; nothing if it is none that this program knows.
 std::optional<simulation::Command> command_of(const std::string& request) {
     v1::Request message;
     if (!message.ParseFromString(request)) {
@@ -38,7 +38,7 @@ std::optional<simulation::Command> command_of(const std::string& request) {
 } // namespace
 
 Result<std::vector<ParameterChange>> parameter_changes(run_file::RunFile& file, std::uint64_t after_entry) {
-    const auto journal = file.journal(after_entry + 1);
+    const auto journal = file.journal().read(after_entry + 1);
     if (!journal) {
         return journal.error();
     }
@@ -82,11 +82,11 @@ Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base:
     if (!changes) {
         return changes.error();
     }
-    auto rerun = begun_at(file, file.held_at_or_before(generation), nullptr, *changes,
+    auto rerun = begun_at(file, file.retention().at_or_before(generation), nullptr, *changes,
                           simulation::World::history_generations_kept, executor);
     if (!rerun && rerun.error().code == RefusalCode::NotFound) {
         return Refusal{.code = RefusalCode::NotFound,
-                       .message = file.path() + " holds no generation " + std::to_string(generation),
+                       .message = file.path() + " has no generation " + std::to_string(generation),
                        .violations = {},
                        .reason = base::Reason::MomentNotFound};
     }
@@ -115,41 +115,41 @@ Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, s
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t tick, base::Executor& executor) {
     if (tick < file.identity().first_tick || tick > file.last_tick()) {
         return Refusal{.code = RefusalCode::NotFound,
-                       .message = file.path() + " does not tell of tick " + std::to_string(tick),
+                       .message = file.path() + " does not contain tick " + std::to_string(tick),
                        .violations = {},
                        .reason = base::Reason::MomentNotFound};
     }
-    return before(file, file.generation_at(tick), tick, simulation::World::history_generations_kept, executor);
+    return before(file, file.generations().at_tick(tick), tick, simulation::World::history_generations_kept, executor);
 }
 
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
                             std::span<const ParameterChange> changes, std::size_t history_count,
                             base::Executor& executor) {
-    const std::uint64_t held = file.held_at_or_before(generation);
-    const auto checkpoint = file.last_checkpoint(tick);
+    const std::uint64_t retained = file.retention().at_or_before(generation);
+    const auto checkpoint = file.checkpoints().last(tick);
     if (!checkpoint) {
         return checkpoint.error();
     }
     const bool is_later =
-        *checkpoint && (*checkpoint)->moment.generation >= held && (*checkpoint)->moment.generation <= generation;
+        *checkpoint && (*checkpoint)->moment.generation >= retained && (*checkpoint)->moment.generation <= generation;
     if (is_later) {
         return begun_at(file, (*checkpoint)->moment.generation, &**checkpoint, changes, history_count, executor);
     }
-    return begun_at(file, held, nullptr, changes, history_count, executor);
+    return begun_at(file, retained, nullptr, changes, history_count, executor);
 }
 
 Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
                               const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
                               std::size_t history_count, base::Executor& executor) {
     const run_file::RunIdentity& identity = file.identity();
-    const auto begun = file.beginning_of(generation);
+    const auto begun = file.generations().beginning_of(generation);
     if (!begun) {
         return begun.error();
     }
     if (!*begun && !(generation == 1 && identity.first_generation == 1)) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message =
-                           file.path() + " does not hold the beginning of generation " + std::to_string(generation),
+                           file.path() + " does not retain the beginning of generation " + std::to_string(generation),
                        .violations = {}};
     }
     if (!*begun) {
@@ -157,22 +157,23 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
             file, simulation::World{identity.parameters, identity.seed, identity.first_population, identity.schedule},
             changes, 0);
     }
-    // Of a run that begins within a generation, nothing before is known.
+    // A run that begins within a generation starts from the checkpoint of its first tick.
     std::optional<run_file::StoredCheckpoint> first;
     if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
-        auto found = file.last_checkpoint(identity.first_tick);
+        auto found = file.checkpoints().last(identity.first_tick);
         if (!found) {
             return found.error();
         }
         if (!*found || (*found)->moment.tick != identity.first_tick) {
-            return damaged(file, "the checkpoint is missing with which the run begins");
+            return damaged(file, "the checkpoint with which the run begins is missing");
         }
         first = *std::move(found);
         checkpoint = &*first;
     }
     const std::size_t islands = (*begun)->born.size();
-    auto history = file.history(generation, std::min(history_count, simulation::World::history_generations_kept_of(
-                                                                        std::max<std::size_t>(islands, 1))));
+    auto history = file.generations().history(
+        generation,
+        std::min(history_count, simulation::World::history_generations_kept_of(std::max<std::size_t>(islands, 1))));
     if (!history) {
         return history.error();
     }
@@ -192,8 +193,7 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
                             begun.founders,
                             file.identity().schedule};
     if (checkpoint == nullptr) {
-        // A change that came between the end of a generation and the beginning of the next is in that beginning
-        // already.
+        // The beginning of a generation contains the changes between the end of the generation before and its first tick.
         const auto first = opening.generation == file.identity().first_generation
                                ? changes.begin()
                                : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
@@ -201,7 +201,7 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
     }
     const auto unusable = [&](const std::string& why) {
         return damaged(file, "its checkpoint after tick " + std::to_string(checkpoint->moment.tick) +
-                                 " is none of this run: " + why);
+                                 " does not belong to this run: " + why);
     };
     simulation::WorldState state{
         .moment = checkpoint->moment, .parameters = checkpoint->parameters, .islands = {}, .ended = {}};
@@ -212,9 +212,9 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
         return unusable(restored.error().message);
     }
     if (world.hash() != checkpoint->hash) {
-        return unusable("it has another state hash than the one that is stored");
+        return unusable("its state hash differs from the stored one");
     }
-    // Of changes after the same tick some may have come before it, and some after.
+    // Some changes after the same tick may be older than the checkpoint, and some newer.
     return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
 }
 

@@ -17,19 +17,19 @@ using base::Refusal;
 using base::Result;
 using run_file::RunFile;
 
-/// Calls `of_generation` with each that has begun, in order, while rows can be written.
+/// Calls `of_generation` for each generation that has begun, in order, while rows can be written.
 template <class OfGeneration>
 Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
-    const std::uint64_t last = file.last_generation();
+    const std::uint64_t last = file.generations().last();
     for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
-        const auto opening = file.opening_of(generation);
+        const auto opening = file.generations().opening_of(generation);
         if (!opening) {
             return opening.error();
         }
-        if (!*opening) { // each has one: that of the last must be wrong, and may be very far away
+        if (!*opening) { // the number of the last generation is damaged, and may be very large
             return Refusal{.code = base::RefusalCode::DataLoss,
-                           .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
-                                      ", and not of generation " + std::to_string(generation),
+                           .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
+                                      ", but not generation " + std::to_string(generation),
                            .violations = {}};
         }
         if (Result<void> done = of_generation(generation); !done) {
@@ -49,7 +49,7 @@ const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, s
     return organism < survivors ? "survivor" : "child";
 }
 
-/// ended  of the same island; nullptr while the generation has not.
+/// ended  of the same island; nothing before the end of the generation.
 struct EndedIsland {
     const run_file::IslandOutcome& outcome;
     const simulation::GenerationStatistics& statistics;
@@ -79,20 +79,21 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::si
 
 Refusal no_such(base::Violation violation) {
     return {.code = base::RefusalCode::NotFound,
-            .message = "the run file holds no such organism",
+            .message = "the run file has no such organism",
             .violations = {std::move(violation)},
             .reason = base::Reason::OrganismNotFound};
 }
 
-/// Why a generation that has begun cannot be told of; nothing if it can.
+/// Why a generation that has begun cannot be read; nothing if it can.
 std::optional<Refusal> out_of_reach(run_file::RunFile& file, const char* field, std::uint64_t generation) {
     if (is_in_reach(file, generation)) {
         return std::nullopt;
     }
     Refusal refused = *file.other_model();
     refused.violations.push_back({field,
-                                  "what is held, nearest to it " + std::to_string(file.held_at_or_before(generation)) +
-                                      " and " + std::to_string(file.held_at_or_after(generation)),
+                                  "a retained generation, the nearest are " +
+                                      std::to_string(file.retention().at_or_before(generation)) + " and " +
+                                      std::to_string(file.retention().at_or_after(generation)),
                                   std::to_string(generation)});
     return refused;
 }
@@ -110,7 +111,7 @@ std::optional<base::Violation> wrong_place(const OrganismName& name, const std::
     return std::nullopt;
 }
 
-/// A family tree's rows are of those organisms only, if there is such a set: by island, then organism.
+/// The organisms whose rows are wanted: by island, then organism.
 using Wanted = std::vector<std::vector<bool>>;
 
 void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {
@@ -144,7 +145,7 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<Fa
     }
 }
 
-/// Those who bred the wanted.
+/// The parents of the wanted organisms.
 Wanted parents_of(const Wanted& wanted, const std::vector<Family>& families) {
     Wanted parents;
     for (std::size_t island = 0; island < families.size(); ++island) {
@@ -173,7 +174,7 @@ std::string kind_of(const v1::Request& request) {
 Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
     Table table{out, format, statistics_columns()};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
-        const auto statistics = run.file.statistics_of(generation);
+        const auto statistics = run.file.generations().statistics_of(generation);
         if (!statistics) {
             return statistics.error();
         }
@@ -227,7 +228,7 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
             return out.good();
         });
     }
-    const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
+    const std::uint64_t first = run.file.identity().first_generation, last = run.file.generations().last();
     if (of->generation < first || of->generation > last) {
         return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
                         std::to_string(of->generation)});
@@ -263,10 +264,10 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
 }
 
 Result<void> write_population(const RunSource& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
-    const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
+    const std::uint64_t first = run.file.identity().first_generation, last = run.file.generations().last();
     if (generation < first || generation > last) {
         return Refusal{.code = base::RefusalCode::NotFound,
-                       .message = run.file.path() + " does not hold the beginning of that generation",
+                       .message = run.file.path() + " has no such generation",
                        .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
                                        std::to_string(generation)}},
                        .reason = base::Reason::MomentNotFound};
@@ -292,7 +293,7 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
     json_options.preserve_proto_field_names = true;
     Table table{out, format, {"number", "tick", "client", "kind", "request"}};
     for (std::uint64_t first = 1; out; first += entries_at_once) {
-        const auto entries = run.file.journal(first, entries_at_once);
+        const auto entries = run.file.journal().read(first, entries_at_once);
         if (!entries) {
             return entries.error();
         }
@@ -300,13 +301,13 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
             v1::Request request;
             std::string json;
             const bool parsed = request.ParseFromString(entry.origin.request);
-            // Who knows them could send the client's next command in its place.
+            // With them another client could send this client's next command.
             request.clear_client_key();
             request.clear_request_id();
             if (!parsed || !MessageToJsonString(request, &json, json_options).ok()) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = run.file.path() + " is damaged: entry " + std::to_string(entry.number) +
-                                          " of its journal is no request",
+                                          " of its journal is not a request",
                                .violations = {}};
             }
             table.number(entry.number)
@@ -327,12 +328,12 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
 
 std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
     std::uint64_t count = 0;
-    const std::uint64_t last = file.last_generation();
+    const std::uint64_t last = file.generations().last();
     if (file.other_model()) {
         for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
-            const auto opening = file.opening_of(generation);
+            const auto opening = file.generations().opening_of(generation);
             if (!opening || !*opening) {
-                break; // damaged: whoever reads on is told
+                break; // damaged: reading the generation reports it
             }
             count += !is_in_reach(file, generation);
         }
@@ -363,7 +364,7 @@ Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::o
     case RunTable::Lineage:
         return write_lineage(run, out, wanted.format, wanted.of);
     case RunTable::Population:
-        return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.last_generation()));
+        return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.generations().last()));
     case RunTable::Events:
         break;
     }

@@ -1,5 +1,5 @@
-// Table: rows for other programs, as CSV (RFC 4180, but with "\n" at the end of a line) with a heading, or as JSON
-// Lines, an object a row.
+// Table: writes rows for other programs: as CSV with a heading (RFC 4180, but lines end with "\n"), or as JSON Lines,
+// one object per row.
 #pragma once
 
 #include <charconv>
@@ -16,7 +16,7 @@ class Table {
   public:
     enum class Format { Csv, JsonLines };
 
-    /// Writes the heading, if there is one.
+    /// Writes the heading of a CSV table.
     Table(std::ostream& out, Format format, std::vector<std::string> columns);
 
     // The columns of a row in order, then end_row().
@@ -26,7 +26,7 @@ class Table {
     requires std::is_arithmetic_v<T> Table& number(T value) {
         if constexpr (std::is_floating_point_v<T>) {
             if (format_ == Format::JsonLines && !std::isfinite(value)) {
-                return nothing(); // JSON has no word for it
+                return nothing(); // JSON cannot represent it
             }
         }
         char digits[32];
@@ -35,9 +35,9 @@ class Table {
         return *this;
     }
     Table& text(std::string_view value);
-    /// value  JSON of its own, in one line.
+    /// value  JSON on one line.
     Table& json(std::string_view value);
-    /// Nothing is known: an empty field, or null.
+    /// A value that is not known: an empty field, or null.
     Table& nothing();
     void end_row();
 
@@ -46,7 +46,7 @@ class Table {
 
     std::ostream& out_;
     const Format format_;
-    std::vector<std::string> columns_; // as they stand before a value, in JSON
+    std::vector<std::string> columns_; // for JSON, quoted and with a colon
     std::string line_;
     std::size_t column_ = 0;
 };

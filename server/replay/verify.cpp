@@ -3,6 +3,7 @@
 #include "server/base/inline_executor.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
+#include "server/run_file/check.h"
 #include "server/run_file/checkpoint.h"
 
 #include <algorithm>
@@ -18,24 +19,24 @@ using base::Result;
 using evolution::NextGeneration;
 using simulation::World;
 
-/// All that a file tells of a generation. Of one that is no longer held whole, `born` and `outcomes` are empty; of one
-/// that has not ended, `outcomes` and `statistics` are.
+/// The records of a generation. `born` and `outcomes` are empty if it is not retained; `outcomes` and `statistics` are
+/// empty if it has not ended.
 struct StoredGeneration {
     simulation::Opening opening;
     std::vector<NextGeneration> born;
-    simulation::Founders founders; // none: nobody knows
+    simulation::Founders founders; // empty: not known
     std::vector<run_file::IslandOutcome> outcomes;
     std::vector<simulation::GenerationStatistics> statistics;
-    std::vector<run_file::HashLink> links;
+    std::vector<run_file::HashRecord> hashes;
     std::vector<run_file::StoredCheckpoint> checkpoints;
-    std::uint64_t last_tick = 0; // that the file tells of, of this generation
+    std::uint64_t last_tick = 0; // of this generation in the file
 };
 
-/// A generation that is held whole, and those after it that are not.
+/// A retained generation and the following ones that are not retained.
 using Stretch = std::vector<StoredGeneration>;
 
-/// Whether a generation can have begun so: the core relies on it. One that cannot is not what the generation before it
-/// gives, and is told as that.
+/// Whether a stored beginning is valid; the core relies on that. An invalid one differs from what the generation before
+/// bred, and is reported as that difference.
 bool can_be_simulated(const StoredGeneration& generation) {
     const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
@@ -47,14 +48,14 @@ bool can_be_simulated(const StoredGeneration& generation) {
 
 class StretchCheck {
   public:
-    /// following  the generation after the stretch; nullptr if there is none.
+    /// following  the generation after the stretch; nullptr for none.
     StretchCheck(const run_file::RunFile& file, const Stretch& stretch, const StoredGeneration* following,
                  base::Executor& executor)
         : file_{file}, stretch_{stretch}, following_{following}, executor_{executor} {}
 
-    /// changes  the run's, up to the stretch's last tick.
-    /// told     called with the number of ticks since it was last called.
-    Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> told) {
+    /// changes   of the run, up to the stretch's last tick.
+    /// progress  called with the number of ticks since its last call.
+    Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> progress) {
         const StoredGeneration& first = stretch_.front();
         agrees_with_beginning_of(first);
         if (first.opening.moment.generation == file_.identity().first_generation) {
@@ -74,7 +75,7 @@ class StretchCheck {
         const double began_s = rerun->world().moment().simulated_s;
         const std::uint64_t began_tick = rerun->world().moment().tick;
         for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i) {
-            check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, told);
+            check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, progress);
         }
         if (const auto& fault = rerun->changes().fault()) {
             return *fault;
@@ -93,7 +94,7 @@ class StretchCheck {
                                       .stored = std::move(mismatch.stored),
                                       .simulated = std::move(mismatch.simulated)};
     }
-    /// Whether nothing was found.
+    /// Whether no difference was found.
     bool same(const StoredMoment& moment, std::optional<Mismatch> mismatch) {
         if (mismatch) {
             differ(moment, *std::move(mismatch));
@@ -110,7 +111,7 @@ class StretchCheck {
         agreeing_part_ = "the beginning of the generation";
     }
 
-    /// Where the run begins within the stretch's first generation; nullptr if it does not.
+    /// The checkpoint with which the run begins within the stretch's first generation; nullptr for none.
     const run_file::StoredCheckpoint* beginning() const {
         const StoredGeneration& first = stretch_.front();
         return first.opening.moment.tick < file_.identity().first_tick ? &first.checkpoints.front() : nullptr;
@@ -124,7 +125,7 @@ class StretchCheck {
             const run_file::GenerationBegun begun = run_file::beginning_of(world);
             (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
         } else {
-            // What a fork began with, nothing in its file gives again but what was asked for.
+            // The beginning of a fork does not follow from its file, except for the requested parameters.
             const run_file::StoredCheckpoint* within = beginning();
             const parameters::ParameterSet& set = within ? within->parameters : first.opening.parameters;
             (void)same(agrees_, compare_requested(set.requested, identity.parameters));
@@ -135,10 +136,10 @@ class StretchCheck {
     }
 
     void check_generation(Rerun& rerun, const StoredGeneration& stored, const StoredGeneration* next,
-                          base::FunctionRef<void(std::uint64_t)> told) {
+                          base::FunctionRef<void(std::uint64_t)> progress) {
         ++done_.generations;
         agrees_with_beginning_of(stored);
-        check_hashes(rerun, stored, told);
+        check_hashes(rerun, stored, progress);
         if (!done_.difference) {
             check_end(rerun.world(), stored, next != nullptr);
         }
@@ -147,12 +148,12 @@ class StretchCheck {
         }
     }
 
-    void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> told) {
+    void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> progress) {
         const World& world = rerun.world();
-        auto link = stored.links.begin();
+        auto hash = stored.hashes.begin();
         auto checkpoint = std::ranges::upper_bound(stored.checkpoints, world.moment().tick, {},
                                                    [](const run_file::StoredCheckpoint& at) { return at.moment.tick; });
-        std::uint64_t told_tick = world.moment().tick;
+        std::uint64_t progress_tick = world.moment().tick;
         while (world.moment().tick < stored.last_tick && !world.generation_over()) {
             if (checkpoint != stored.checkpoints.end() && checkpoint->moment.tick == world.moment().tick + 1) {
                 rerun.advance_tick(executor_, checkpoint->journal_entries);
@@ -164,28 +165,28 @@ class StretchCheck {
                 rerun.advance_tick(executor_);
             }
             const StoredMoment now{world.moment().generation, world.moment().tick};
-            if (now.tick % run_file::ticks_per_link != 0) {
+            if (now.tick % run_file::ticks_per_hash != 0) {
                 continue;
             }
-            told(now.tick - std::exchange(told_tick, now.tick));
-            if (!file_.is_link_held(now.tick)) {
+            progress(now.tick - std::exchange(progress_tick, now.tick));
+            if (!file_.retention().is_hash_retained(now.tick)) {
                 continue;
             }
-            if (link == stored.links.end() || link->tick != now.tick) {
+            if (hash == stored.hashes.end() || hash->tick != now.tick) {
                 return differ(now, {"the state hash", "none", to_text(world.hash())});
             }
-            if (!same(now, compare(link->hash, world.hash()))) {
+            if (!same(now, compare(hash->hash, world.hash()))) {
                 return;
             }
             agrees_ = now;
             agreeing_part_ = "the state hash";
             ++done_.hashes;
-            ++link;
+            ++hash;
         }
-        told(world.moment().tick - told_tick);
+        progress(world.moment().tick - progress_tick);
     }
 
-    /// Whether nothing was found.
+    /// Whether no difference was found.
     bool check_checkpoint(const World& world, const run_file::StoredCheckpoint& stored) {
         const StoredMoment now{world.moment().generation, world.moment().tick};
         simulation::WorldState state{
@@ -246,7 +247,7 @@ class StretchCheck {
     const Stretch& stretch_;
     const StoredGeneration* following_;
     base::Executor& executor_;
-    StoredMoment agrees_; // the last moment that does
+    StoredMoment agrees_; // the last equal moment
     const char* agreeing_part_ = "";
     Verified done_;
 };
@@ -259,7 +260,7 @@ class Reader {
 
     const run_file::EndMark& contents() const { return contents_; }
 
-    /// The next stretches: at most `count`, and no more once there are `organisms` in them; none after the last.
+    /// The next stretches: at most `count`, and only until they have `organisms`; empty after the last.
     Result<std::vector<Stretch>> read(std::size_t count, std::size_t organisms) {
         if (!following_ && next_ <= contents_.generations) {
             if (auto read = read_following(); !read) {
@@ -277,14 +278,14 @@ class Reader {
                 if (auto read = read_following(); !read) {
                     return read.error();
                 }
-                if (auto read = read_links(stretch.back()); !read) {
+                if (auto read = read_hashes(stretch.back()); !read) {
                     return read.error();
                 }
             } while (following_ && following_->born.empty());
         }
         return stretches;
     }
-    /// The generation after those that were read last; nullptr if there is none.
+    /// The generation after the ones read last; nullptr for none.
     const StoredGeneration* following() const { return following_ ? &*following_ : nullptr; }
 
   private:
@@ -294,9 +295,9 @@ class Reader {
             return {};
         }
         const std::uint64_t number = next_++;
-        // check() has seen that each is there which must be.
+        // check() has made sure that no record is missing.
         StoredGeneration& generation = following_.emplace();
-        auto begun = file_.beginning_of(number);
+        auto begun = file_.generations().beginning_of(number);
         if (!begun) {
             return begun.error();
         }
@@ -305,20 +306,20 @@ class Reader {
             generation.born = std::move((*begun)->born);
             generation.founders = std::move((*begun)->founders);
         } else {
-            const auto opening = file_.opening_of(number);
+            const auto opening = file_.generations().opening_of(number);
             if (!opening) {
                 return opening.error();
             }
             generation.opening = opening->value();
         }
-        auto ended = file_.outcome_of(number);
+        auto ended = file_.generations().outcome_of(number);
         if (!ended) {
             return ended.error();
         }
         if (*ended) {
             generation.outcomes = std::move((*ended)->outcomes);
         }
-        auto statistics = file_.statistics_of(number);
+        auto statistics = file_.generations().statistics_of(number);
         if (!statistics) {
             return statistics.error();
         }
@@ -326,17 +327,17 @@ class Reader {
         return {};
     }
 
-    /// Of a generation, with its checkpoints, once the one after it has been read.
-    Result<void> read_links(StoredGeneration& generation) {
+    /// The hashes and checkpoints of a generation, after the next generation has been read.
+    Result<void> read_hashes(StoredGeneration& generation) {
         generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
-        // A fork may begin within a generation, and at a tick that has a link in its origin.
+        // A fork may begin within a generation, at a tick whose hash is in the file of its origin.
         const std::uint64_t first_tick = std::max(generation.opening.moment.tick, file_.identity().first_tick);
-        auto links = file_.links(first_tick, generation.last_tick);
-        if (!links) {
-            return links.error();
+        auto hashes = file_.hashes(first_tick, generation.last_tick);
+        if (!hashes) {
+            return hashes.error();
         }
-        generation.links = *std::move(links);
-        auto checkpoints = file_.checkpoints(generation.opening.moment.tick, generation.last_tick);
+        generation.hashes = *std::move(hashes);
+        auto checkpoints = file_.checkpoints().read(generation.opening.moment.tick, generation.last_tick);
         if (!checkpoints) {
             return checkpoints.error();
         }
@@ -362,16 +363,16 @@ void add(Verified& sum, const Verified& stretch) {
 } // namespace
 
 Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
-                        base::FunctionRef<void(const VerifyProgress&)> told) {
-    if (auto held = file.hold_still(); !held) {
+                        base::FunctionRef<void(const VerifyProgress&)> progress) {
+    if (auto held = file.pin_snapshot(); !held) {
         return held.error();
     }
     const std::uint64_t before = file.identity().first_generation - 1;
-    const std::uint64_t generations = std::max(file.last_generation(), before) - before;
-    const auto tell_read = [&](std::uint64_t generation) {
-        told({.generations = generation - before - 1, .generations_in_all = generations});
+    const std::uint64_t generations = std::max(file.generations().last(), before) - before;
+    const auto report_read = [&](std::uint64_t generation) {
+        progress({.generations = generation - before - 1, .generations_in_all = generations});
     };
-    if (auto sound = file.check(tell_read); !sound) {
+    if (auto sound = check(file, report_read); !sound) {
         return sound.error();
     }
     if (auto refused = file.other_model()) {
@@ -382,7 +383,7 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
         return changes.error();
     }
 
-    // Enough for every thread to be busy though some take longer, and no more than memory should hold.
+    // Enough to keep every thread busy although some stretches take longer; bounded to limit memory.
     const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
     constexpr std::size_t organisms_at_once = 1'000'000;
     Reader reader{file};
@@ -391,10 +392,10 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
     std::atomic<std::uint64_t> ticks = 0;
     const auto count = [&](std::uint64_t more) {
         const std::uint64_t sum = ticks.fetch_add(more, std::memory_order_relaxed) + more;
-        told({.generations = generations,
-              .generations_in_all = generations,
-              .ticks = sum,
-              .ticks_in_all = ticks_in_all});
+        progress({.generations = generations,
+                  .generations_in_all = generations,
+                  .ticks = sum,
+                  .ticks_in_all = ticks_in_all});
     };
 
     Verified verified;

@@ -1,17 +1,16 @@
-// Verify: a run simulated again, and everything that its file tells of it held against that.
+// Verify: simulates a run again and compares everything in its file with the result.
 //
-//   the run's beginning → the first generation, as it is stored
-//   each generation → its state hashes and checkpoints → fitness, deaths, statistics → the next generation, as it is
-//   stored
+//   the run's parameters and seed → the first stored generation
+//   each generation → its state hashes and checkpoints → fitness, deaths, statistics → the next stored generation
 //
-// A generation that is held whole is simulated from what is stored, and is itself held against what the one before
-// gives; so stretches from one such generation to the next need not wait for one another. A stretch is one generation,
-// or, where a file has been thinned, several.
+// A retained generation is simulated from its stored beginning, and that beginning is compared with the result of the
+// generation before. So a stretch, from one retained generation to the next, does not depend on the stretch before. A
+// stretch is one generation, or several where the retention has excluded some.
 //
-// Owner        one thread, which reads the file: some stretches at once, as many as memory should hold.
-// Threads      none of its own. Those stretches go to the executor, each to one thread; where they are fewer than its
-//              threads, as with large worlds, they are simulated one after another, each with the whole executor.
-// Determinism  what is told is the first difference of all, whatever the executor.
+// Owner        one thread. It reads several stretches at a time, within a bound on memory.
+// Threads      none of its own. The executor simulates the stretches in parallel. If there are fewer stretches than
+//              threads, as with large worlds, they run one after another, each with the whole executor.
+// Determinism  the result is the first difference of the run, for every executor.
 #pragma once
 
 #include "server/base/executor.h"
@@ -23,39 +22,39 @@
 
 namespace evod::replay {
 
-/// A moment that a file tells of.
+/// A moment of the stored run.
 struct StoredMoment {
     std::uint64_t generation = 0, tick = 0; // ticks since the run began
 };
 
-/// Where what is stored parts from what is simulated.
+/// The first difference between the stored and the simulated run.
 struct Difference {
-    std::optional<StoredMoment> agrees; // the last before; nothing if not even the run's beginning does
+    std::optional<StoredMoment> agrees; // the last equal moment; nothing if the beginning differs
     std::string agreeing_part;          // "the state hash"
     StoredMoment differs;
     std::string part; // "the fitness of organism 3 on island 0"
     std::string stored, simulated;
 };
 
-/// What has been held against a new simulation.
+/// What has been compared.
 struct Verified {
-    std::uint64_t generations = 0; // from their beginnings; the last may be unfinished
+    std::uint64_t generations = 0; // simulated from their beginnings; the last may be unfinished
     std::uint64_t ticks = 0, hashes = 0, checkpoints = 0;
     double simulated_s = 0;
-    std::optional<Difference> difference; // nothing: all agrees
+    std::optional<Difference> difference; // nothing: the run agrees with its file
 };
 
-/// First the file is read through, then its run is simulated again.
+/// verify() first reads the whole file, then simulates the run.
 struct VerifyProgress {
-    std::uint64_t generations = 0, generations_in_all = 0; // read by now
-    std::uint64_t ticks = 0, ticks_in_all = 0;             // simulated by now, in whatever order; 0 while it is read
+    std::uint64_t generations = 0, generations_in_all = 0; // read so far
+    std::uint64_t ticks = 0, ticks_in_all = 0;             // simulated so far, in any order; 0 while the file is read
 };
 
-/// Refused where the file is damaged or follows another model. A server may go on writing to it: what was there at
-/// first is verified.
+/// Refused if the file is damaged or follows another model. If a server writes to the file meanwhile, the snapshot at the
+/// beginning is verified.
 ///
-/// told  called every now and then, by any of the executor's threads, several at once.
+/// progress  called now and then by any of the executor's threads, by several at once.
 base::Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
-                              base::FunctionRef<void(const VerifyProgress&)> told);
+                              base::FunctionRef<void(const VerifyProgress&)> progress);
 
 } // namespace evod::replay

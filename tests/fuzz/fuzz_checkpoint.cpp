@@ -1,6 +1,6 @@
-// Any bytes as the state in a checkpoint: refused, or a world that goes on.
+// Fuzz checkpoint: any bytes as the state in a checkpoint are refused, or give a world that continues.
 //
-// The first byte says whether the rest is compressed, and after which tick the state is said to be.
+// The first byte determines whether the rest is compressed, and the tick of the state.
 #include "server/base/inline_executor.h"
 #include "server/run_file/checkpoint.h"
 #include "server/simulation/world.h"
@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         return 0;
     }
-    // Packed again and unpacked it is the same.
+    // Compressing and decompressing it again gives the same state.
     simulation::WorldState again;
     if (!run_file::unpack(run_file::pack(world.state(executor)), shapes, again) ||
         again.islands != world.state(executor).islands) {

@@ -1,13 +1,14 @@
-// Any bytes as a run file: read, checked and exported, or refused. What the bytes are is said by the first of them: the
-// file itself; bytes to change in a sound file; columns to change in its rows, which get their checksums; or the text
-// of a trigger, view or index that the file is given, and with which it must be refused; and whether that file is of a
-// run from its first generation on, of a fork, or of the format before.
+// Fuzz run file: reads, checks and exports any bytes as a run file, or refuses them.
+//
+// The first byte selects what the others are: the file itself; bytes to change in a sound file; columns to change in its
+// rows, which then get right checksums; or the text of a trigger, view or index to add, with which the file must be
+// refused. It also selects whether the sound file is of a run from its first generation on, or of a fork.
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"
 #include "server/commands/export.h"
+#include "server/run_file/check.h"
 #include "server/run_file/row.h"
 #include "server/run_file/run_file.h"
-#include "tests/support/older_run_file.h"
 
 #include <sqlite3.h>
 #include <unistd.h>
@@ -58,8 +59,6 @@ struct Place {
         write_sound(false);
         sound[0] = take_away();
         put(sound[0].data(), sound[0].size());
-        write_older();
-        sound[2] = take_away();
     }
     ~Place() { std::filesystem::remove_all(folder); }
     Place(const Place&) = delete;
@@ -84,10 +83,11 @@ struct Place {
         }
         const run_file::Inherited inherited = run_file::inherited_by(world);
         identity.inherited_generations = inherited.history.size();
-        const run_file::GenerationBegun begun = run_file::beginning_of(world);
-        const run_file::Checkpoint checkpoint = run_file::checkpoint_of(world, 0, executor);
-        const auto file =
-            run_file::RunFile::create(path, identity, {}, &begun, fork ? &checkpoint : nullptr, &inherited);
+        std::vector<run_file::RunFile::Record> first{run_file::beginning_of(world), inherited};
+        if (fork) {
+            first.emplace_back(run_file::checkpoint_of(world, 0, executor));
+        }
+        const auto file = run_file::RunFile::create(path, identity, {}, first);
         require(file.has_value());
         (*file)->begin();
         v1::Request request;
@@ -103,8 +103,8 @@ struct Place {
             if (world.moment().generation != generation) {
                 (*file)->write(run_file::beginning_of(world));
             }
-            if (world.moment().tick % run_file::ticks_per_link == 0) {
-                (*file)->write(run_file::HashLink{world.moment().tick, world.hash()});
+            if (world.moment().tick % run_file::ticks_per_hash == 0) {
+                (*file)->write(run_file::HashRecord{world.moment().tick, world.hash()});
             }
             if (world.generation_over()) {
                 (*file)->write(run_file::end_of(world));
@@ -112,18 +112,7 @@ struct Place {
         }
         (*file)->write(run_file::EndMark{.tick = world.moment().tick});
         require((*file)->commit().has_value());
-        require((*file)->check().has_value());
-    }
-
-    /// Of the file that is there one of format 2.
-    void write_older() const {
-        sqlite3* database = nullptr;
-        require(sqlite3_open(path.c_str(), &database) == SQLITE_OK);
-        const std::string older = support::as_of_format(2) + "; DELETE FROM run WHERE key = 'build'";
-        require(sqlite3_exec(database, older.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
-        sqlite3_close(database);
-        const auto file = run_file::RunFile::open_read_only(path);
-        require(file.has_value() && (*file)->check().has_value());
+        require(check(**file).has_value());
     }
 
     std::string take_away() const {
@@ -142,7 +131,7 @@ struct Place {
     }
 
     std::string folder, path;
-    std::array<std::string, 3> sound; // of a run, of a fork, of the format before
+    std::array<std::string, 2> sound; // of a run, of a fork
 };
 
 /// One column of one row gets another value, of its kind, and the row its checksum.
@@ -189,7 +178,7 @@ void change_row(sqlite3* database, Bytes& bytes) {
                 break;
             }
             case SQLITE_NULL:
-                checksum.add_nothing();
+                checksum.add_null();
                 break;
             default: {
                 const bool text = sqlite3_column_type(read, i) == SQLITE_TEXT;
@@ -275,9 +264,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (const auto file = run_file::RunFile::open_read_only(place.path)) {
         require(!foreign);
-        (void)(*file)->check();
-        (void)(*file)->history((*file)->last_generation() + 1, simulation::World::history_generations_kept);
-        (void)(*file)->journal((*file)->contents().journal_entries);
+        (void)check(**file);
+        (void)(*file)->generations().history((*file)->generations().last() + 1,
+                                             simulation::World::history_generations_kept);
+        (void)(*file)->journal().read((*file)->contents().journal_entries);
     }
     for (const char* what : {"generations", "organisms", "events"}) {
         (void)commands::export_run({.run = place.path, .what = what, .format = "jsonl", .output = "/dev/null"});

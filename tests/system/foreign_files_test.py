@@ -1,4 +1,4 @@
-"""Files that others have made: pipes, devices and endless ones in the place of files, and run files with SQL of their own.
+"""Foreign files: pipes, devices and endless files in place of files, and run files with added SQL.
 evod refuses them at once and names them. EVOD names the program.
 """
 import os
@@ -32,7 +32,7 @@ class ForeignFiles(unittest.TestCase):
     def serve(self, *options):
         return ["--port", "0", "--data", self.folder / "data", *options]
 
-    def test_what_is_no_file_is_refused_everywhere(self):
+    def test_pipes_and_devices_are_refused_everywhere(self):
         out = ["--out", self.folder / "out"]
         for path, kind in (self.pipe, "a pipe"), ("/dev/zero", "a device"), (self.folder, "a folder"):
             for arguments, file in (
@@ -57,7 +57,7 @@ class ForeignFiles(unittest.TestCase):
             self.assert_refused("sweep", sweep, "--out", self.folder / "out",
                                 words=f"{path}: this is {kind}, not an experiment file")
 
-    def test_a_pipe_among_the_files_of_a_server_is_refused(self):
+    def test_a_pipe_in_the_data_folder_is_refused(self):
         data = self.folder / "data"
         data.mkdir()
         for name, file in ("tokens", "a file of tokens"), ("w.evod", "a run file"):
@@ -65,7 +65,7 @@ class ForeignFiles(unittest.TestCase):
             self.assert_refused(*self.serve(), words=f"{data / name}: this is a pipe, not {file}")
             os.remove(data / name)
 
-    def test_certificates_that_are_no_files_are_refused(self):
+    def test_pipes_as_certificates_are_refused(self):
         waiting.run([EVOD, "certificate", "localhost"], capture_output=True, check=True, cwd=self.folder)
         certificate, key = self.folder / "evod.crt", self.folder / "evod.key"
         os.chmod(self.pipe, 0o600)

@@ -1,4 +1,4 @@
-"""Real servers whose disk is full for a while: a small tmpfs, and a file that takes what is left of it.
+"""Real servers whose disk is full for a while: a small tmpfs, and a file that fills it.
 
     EVOD=… EVOCTL=… MESSAGES=… full_disk_test.py     skipped with status 77 where nothing may be mounted
 """
@@ -34,8 +34,7 @@ class Client(recovery.Client):
         return next(m.response for m in iter(self.receive, None) if m.HasField("response"))
 
     def storage_states(self, until):
-        """What it is told of the disk, up to that state; but for BEHIND, as which a disk may count while the machine is
-        busy."""
+        """The states of the disk in events, up to that state, except BEHIND, which may come while the machine is busy."""
         states = []
         while not states or states[-1] != until:
             event = next(m.event for m in iter(self.receive, None) if m.HasField("event"))
@@ -49,16 +48,16 @@ class Client(recovery.Client):
     def storage(self):
         return self.call(999, list_worlds=c.ListWorlds()).worlds.worlds[0].storage
 
-    def is_told_something(self):
+    def gets_events(self):
         return bool(select.select([self.socket], [], [], 0)[0])
 
-    def picture(self, condition):
-        """The next picture of which that holds."""
+    def snapshot(self, condition):
+        """The next snapshot for which the condition holds."""
         while True:
             _, _, channel, length = struct.unpack("<2sBBI", self.read(8))
             body = self.read(length)
-            if channel == 2 and condition(picture := stream_pb2.SnapshotFrame.FromString(body)):
-                return picture
+            if channel == 2 and condition(snapshot := stream_pb2.SnapshotFrame.FromString(body)):
+                return snapshot
 
 
 class FullDisk(unittest.TestCase):
@@ -120,7 +119,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def fill_and_ask_for_what_cannot_be_written(self, server, control):
-        """The world runs, and nobody was told so."""
+        """The world runs, and no client was notified."""
         self.fill()
         asking = self.client(server, "waits")
         asking.ask(1, run=c.Run())
@@ -128,11 +127,11 @@ class FullDisk(unittest.TestCase):
         self.assertIn("full", server.output())
         refused = control.call(10, **set_parameter("food_health", 5))
         self.assertEqual(refused.status.code, UNAVAILABLE)
-        self.assertIn("nothing can be changed while it cannot be written down", refused.status.message)
+        self.assertIn("no command is accepted while it cannot be recorded", refused.status.message)
         self.assertIn("full", refused.status.message)
         return asking
 
-    def test_commands_are_refused_and_worlds_go_on_until_there_is_room_again(self):
+    def test_commands_are_refused_until_there_is_room(self):
         self.mount(8)
         server = self.serve("--seed", "3", "--speed", "1000")
         control, viewer, listens = (self.client(server, name) for name in ("control", "viewer", "listens"))
@@ -142,20 +141,20 @@ class FullDisk(unittest.TestCase):
         viewer.call(1, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
         self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
         asking = self.fill_and_ask_for_what_cannot_be_written(server, control)
-        # Everybody is told, whenever he comes.
+        # Every client sees the state, also one that connects later.
         self.assertEqual(listens.storage_states(FAILING), [FAILING])
         for storage in control.storage(), self.client(server, "later").welcome.storage:
             self.assertEqual(storage.state, FAILING)
             self.assertIn("full", storage.reason)
         self.assertIn(f"commands are refused: {storage.reason}\n", self.status(server))
-        # What needs no disk goes on: the world, its pictures, questions, what leaves no trace.
-        seen = viewer.picture(lambda picture: True).tick
-        seen = viewer.picture(lambda picture: picture.tick > seen + 3000).tick
+        # Everything that needs no disk continues: the world, its snapshots, queries.
+        seen = viewer.snapshot(lambda snapshot: True).tick
+        seen = viewer.snapshot(lambda snapshot: snapshot.tick > seen + 3000).tick
         self.assertGreaterEqual(control.world().tick, seen)
         self.assertEqual(control.call(11, set_parameters=c.SetParameters(dry_run=True)).status.code, 0)
         again = control.call(12, pause=c.Pause())
         self.assertEqual(again.status.code, UNAVAILABLE)
-        self.assertFalse(asking.is_told_something())
+        self.assertFalse(asking.gets_events())
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
         until(lambda: "run files can be written again" in server.output(), "the end of the trouble")
@@ -179,7 +178,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(control.call(12, pause=c.Pause()).applied_tick, paused.applied_tick)
         server.end()
 
-    def test_ended_while_its_disk_is_full_it_says_what_is_lacking(self):
+    def test_a_server_ending_on_a_full_disk_logs_what_is_lost(self):
         self.mount(8)
         server = self.serve("--seed", "3", "--speed", "1000")
         control = self.client(server, "control")
@@ -195,7 +194,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual((now.tick, now.state_hash, now.state), (before.tick, before.state_hash, before.state))
         server.end()
 
-    def test_killed_while_its_disk_is_full_it_goes_on_without_what_nobody_was_told_of(self):
+    def test_a_kill_on_a_full_disk_loses_only_the_unanswered(self):
         self.mount(8)
         server = self.serve("--seed", "3", "--speed", "1000")
         control = self.client(server, "control")
@@ -221,7 +220,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual([row[2:] for row in journal(self.data)][-3:], [("control", 1), ("control", 2), ("waits", 1)])
         self.verify()
 
-    def test_worlds_wait_when_too_much_waits_for_the_disk(self):
+    def test_worlds_wait_while_too_much_is_unwritten(self):
         self.mount(400)
         crowd = pathlib.Path(self.data) / "default.json"
         # A generation is a tick, and weighs half a megabyte; so slow that trouble is noticed before there is no room.
@@ -259,14 +258,14 @@ class FullDisk(unittest.TestCase):
         newcomer = self.client(server, "newcomer")
         self.assertEqual(newcomer.welcome.storage, world.storage)
         newcomer.call(1, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
-        self.assertEqual(newcomer.picture(lambda picture: True).tick, world.tick)
+        self.assertEqual(newcomer.snapshot(lambda snapshot: True).tick, world.tick)
         look = newcomer.call(2, open_replay=c.OpenReplay(at=c.RunMoment(generation=5)))
         self.assertEqual((look.status.code, look.world.generation), (0, 5), look.status.message)
         self.assertFalse(look.world.HasField("storage"))
         name = look.world.name
         newcomer.call(3, subscribe_snapshots=c.SubscribeSnapshots(world=name, rate_hz=60))
         self.assertEqual(newcomer.call(4, run_until_tick=c.RunUntilTick(world=name, tick=15)).status.code, 0)
-        newcomer.picture(lambda picture: (picture.world, picture.tick) == (name, 15))
+        newcomer.snapshot(lambda snapshot: (snapshot.world, snapshot.tick) == (name, 15))
         sought = newcomer.call(5, seek=c.Seek(world=name, to=c.RunMoment(generation=2)))
         self.assertEqual((sought.status.code, sought.world.generation), (0, 2), sought.status.message)
         self.assertEqual(control.world().tick, world.tick)

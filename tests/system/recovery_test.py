@@ -1,4 +1,4 @@
-"""Real servers that keep their runs, killed and started again: nothing that was answered is lost or done twice.
+"""Kills real servers and starts them again: nothing that was answered is lost or repeated.
 
     EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (25)
 """
@@ -52,7 +52,7 @@ class Server:
 
 
 class Client:
-    """Asks one thing after another; EOFError when the server has gone."""
+    """Sends one request after another; EOFError when the server has ended."""
 
     def __init__(self, server, key):
         self.key = key
@@ -127,7 +127,7 @@ def journal(data, world="default"):
 
 
 def half_written(run):
-    """The parts of each checkpoint of which not all are there, by its tick."""
+    """The numbers of parts of incomplete checkpoints, by tick."""
     return dict(run.execute("SELECT tick, count(*) FROM checkpoint_part WHERE tick NOT IN (SELECT tick FROM checkpoint)"
                             " GROUP BY tick"))
 
@@ -186,7 +186,7 @@ class Recovery(unittest.TestCase):
         return self.servers[-1]
 
     def assert_as_if_never_stopped(self, answered, key, *options):
-        """Nothing was lost or done twice; answered: by request id, tick and value of "food_health"."""
+        """Checks that no command was lost or repeated. answered: by request id, tick and value of "food_health"."""
         # Every request is in the journal once, at the tick it was answered with.
         (file,) = pathlib.Path(self.data).glob("*.evod")
         kept = [row for row in journal(self.data, file.stem) if row[2] == key]
@@ -249,9 +249,9 @@ class Recovery(unittest.TestCase):
                 answered[request_id] = (response.applied_tick, answered[request_id][1])
             server.kill()
 
-    def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
+    def test_random_kills_lose_and_repeat_nothing(self):
         chance, options = random.Random(3), ["--seed", "11", "--speed", "max"]
-        at_once = 100  # kills of one world: what it was told is read at every start
+        at_once = 100  # kills of one world: every start reads its answers
         for first in range(0, kills, at_once):
             for file in pathlib.Path(self.data).iterdir():
                 file.unlink()
@@ -267,9 +267,9 @@ class Recovery(unittest.TestCase):
             self.assert_as_if_never_stopped(answered, key, *options)
             print(f"killed {kill + 1} times; {len(answered)} commands since {first}", flush=True)
 
-    def test_killed_while_it_writes_a_checkpoint_it_loses_nothing_and_does_nothing_twice(self):
-        # One generation, slow to simulate, in which nobody dies of hunger: all that is written, but for commands and
-        # hashes, are checkpoints of two megabytes.
+    def test_kills_during_a_checkpoint_lose_and_repeat_nothing(self):
+        # One generation, slow to simulate, in which no organism starves. So the server writes commands, hashes and
+        # checkpoints of two megabytes only.
         crowd = pathlib.Path(self.data) / "crowd.json"
         crowd.write_text('{"population_size": 40000, "scale_with_population": true, "reference_population": 50,'
                          ' "generation_s": 3600, "health_loss_per_s": 0.1}')
@@ -297,7 +297,7 @@ class Recovery(unittest.TestCase):
         self.assert_as_if_never_stopped(answered, key, *options)
 
     def look_at_what_is_left(self):
-        """By a server that was killed in the test above; changes nothing of it."""
+        """A file of a server that the test above killed; this leaves it unchanged."""
         with tempfile.TemporaryDirectory() as copy:
             shutil.copytree(self.data, copy, dirs_exist_ok=True)
             with sqlite3.connect(f"{copy}/crowd.evod") as run:
@@ -310,7 +310,7 @@ class Recovery(unittest.TestCase):
                 self.assertEqual(refused.returncode, 1)
                 self.assertIn(f"the row {self.left_checkpoint} of its table checkpoint", refused.stderr)
 
-    def test_killed_again_while_it_recovers_it_loses_nothing_and_does_nothing_twice(self):
+    def test_kills_during_recovery_lose_and_repeat_nothing(self):
         crowd = pathlib.Path(self.data) / "crowd.json"
         crowd.write_text('{"population_size": 5000, "scale_with_population": true, "reference_population": 50}')
         options = ["--experiment", str(crowd), "--seed", "12", "--speed", "max"]
@@ -354,7 +354,7 @@ class Recovery(unittest.TestCase):
         server.kill()
         self.assert_as_if_never_stopped(answered, key, *options)
 
-    def test_a_closed_server_goes_on_where_it_stood_and_as_it_was_told(self):
+    def test_a_closed_server_continues_with_its_run_control(self):
         server = self.serve("--seed", "5", "--speed", "max")
         with Client(server, "k") as client:
             client.call(1, run=c.Run(generations=3))
@@ -373,7 +373,7 @@ class Recovery(unittest.TestCase):
                     self.assertEqual(getattr(after[name], field), getattr(before[name], field), f"{name}: {field}")
         server.end()
 
-    def test_a_world_that_was_lent_when_the_server_ended_goes_on_by_itself(self):
+    def test_a_leased_world_resumes_after_a_restart(self):
         server = self.serve("--seed", "5", "--speed", "max", "--start")
         with Client(server, "k") as client:
             lent = client.call(1, run_until_tick=c.RunUntilTick(tick=0))
@@ -385,7 +385,7 @@ class Recovery(unittest.TestCase):
             self.assertEqual((client.world().leased, client.world().state), (False, w.RUN_STATE_RUNNING))
         server.end()
 
-    def test_reset_and_delete_put_the_run_aside_and_are_done_once(self):
+    def test_reset_and_delete_rename_the_file_once(self):
         server = self.serve("--seed", "5", "--speed", "max")
         with Client(server, "k") as client:
             first_run = client.world().run_id
@@ -407,7 +407,7 @@ class Recovery(unittest.TestCase):
             self.assertEqual(reset.status.code, 0)
         server.end()
 
-    def test_a_command_before_a_reset_is_done_once_after_a_kill_too(self):
+    def test_a_kill_does_not_repeat_a_command_before_a_reset(self):
         server = self.serve("--seed", "5")
         with Client(server, "early") as early, Client(server, "k") as client:
             first = early.call(1, **set_parameter("food_health", 7.0))
@@ -424,7 +424,7 @@ class Recovery(unittest.TestCase):
             self.assertEqual([x.value.real for x in there.parameters if x.name == "food_health"], [11.0])
         server.end()
 
-    def test_an_experiment_goes_on_only_if_it_is_the_same(self):
+    def test_only_the_same_experiment_is_continued(self):
         path = pathlib.Path(self.data) / "plate.json"
         path.write_text('{"population_size": 20, "seed": 4}')
         self.serve("--experiment", str(path), "--speed", "max", "--start").end()
@@ -440,7 +440,7 @@ class Recovery(unittest.TestCase):
         self.assertIn("population_size (20, not 21)", refused.stderr)
         self.assertNotIn("food_count", refused.stderr)
 
-    def test_start_and_speed_are_for_one_world_or_refused(self):
+    def test_start_and_speed_need_a_single_world(self):
         def change(server, *requests):
             with Client(server, secrets.token_hex(8)) as client:
                 for number, request in enumerate(requests, 1):
@@ -466,7 +466,7 @@ class Recovery(unittest.TestCase):
         self.assertIn('--speed and --start are for world "default" alone; 2 others go on as they were', server.output())
         server.end()
 
-    def test_runs_are_kept_in_the_users_state_folder_unless_told_otherwise(self):
+    def test_runs_are_stored_in_the_state_folder_by_default(self):
         for variable, folder in (("XDG_STATE_HOME", f"{self.data}/evod"), ("HOME", f"{self.data}/.local/state/evod")):
             server = Server(env={variable: self.data})
             self.servers.append(server)
@@ -482,7 +482,7 @@ class Recovery(unittest.TestCase):
         server.end()
         self.assertEqual(set(pathlib.Path(self.data).rglob("*")), before)
 
-    def test_a_second_server_and_a_damaged_file_are_refused_by_name(self):
+    def test_a_second_server_and_a_damaged_file_are_refused(self):
         server = self.serve("--seed", "5")
         refused = waiting.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 1)
@@ -494,7 +494,7 @@ class Recovery(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
 
-    def test_a_damaged_log_is_refused_and_a_cut_one_read(self):
+    def test_a_damaged_log_is_refused_a_truncated_one_read(self):
         server, commands = self.serve("--seed", "5"), 8
         with Client(server, "k") as client:
             for i in range(1, commands + 1):
@@ -542,11 +542,11 @@ class Recovery(unittest.TestCase):
         self.serve().end()
         self.assertEqual(requests_kept(), list(range(1, commands + 1)))
 
-    def test_a_run_file_with_a_name_of_no_world_is_left_alone(self):
+    def test_a_file_whose_name_is_no_world_is_ignored(self):
         strange = pathlib.Path(self.data, "my run.evod")
         strange.write_text("not ours")
         server = self.serve("--seed", "5")
-        self.assertIn(f"{strange} is left alone", server.output())
+        self.assertIn(f"{strange} is ignored", server.output())
         server.end()
         self.assertEqual(strange.read_text(), "not ours")
 

@@ -28,7 +28,7 @@ def evod(*arguments, status=0):
 
 
 class Server:
-    """A server with the world "small", as a context; ended in order when that is left."""
+    """A context with a server that has the world "small"; leaving it shuts the server down."""
 
     def __init__(self, folder, seed, *options):
         experiment = pathlib.Path(folder) / "small.json"
@@ -61,7 +61,7 @@ class Server:
 
 
 def setUpModule():
-    """Three generations and a half with changes; four without any; and the same of another seed."""
+    """Three and a half generations with changes; four without; and the same with another seed."""
     global folder, changed, plain, other
     folder = tempfile.TemporaryDirectory()
     unittest.addModuleCleanup(folder.cleanup)
@@ -88,7 +88,7 @@ class Case(unittest.TestCase):
         self.folder = own.name
 
     def copy(self, run, *statements):
-        """A copy of a run in which something is changed; `other` is the database of another."""
+        """A changed copy of a run; `other` is the database of another run."""
         path = f"{self.folder}/copy.evod"
         shutil.copy(run, path)
         database = sqlite3.connect(path, isolation_level=None)
@@ -100,7 +100,7 @@ class Case(unittest.TestCase):
 
 
 class Documentation(Case):
-    """docs/RUN_FILE.md: what it says is there, and its queries."""
+    """Checks docs/RUN_FILE.md: its tables and columns, and its queries."""
 
     text = (pathlib.Path(__file__).parents[2] / "docs/RUN_FILE.md").read_text()
 
@@ -109,11 +109,11 @@ class Documentation(Case):
         self.run_file = sqlite3.connect(f"file:{changed}?mode=ro", uri=True)
         self.addCleanup(self.run_file.close)
 
-    def test_every_table_and_column_is_told(self):
+    def test_every_table_and_column_is_documented(self):
         words = set(re.findall(r"\w+", self.text))
         for (table,) in self.run_file.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall():
             self.assertIn(table, words)
-            if table in ("statistics", "inherited_statistics", "selection_account"):  # told to be those of the CSV
+            if table in ("statistics", "inherited_statistics", "selection_account"):  # documented as the columns of the CSV
                 continue
             for column in self.run_file.execute(f"SELECT name FROM pragma_table_info('{table}')").fetchall():
                 self.assertIn(column[0], words, table)
@@ -135,7 +135,7 @@ class Verify(Case):
                 self.assertIn("all agrees: " + words, said)
                 self.assertRegex(said, r" state hashes, 0 checkpoints compared in \d+\.\d\d s, \d+(\.\d)? × real time\n$")
 
-    def test_a_run_agrees_while_a_server_writes_it_and_after_that_was_killed(self):
+    def test_a_run_agrees_while_it_is_written_and_after_a_kill(self):
         server = Server(self.folder, 4)
         try:
             server.evoctl("run")
@@ -147,7 +147,7 @@ class Verify(Case):
             server.end(signal.SIGKILL, -signal.SIGKILL)
         self.assertIn("all agrees", evod("verify", server.run))
 
-    def test_a_run_that_was_reset_agrees_and_so_does_the_one_after_it(self):
+    def test_a_reset_run_and_the_next_one_agree(self):
         with Server(self.folder, 5) as server:
             server.evoctl("until", "150", "--wait")
             server.evoctl("set", "food_health=7", "population_size=9")
@@ -160,7 +160,7 @@ class Verify(Case):
         self.assertIn("2 generations, 150 ticks", evod("verify", runs[0]))
         self.assertIn("3 generations, 300 ticks", evod("verify", runs[1]))
 
-    def test_damage_is_named(self):
+    def test_damage_is_reported(self):
         for statement, words in {
             "UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 3 AND island = 1": "outcome of generation 3",
             "UPDATE population SET chromosomes = zeroblob(288) WHERE generation = 2": "population of generation 2",
@@ -180,7 +180,7 @@ class Verify(Case):
             file.write(bytes([content[place] ^ 1]))
         self.assertIn("is damaged: the population of generation 3 on island 0", evod("verify", path, status=1))
 
-    def test_a_sound_row_of_another_run_is_told_with_its_moment(self):
+    def test_a_row_of_another_run_is_reported_with_its_moment(self):
         for table, where, moment, part, agrees in (
                 ("state_hash", "tick = 180", "generation 2, tick 180", "the state hash: stored ",
                  "generation 2, tick 120: the beginning of the generation"),
@@ -199,7 +199,7 @@ class Verify(Case):
                 self.assertIn(f"first that does not: {moment}: {part}", said)
                 self.assertIn(", simulated again ", said)
 
-    def test_what_cannot_be_verified_is_said(self):
+    def test_what_cannot_be_verified_is_refused(self):
         for path, words in {
             "/nowhere.evod": "/nowhere.evod: there is no such file",
             self.folder: "this is a folder",
@@ -209,21 +209,21 @@ class Verify(Case):
         self.assertIn("--threads", evod("verify", plain, "--threads", 0, status=2))
         self.assertIn("run is required", evod("verify", status=2))
 
-    @unittest.skipIf(os.geteuid() != 0, "only root can become somebody who may read and not write")
-    def test_whoever_may_only_read_can_verify(self):
+    @unittest.skipIf(os.geteuid() != 0, "only root can become a user with read access alone")
+    def test_read_access_is_enough_to_verify(self):
         path = pathlib.Path(self.copy(plain))
         os.chmod(self.folder, 0o755)
         os.chmod(path, 0o644)
         try:
             done = waiting.run([EVOD, "verify", path], capture_output=True, text=True, user=65534, group=65534)
         except PermissionError:
-            self.skipTest("the program itself is where nobody else may look")
+            self.skipTest("other users cannot read the program")
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
 class Export(Case):
     def rows(self, run, what):
-        """As CSV has them, every value a text; and that JSON Lines say the same."""
+        """The rows of the CSV, every value a text; checks that the JSON Lines are equal."""
         text = evod("export", run, "--what", what)
         rows = list(csv.DictReader(io.StringIO(text, newline="")))
         objects = [json.loads(line) for line in evod("export", run, "--what", what, "--format", "jsonl").splitlines()]
@@ -241,13 +241,13 @@ class Export(Case):
                     self.assertEqual(row[name], value)
         return rows
 
-    def test_generations_are_those_of_a_run_without_a_network(self):
+    def test_generations_equal_those_of_evod_run(self):
         evod("run", plain.with_suffix(".json"), "--seed", 2, "--generations", 4, "--csv", self.folder + "/run.csv")
         self.assertEqual(evod("export", plain, "--what", "generations"),
                          pathlib.Path(self.folder + "/run.csv").read_text())
         self.assertEqual(len(self.rows(changed, "generations")), 3 * 2)
 
-    def test_organisms_are_those_that_are_stored(self):
+    def test_organisms_equal_the_stored_ones(self):
         rows = self.rows(changed, "organisms")
         self.assertEqual(len(rows), 2 * (12 + 12 + 15 + 15))
         database = sqlite3.connect(f"file:{changed}?mode=ro", uri=True)
@@ -309,7 +309,7 @@ class Export(Case):
         return [tuple(int(row[f"parent_{which}{of}"]) for of in ("_generation", "_island", ""))
                 for which in ("first", "second")]
 
-    def test_lineage_tells_parents_where_they_lived(self):
+    def test_lineage_has_parents_with_their_islands(self):
         self.rows(plain, "lineage")
         family = self.lineage(plain)
         organisms = {tuple(int(row[x]) for x in ("generation", "island", "organism")): row
@@ -336,7 +336,7 @@ class Export(Case):
             counts = ("", "") if name[0] == 4 else (str(children.get(name, 0)), str(kept.get(name, 0)))
             self.assertEqual((row["child_count"], row["kept_count"]), counts)
 
-    def test_lineage_of_one_is_its_ancestors(self):
+    def test_lineage_of_an_organism_lists_its_ancestors(self):
         family = self.lineage(plain)
         for last in (4, 0, 11), (3, 1, 0), (1, 1, 3):
             ancestors = self.lineage(plain, "--of", ":".join(map(str, last)))
@@ -356,7 +356,7 @@ class Export(Case):
             self.assertIn(words, evod("export", plain, "--what", "lineage", "--of", of, status=1))
         self.assertIn("only with --what lineage", evod("export", plain, "--what", "events", "--of", "1:0:0", status=1))
 
-    def test_a_population_is_what_another_world_begins_with(self):
+    def test_another_world_can_begin_with_a_population(self):
         path = self.folder + "/plate.csv"
         evod("export", plain, "--what", "population", "--generation", 3, "--output", path)
         rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
@@ -374,7 +374,7 @@ class Export(Case):
             evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv", again)
             self.assertEqual(evod("export", run, "--what", "generations").splitlines()[:3],
                              pathlib.Path(again).read_text().splitlines())
-        # Without being told of it, the world goes on; told of another, it is not taken for that.
+        # Without --population the world continues; with another population the server refuses it.
         Server(self.folder, 8).end(signal.SIGTERM, 0)
         evod("export", plain, "--what", "population", "--generation", 2, "--output", path)
         self.assertIn("began with other organisms", evod("--data", self.folder, "--experiment", self.folder + "/small.json",
@@ -406,14 +406,14 @@ class Export(Case):
         return folder
 
     def repeat(self, folder):
-        """Does what REPEAT.md says."""
+        """Runs the commands of REPEAT.md."""
         commands = re.findall("^    (.*)$", (folder / "REPEAT.md").read_text(), re.M)
         for command in commands:
             words = [EVOD if word == "evod" else word for word in command.split()]
             subprocess.run(words, cwd=folder, check=True, stdout=subprocess.PIPE)
         return len(commands)
 
-    def test_a_bundle_says_how_the_run_is_repeated(self):
+    def test_a_bundle_states_how_to_repeat_the_run(self):
         self.assertEqual(self.repeat(self.bundle(plain, "small.evod")), 4)
         with sqlite3.connect(f"file:{plain}?mode=ro", uri=True) as run:
             (build,) = run.execute("SELECT value FROM run WHERE key = 'build'").fetchone()
@@ -431,7 +431,7 @@ class Export(Case):
         evod("export", damaged, "--bundle", self.folder + "/half", status=1)
         self.assertFalse(os.path.exists(self.folder + "/half"))
 
-    def test_a_fork_begins_where_the_file_ends_unless_told_otherwise(self):
+    def test_a_fork_begins_at_the_end_by_default(self):
         with tempfile.TemporaryDirectory() as data:
             said = evod("fork", plain, "--name", "f", "--data", data)
             self.assertRegex(said, r"begins with (tick \d+ of )?generation \d+ of ")
@@ -442,7 +442,7 @@ class Export(Case):
             self.assertEqual(first, str(last))
             self.assertIn("all agrees", evod("verify", f"{data}/f.evod"))
 
-    def test_a_fork_lies_beside_its_file(self):
+    def test_a_fork_is_created_beside_its_file(self):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(plain, folder)
             evod("fork", f"{folder}/{os.path.basename(plain)}", "--name", "beside")
@@ -458,13 +458,13 @@ class Export(Case):
             self.assertEqual(self.repeat(folder), 4)
             self.assertEqual((folder / "population.csv").read_text(), pathlib.Path(plate).read_text())
 
-    def test_a_file_takes_what_stdout_would(self):
+    def test_a_file_gets_the_output_of_stdout(self):
         path = self.folder + "/organisms.jsonl"
         self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
         self.assertEqual(pathlib.Path(path).read_text(),
                          evod("export", plain, "--what", "organisms", "--format", "jsonl"))
 
-    def test_what_is_wrong_is_named(self):
+    def test_errors_name_the_field(self):
         path = self.copy(plain)
         for arguments, words in {
             (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],

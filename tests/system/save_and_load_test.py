@@ -44,7 +44,7 @@ class SaveAndLoad(past.Case):
         return changes, forks
 
     def save(self, client, name, chance):
-        """Has a world live and saves it now and then; by name of the saved: its tick, its hash, its hash later on."""
+        """Runs a world and saves it now and then. Returns by name of the copy: its tick, its hash, and its later hash."""
         sizes = {"population_size": chance.randrange(5, 60), "generation_s": chance.choice([0.5, 2.0, 9.0, 40.0])}
         client.call(create_world=c.CreateWorld(name=name, seed=chance.randrange(1 << 32),
                                                parameters=plain.assignments(**{**sizes, **WORLDS[name]})))
@@ -78,7 +78,7 @@ class SaveAndLoad(past.Case):
         with sqlite3.connect(f"file:{self.folder}/{name}.evod?mode=ro", uri=True) as run:
             return set(run.execute(f"SELECT {columns}"))
 
-    def test_a_world_loaded_on_other_threads_lives_on_as_one_that_was_never_stopped(self):
+    def test_a_world_loaded_on_other_threads_continues_exactly(self):
         chance, count = random.Random(SEED), 0
         for number in range(ROUNDS):
             for file in pathlib.Path(self.folder).iterdir():

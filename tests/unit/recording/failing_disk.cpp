@@ -17,7 +17,7 @@ std::atomic<Failure> how_to_fail = Failure::InputOutput;
 std::atomic<std::uint64_t> operations_to_call = 0;
 std::function<void()> to_call; // set while operations_to_call is 0
 
-/// Whether the operation that is asked for now is to fail.
+/// Whether the present operation is to fail.
 bool fails_now() {
     if (operations_to_call.load() != 0 && operations_to_call.fetch_sub(1) == 1) {
         to_call();
@@ -36,7 +36,7 @@ int code() {
     return how_to_fail.load() == Failure::Full ? SQLITE_FULL : SQLITE_IOERR_WRITE;
 }
 
-/// A file of this disk, and behind it in memory the file it stands for.
+/// A file of this disk; the real file follows it in memory.
 struct File {
     sqlite3_file base;
 };
@@ -64,7 +64,7 @@ int truncate(sqlite3_file* file, sqlite3_int64 size) {
     return fails_now() ? SQLITE_IOERR_TRUNCATE : methods(file).xTruncate(real(file), size);
 }
 
-// What is passed on as it is.
+// Operations that are passed on unchanged.
 int close(sqlite3_file* file) {
     return methods(file).xClose(real(file));
 }

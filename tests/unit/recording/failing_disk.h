@@ -1,4 +1,4 @@
-// Failing disk: SQLite's usual way to the disk, but for one write, sync or truncation that fails, or all from one on.
+// Failing disk: an SQLite VFS whose N-th write, sync or truncation fails, or all from the N-th on.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace evod::recording {
 enum class Failure {
     InputOutput,
     Full,
-    Torn, // half of a write is made, then it fails
-    Gone, // it is not made and nothing after it either, as if the program had been killed before it
+    Torn, // half of the data is written, then the write fails
+    Gone, // neither it nor anything later happens, as if the program had been killed before it
 };
 
 inline void PrintTo(Failure how, std::ostream* out) {
@@ -19,16 +19,16 @@ inline void PrintTo(Failure how, std::ostream* out) {
     *out << names[static_cast<int>(how)];
 }
 
-/// The name to hand to RunFile::Options::vfs. Registers it when first asked.
+/// The name for RunFile::Options::vfs. The first call registers the VFS.
 const char* failing_disk();
 
-/// The number `count` operation from now on fails, and no other unless the disk is Gone; 0: none does.
+/// Lets the operation number `count` from now on fail, and with Gone all later ones; 0: none.
 void fail_operation(std::uint64_t count, Failure how);
 
-/// Calls this once, on the thread that asks for it, before the number `count` operation from now on.
+/// Calls `call` once, on the thread of the operation, before the operation number `count` from now on.
 void call_before_operation(std::uint64_t count, std::function<void()> call);
 
-/// Whether the operation that was to fail has.
+/// Whether the operation has failed.
 bool has_failed();
 
 } // namespace evod::recording

@@ -1,4 +1,4 @@
-// Recorded run: a world in a laboratory that is written to a file as a server does it, in a folder of its own.
+// Recorded run: a world in a laboratory whose run is recorded as a server does it, in a folder of its own.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -41,14 +41,14 @@ class TemporaryFolder {
     std::string path_;
 };
 
-/// Does this to a run file behind everybody's back.
+/// Changes a run file with SQL, without correcting checksums.
 inline void change(const std::string& path, const std::string& sql) {
     Database database{path, Database::Mode::Write};
     database.run(sql.c_str());
     ASSERT_FALSE(database.failed()) << database.error();
 }
 
-/// A world that breeds soon and dies now and then: twelve organisms, generations of two seconds, two islands.
+/// A small world with some deaths: twelve organisms, generations of two seconds, two islands.
 inline parameters::Parameters small_world() {
     parameters::Parameters parameters;
     parameters.population_size = 12;
@@ -94,10 +94,10 @@ class RecordedRun {
         }
     }
 
-    /// Of the last tick; to be called before anything is asked for there, as a server does.
+    /// Makes a checkpoint of the last tick, before any command there, as a server does.
     void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
 
-    /// A world "fork" that begins where this one is.
+    /// Creates the world "fork", a fork of the present moment.
     void fork(
         const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
         v1::Request request;
@@ -109,7 +109,7 @@ class RecordedRun {
                              executor_);
     }
 
-    /// Begins again in a file of its own.
+    /// Resets the world; the new run has a file of its own.
     void reset(
         base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
         const simulation::RunId before = entry().run_id;
@@ -126,7 +126,7 @@ class RecordedRun {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
-            set->by = "somebody"; // as a server does
+            set->by = "alice"; // as a server does
         }
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
@@ -155,7 +155,7 @@ class RecordedRun {
         const auto there = laboratory_.find("w");
         return {.tick = applied.tick,
                 .control = there ? (*there)->control : simulation::RunControl{},
-                .origin = {.client = "somebody",
+                .origin = {.client = "alice",
                            .client_key = "test",
                            .request_id = requests_,
                            .request = request.SerializeAsString()},

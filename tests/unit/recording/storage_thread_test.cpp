@@ -1,6 +1,7 @@
 #include "server/recording/storage_thread.h"
 
 #include "server/replay/archive.h"
+#include "server/run_file/check.h"
 #include "tests/support/everyday.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/failing_disk.h"
@@ -25,22 +26,22 @@ class StorageThreadTest : public testing::Test {
   protected:
     StorageThreadTest() : data{*DataFolder::open(folder.path())} {}
 
-    // In memory where that can be: a disk is slow to say that it has everything.
+    // In memory if possible: a sync is slow on a disk.
     TemporaryFolder folder{std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()};
     DataFolder data;
     base::InlineExecutor executor;
 };
 
-TEST_F(StorageThreadTest, TellsOnceTheCommandCanBeReadByOthers) {
+TEST_F(StorageThreadTest, DoneIsCalledWhenOthersCanReadTheCommand) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
     for (std::uint64_t number = 1; number <= 20; ++number) {
-        std::promise<void> told;
-        run.command(set_parameter("food_health", static_cast<double>(number)), [&] { told.set_value(); });
-        told.get_future().wait();
+        std::promise<void> written;
+        run.command(set_parameter("food_health", static_cast<double>(number)), [&] { written.set_value(); });
+        written.get_future().wait();
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
-        EXPECT_EQ((*file)->journal()->size(), number);
+        EXPECT_EQ((*file)->journal().read()->size(), number);
     }
 }
 
@@ -51,21 +52,21 @@ TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
         run.advance(70);
         run.delete_world();
     }
-    std::promise<void> told;
+    std::promise<void> written;
     RecordedRun next{data, thread, {2}};
-    next.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
-    told.get_future().wait();
+    next.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
+    written.get_future().wait();
     const auto ended = RunFile::open_read_only(data.ended_file_of("w", {1, 2}));
     ASSERT_TRUE(ended) << to_text(ended.error());
     EXPECT_TRUE((*ended)->end_mark()->value().ended);
     EXPECT_EQ((*ended)->end_mark()->value().tick, 70u);
-    EXPECT_EQ((*ended)->journal()->size(), 1u);
+    EXPECT_EQ((*ended)->journal().read()->size(), 1u);
     const auto present = RunFile::open_read_only(data.file_of("w"));
     ASSERT_TRUE(present);
     EXPECT_EQ((*present)->identity().seed.value, 2u);
 }
 
-TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
+TEST_F(StorageThreadTest, TheOldestWaitingRecordDeterminesTheAge) {
     fail_operation(1, Failure::Full);
     {
         StorageThread thread{{.vfs = failing_disk()}, 1h};
@@ -82,21 +83,21 @@ TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
     fail_operation(0, Failure::Full);
 }
 
-TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
+TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
     StorageThread thread{{}, 1ms};
     RecordedRun run{data, thread};
-    std::atomic<int> told = 0;
+    std::atomic<int> written = 0;
     double value = 0;
-    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++told; }); };
+    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++written; }); };
     const std::string path = data.file_of("w"), away = path + ".away";
     command();
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     for (const bool another : {false, true}) {
         std::filesystem::rename(path, away);
         if (another) {
-            std::ofstream{path} << "somebody else's";
+            std::ofstream{path} << "another file";
         }
-        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // it looks once a second
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // the name is checked once a second
                                [&] {
                                    command();
                                    std::this_thread::sleep_for(10ms);
@@ -104,24 +105,24 @@ TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
         EXPECT_THAT(*thread.trouble(),
                     testing::HasSubstr(path + (another ? " is another file than the one that is written"
                                                        : " has been moved or deleted")));
-        const int at_trouble = told;
+        const int at_trouble = written;
         command();
         std::this_thread::sleep_for(20ms);
-        EXPECT_EQ(told, at_trouble) << "nobody is told of what has no name";
+        EXPECT_EQ(written, at_trouble) << "done is not called while the file is lost";
         std::filesystem::rename(away, path);
-        ASSERT_TRUE(wait_until([&] { return told >= static_cast<int>(value) && !thread.trouble(); }));
+        ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && !thread.trouble(); }));
     }
-    EXPECT_EQ((*RunFile::open_read_only(path))->journal()->size(), static_cast<std::size_t>(value));
+    EXPECT_EQ((*RunFile::open_read_only(path))->journal().read()->size(), static_cast<std::size_t>(value));
 }
 
-TEST_F(StorageThreadTest, SaysAtItsEndWhatItCouldNotWrite) {
-    std::promise<void> told;
+TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
+    std::promise<void> written;
     testing::internal::CaptureStdout();
     {
         StorageThread thread{{.vfs = failing_disk()}, 1h};
         RecordedRun run{data, thread};
-        run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
-        told.get_future().wait();
+        run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
+        written.get_future().wait();
         fail_operation(1, Failure::Gone); // and all after it
         bool late = false;
         run.command(set_parameter("food_health", 2.0), [&] { late = true; });
@@ -135,32 +136,32 @@ TEST_F(StorageThreadTest, SaysAtItsEndWhatItCouldNotWrite) {
                 testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
                                        "commands, and where it stood last. " +
                                        data.file_of("w") + " has all that was answered"));
-    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal()->size(), 1u);
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal().read()->size(), 1u);
 }
 
-TEST_F(StorageThreadTest, NothingWaitsOnceAllIsWritten) {
+TEST_F(StorageThreadTest, ItIsIdleOnceEverythingIsWritten) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> told;
-    run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
-    told.get_future().wait();
+    std::promise<void> written;
+    run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
+    written.get_future().wait();
     ASSERT_TRUE(wait_until([&] { return !thread.waiting_since(); }));
     EXPECT_EQ(thread.waiting_bytes(), 0u);
 }
 
-TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
+TEST_F(StorageThreadTest, EachOfSeveralResetsEndsTheRunBefore) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> told;
+    std::promise<void> written;
     for (std::uint64_t number = 1; number <= 5; ++number) {
         run.advance(10 * number);
         run.reset({number}, {0, number}, [&, number] {
             if (number == 5) {
-                told.set_value();
+                written.set_value();
             }
         });
     }
-    told.get_future().wait();
+    written.get_future().wait();
     const auto files = data.files();
     EXPECT_TRUE(files->replaced.empty());
     EXPECT_EQ(files->ended.size(), 5u);
@@ -169,15 +170,15 @@ TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
         const auto ended = RunFile::open_read_only(data.ended_file_of("w", run_id));
         ASSERT_TRUE(ended) << to_text(ended.error());
         EXPECT_EQ((*ended)->end_mark()->value().tick, 10 * (number + 1));
-        EXPECT_TRUE((*ended)->check());
+        EXPECT_TRUE(check(**ended));
     }
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->identity().seed.value, 5u);
 }
 
-TEST_F(StorageThreadTest, WhatSomebodyWaitsForIsThereBeforeACheckpointIsPacked) {
+TEST_F(StorageThreadTest, ACommandIsWrittenBeforeACheckpointIsCompressed) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> at_work, go_on, told;
+    std::promise<void> at_work, go_on, written;
     run.command(set_parameter("food_health", 1.0), [&] {
         at_work.set_value();
         go_on.get_future().wait();
@@ -188,19 +189,19 @@ TEST_F(StorageThreadTest, WhatSomebodyWaitsForIsThereBeforeACheckpointIsPacked) 
     std::size_t commands = 0, checkpoints = 1;
     run.command(set_parameter("food_health", 2.0), [&] {
         const auto file = RunFile::open_read_only(data.file_of("w"));
-        commands = (*file)->journal()->size();
-        checkpoints = (*file)->checkpoints(0, 70)->size();
-        told.set_value();
+        commands = (*file)->journal().read()->size();
+        checkpoints = (*file)->checkpoints().read(0, 70)->size();
+        written.set_value();
     });
     go_on.set_value();
-    told.get_future().wait();
+    written.get_future().wait();
     EXPECT_EQ(commands, 2u);
     EXPECT_EQ(checkpoints, 0u);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->checkpoints(0, 70)->size(), 1u);
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->checkpoints().read(0, 70)->size(), 1u);
 }
 
-/// Of checkpoints that are there, and of such as are not, or not whole.
+/// The ticks of complete checkpoints, and of those with orphaned parts.
 struct PartCount {
     std::int64_t of_whole = 0, of_none = 0;
 };
@@ -224,31 +225,31 @@ TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
 
     run.advance(70);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-    std::promise<void> written_to, go_on, told;
-    call_before_operation(40, [&] { // a part takes several: pages and a sync
+    std::promise<void> written_to, go_on, written;
+    call_before_operation(40, [&] { // a part takes several operations: pages and a sync
         written_to.set_value();
         go_on.get_future().wait();
     });
     run.checkpoint();
     written_to.get_future().wait();
-    PartCount when_told;
+    PartCount when_done;
     run.command(set_parameter("food_health", 1.0), [&] {
-        when_told = parts_in(data.file_of("w"));
-        told.set_value();
+        when_done = parts_in(data.file_of("w"));
+        written.set_value();
     });
     go_on.set_value();
-    told.get_future().wait();
-    EXPECT_EQ(when_told.of_whole, parts);
-    EXPECT_GT(when_told.of_none, 0);
-    EXPECT_LT(when_told.of_none, parts / 2);
+    written.get_future().wait();
+    EXPECT_EQ(when_done.of_whole, parts);
+    EXPECT_GT(when_done.of_none, 0);
+    EXPECT_LT(when_done.of_none, parts / 2);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    EXPECT_EQ((*file)->checkpoints(0, 140)->size(), 2u);
-    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ((*file)->checkpoints().read(0, 140)->size(), 2u);
+    EXPECT_TRUE(check(**file));
     EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
 }
 
-TEST_F(StorageThreadTest, OfCheckpointsThatAreKeptNoMoreNothingStays) {
+TEST_F(StorageThreadTest, PartsOfDroppedCheckpointsAreDeleted) {
     StorageThread thread{{.part_bytes = 256}};
     RecordedRun run{data, thread};
     for (int count = 0; count < 6; ++count) {
@@ -259,14 +260,14 @@ TEST_F(StorageThreadTest, OfCheckpointsThatAreKeptNoMoreNothingStays) {
     }
     EXPECT_GT(parts_in(data.file_of("w")).of_whole, 3 * 2);
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    EXPECT_EQ((*file)->checkpoints(0, 180)->size(), 3u);
-    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ((*file)->checkpoints().read(0, 180)->size(), 3u);
+    EXPECT_TRUE(check(**file));
 }
 
-TEST_F(StorageThreadTest, ACheckpointThatIsNotWrittenWhenItsRunEndsIsLeftOut) {
+TEST_F(StorageThreadTest, AWaitingCheckpointIsDroppedWhenItsRunEnds) {
     StorageThread thread{{.part_bytes = 256}};
     RecordedRun run{data, thread};
-    std::promise<void> at_work, go_on, told;
+    std::promise<void> at_work, go_on, written;
     run.command(set_parameter("food_health", 1.0), [&] {
         at_work.set_value();
         go_on.get_future().wait();
@@ -274,16 +275,16 @@ TEST_F(StorageThreadTest, ACheckpointThatIsNotWrittenWhenItsRunEndsIsLeftOut) {
     at_work.get_future().wait();
     run.advance(70);
     run.checkpoint();
-    run.reset({2}, {3, 4}, [&] { told.set_value(); });
+    run.reset({2}, {3, 4}, [&] { written.set_value(); });
     go_on.set_value();
-    told.get_future().wait();
+    written.get_future().wait();
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const std::string path = data.ended_file_of("w", {1, 2});
     const auto file = RunFile::open_read_only(path);
     ASSERT_TRUE(file) << to_text(file.error());
     EXPECT_EQ((*file)->end_mark()->value().tick, 70u);
-    EXPECT_TRUE((*file)->checkpoints(0, 70)->empty());
-    EXPECT_TRUE((*file)->check());
+    EXPECT_TRUE((*file)->checkpoints().read(0, 70)->empty());
+    EXPECT_TRUE(check(**file));
     EXPECT_EQ(parts_in(path).of_none, 0);
 }
 
@@ -291,9 +292,9 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
     StorageThread thread{{.log_pages_max = 16}};
     RecordedRun run{data, thread};
     const auto command = [&](double value) {
-        std::promise<void> told;
-        run.command(set_parameter("food_health", value), [&] { told.set_value(); });
-        told.get_future().wait();
+        std::promise<void> written;
+        run.command(set_parameter("food_health", value), [&] { written.set_value(); });
+        written.get_future().wait();
     };
     command(0);
     const auto bytes = std::filesystem::file_size(data.file_of("w"));
@@ -303,19 +304,19 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_GT(std::filesystem::file_size(data.file_of("w")), bytes);
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    EXPECT_EQ((*file)->journal()->size(), 101u);
-    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ((*file)->journal().read()->size(), 101u);
+    EXPECT_TRUE(check(**file));
 }
 
 std::vector<std::uint64_t> ticks_of_checkpoints(RunFile& file) {
     std::vector<std::uint64_t> ticks;
-    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints().read(0, file.contents().tick)) {
         ticks.push_back(checkpoint.moment.tick);
     }
     return ticks;
 }
 
-TEST_F(StorageThreadTest, ACheckpointWhoseGenerationIsNotHeldAnyMoreIsNotWritten) {
+TEST_F(StorageThreadTest, ACheckpointOfAPurgedGenerationIsNotWritten) {
     StorageThread thread{{.keep_every = 5}};
     RecordedRun run{data, thread};
     const auto in_generation = [&](std::uint64_t generation) {
@@ -335,16 +336,16 @@ TEST_F(StorageThreadTest, ACheckpointWhoseGenerationIsNotHeldAnyMoreIsNotWritten
     go_on.set_value();
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const auto file = RunFile::open_read_only(data.file_of("w"));
-    EXPECT_EQ((*file)->last_generation(), 3u);
+    EXPECT_EQ((*file)->generations().last(), 3u);
     EXPECT_TRUE(ticks_of_checkpoints(**file).empty());
-    EXPECT_TRUE((*file)->check());
+    EXPECT_TRUE(check(**file));
 }
 
 /// Runs of some commits, with checkpoints. In each run one operation of the disk fails, until a run has too few operations
 /// for one to fail. Every day only each eighth operation fails: all of them take two minutes.
 class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
 
-TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
+TEST_P(FailingDisk, DoneMeansWrittenAndEverythingIsWrittenInTheEnd) {
     const std::uint64_t stride = everyday_size("FAILING_STRIDE", 8);
     std::uint64_t operation = 0;
     do {
@@ -353,7 +354,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
         folder.clear();
         fail_operation(operation, GetParam());
         base::StateHash ended_hash, hash;
-        std::atomic<int> told = 0;
+        std::atomic<int> written = 0;
         {
             StorageThread thread{
                 {.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700, .log_pages_max = 32}, 1ms};
@@ -361,7 +362,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
             for (int round = 0; round < 4; ++round) {
                 std::promise<void> durable;
                 run.command(set_parameter("food_health", 1.0 * round), [&] {
-                    ++told;
+                    ++written;
                     durable.set_value();
                 });
                 ASSERT_TRUE(wait_until_ready(durable.get_future())) << "operation " << operation;
@@ -369,10 +370,10 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                 run.checkpoint();
                 ended_hash = run.world().hash();
             }
-            ASSERT_TRUE(wait_until([&] { return thread.idle(); })); // or the last checkpoint would be left out
+            ASSERT_TRUE(wait_until([&] { return thread.idle(); })); // otherwise the last checkpoint is dropped
             std::promise<void> begun_again;
             run.reset({9}, {3, 4}, [&] {
-                ++told;
+                ++written;
                 begun_again.set_value();
             });
             ASSERT_TRUE(wait_until_ready(begun_again.get_future())) << "operation " << operation;
@@ -380,18 +381,18 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
             run.checkpoint();
             run.recorder().close_all(run.laboratory());
             hash = run.world().hash();
-            // The end is waited for too: a thread that stops gives up what cannot be written.
+            // Waits for the end as well: a thread that stops drops what it cannot write.
             ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         }
-        EXPECT_EQ(told, 5);
+        EXPECT_EQ(written, 5);
         const auto expect_whole = [&](const std::string& path, std::size_t commands,
                                       const std::vector<std::uint64_t>& checkpoints, const base::StateHash& last) {
             const auto file = RunFile::open_read_only(path);
             ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
-            const auto checked = (*file)->check();
+            const auto checked = check(**file);
             ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
             EXPECT_EQ(parts_in(path).of_none, 0) << "operation " << operation;
-            EXPECT_EQ((*file)->journal()->size(), commands);
+            EXPECT_EQ((*file)->journal().read()->size(), commands);
             EXPECT_EQ(ticks_of_checkpoints(**file), checkpoints) << "operation " << operation;
             const auto recovered = recover(**file, executor);
             ASSERT_TRUE(recovered) << to_text(recovered.error());
@@ -408,8 +409,8 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
 INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput, Failure::Full, Failure::Torn),
                          testing::PrintToStringParamName());
 
-/// As if a server had been killed right before each of its operations of the disk in turn.
-TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
+/// Simulates a kill right before each disk operation in turn.
+TEST_F(StorageThreadTest, AfterAKillTheFileHasExactlyWhatWasAnswered) {
     const std::uint64_t stride =
         std::max<std::uint64_t>(1, everyday_size("FAILING_STRIDE", 8) / 8); // a kill takes 30 ms
     std::uint64_t operation = 0;
@@ -422,18 +423,18 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
         folder.clear();
         fail_operation(operation, Failure::Gone);
         std::vector<base::StateHash> hashes; // of the origin, by tick
-        std::atomic<std::uint64_t> told = 0;
+        std::atomic<std::uint64_t> written = 0;
         std::uint64_t asked = 0;
         {
             auto own = DataFolder::open(folder.path());
             StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700}, 1ms};
             RecordedRun run{*own, thread};
-            const auto tells = [&] {
+            const auto counts = [&] {
                 ++asked;
-                return [&] { ++told; };
+                return [&] { ++written; };
             };
             const auto wait = [&] {
-                EXPECT_TRUE(wait_until([&] { return told == asked || thread.trouble(); }));
+                EXPECT_TRUE(wait_until([&] { return written == asked || thread.trouble(); }));
                 return !thread.trouble();
             };
             const auto advance = [&] {
@@ -444,19 +445,19 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
                 run.checkpoint();
             };
             for (int round = 0; round < 4; ++round) {
-                run.command(set_parameter("food_health", 1.0 * round), tells());
+                run.command(set_parameter("food_health", 1.0 * round), counts());
                 if (!wait()) {
                     break;
                 }
-                advance(); // the checkpoint is written with the next command
+                advance(); // the next command comes while the checkpoint is written
                 if (round == 3) {
-                    run.fork({5, 6}, tells());
+                    run.fork({5, 6}, counts());
                 }
             }
             hashes.push_back(run.world().hash());
             (void)wait();
         }
-        // What has a world's name says what it is without its log too.
+        // A file with a world's name contains its identity without its log.
         for (const std::string world : {"w", "fork"}) {
             if (const std::string path = folder.path() + "/" + world + ".evod"; std::filesystem::exists(path)) {
                 std::string head(72, '\0');
@@ -479,12 +480,12 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
             ASSERT_LT(tick, hashes.size());
             EXPECT_EQ(entry->world.hash(), hashes[tick]) << entry->name << " at tick " << tick;
         }
-        // What was told is there; the one command that nobody was told of may be, whole, or not.
+        // Every answered command is there; the one that was not answered is there or not.
         const std::size_t there = (*archive)->take_answers().size();
-        EXPECT_GE(there, told);
+        EXPECT_GE(there, written);
         EXPECT_LE(there, asked);
         EXPECT_EQ(static_cast<bool>(laboratory.find("fork")), there == 5);
-        EXPECT_TRUE(told == 0 || laboratory.find("w"));
+        EXPECT_TRUE(written == 0 || laboratory.find("w"));
         (*archive)->recorder().close_all(laboratory);
         (*archive)->close();
         if (std::filesystem::exists(path)) {

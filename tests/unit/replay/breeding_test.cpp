@@ -11,8 +11,8 @@ namespace {
 using namespace run_file;
 using namespace recording;
 
-/// Four generations and a half, with changes of parameters in the middle of the second, in a file that holds them all
-/// or only each fourth.
+/// 4.5 generations, with changes of parameters in the middle of the second, in a file that retains all of them or only
+/// each fourth.
 class BreedingTest : public testing::TestWithParam<std::uint64_t> {
   protected:
     BreedingTest() : data{*DataFolder::open(folder.path())} {
@@ -54,7 +54,7 @@ class BreedingTest : public testing::TestWithParam<std::uint64_t> {
     std::unique_ptr<RunFile> opened;
 };
 
-TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
+TEST_P(BreedingTest, ReportsDescendantsAndParameters) {
     ASSERT_EQ(begun.size(), 5u);
     for (std::uint64_t generation = 1; generation <= 4; ++generation) {
         for (std::uint32_t island = 0; island < 2; ++island) {
@@ -65,11 +65,11 @@ TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
             const evolution::NextGeneration& born = begun[generation].born[island];
             ASSERT_EQ(bred->record.descendants.size(), generation < 2 ? 12u : 17u);
             ASSERT_EQ(bred->record.descendants.size(), born.parents.size());
-            for (const auto& told : bred->record.descendants) {
-                EXPECT_EQ(told.parents, born.parents[told.id]);
-                EXPECT_TRUE((told.genes == born.genes.col(told.id)).all());
+            for (const auto& descendant : bred->record.descendants) {
+                EXPECT_EQ(descendant.parents, born.parents[descendant.id]);
+                EXPECT_TRUE((descendant.genes == born.genes.col(descendant.id)).all());
             }
-            // From generation 2 on every second time, the best of the other island for the worst of this one.
+            // After every second generation, the best of the other island replace the worst of this one.
             std::vector<evolution::Migrant> migrants;
             for (const auto& contender : bred->record.contenders) {
                 if (contender.migrant) {
@@ -87,7 +87,7 @@ TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
     }
 }
 
-TEST_P(BreedingTest, WithoutAGenerationTellsOfTheLastThatBredAsSeenFromTheOneThatIsShown) {
+TEST_P(BreedingTest, WithoutAGenerationTheLastThatBredIsShown) {
     EXPECT_EQ(breeding({})->generation, 4u);
     for (const auto& [seen_from, expected] : {std::pair{1u, 1u}, {2u, 1u}, {4u, 3u}, {99u, 4u}}) {
         EXPECT_EQ(
@@ -97,7 +97,7 @@ TEST_P(BreedingTest, WithoutAGenerationTellsOfTheLastThatBredAsSeenFromTheOneTha
     }
 }
 
-TEST_P(BreedingTest, NamesWhatThereIsNot) {
+TEST_P(BreedingTest, AMissingGenerationOrIslandIsRefused) {
     for (const std::uint64_t generation : {std::uint64_t{0}, std::uint64_t{5}, ~std::uint64_t{0}}) {
         const auto refused = breeding(generation);
         ASSERT_FALSE(refused);
@@ -113,9 +113,9 @@ TEST_P(BreedingTest, NamesWhatThereIsNot) {
 
 INSTANTIATE_TEST_SUITE_P(Storage, BreedingTest, testing::Values(1, 4));
 
-using WhollyHeld = BreedingTest;
+using WhollyRetained = BreedingTest;
 
-TEST_P(WhollyHeld, OtherDescendantsThanThoseThatAreStoredAreNamed) {
+TEST_P(WhollyRetained, ChangedDescendantsAreReported) {
     opened.reset();
     auto file = *RunFile::open(data.file_of("w"), {});
     GenerationBegun other = begun[2];
@@ -132,11 +132,11 @@ TEST_P(WhollyHeld, OtherDescendantsThanThoseThatAreStoredAreNamed) {
     EXPECT_NE(refused.error().message.find("generation 2 has bred other descendants"), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Storage, WhollyHeld, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Storage, WhollyRetained, testing::Values(1));
 
-using HeldInPart = BreedingTest;
+using RetainedInPart = BreedingTest;
 
-TEST_P(HeldInPart, WhatIsSimulatedAgainIsGivenUpWhenNobodyWantsItAnyMore) {
+TEST_P(RetainedInPart, ACancelledRequestStopsTheSimulation) {
     std::stop_source stop;
     stop.request_stop();
     const auto refused = breeding(2, 0, stop.get_token());
@@ -144,9 +144,9 @@ TEST_P(HeldInPart, WhatIsSimulatedAgainIsGivenUpWhenNobodyWantsItAnyMore) {
     EXPECT_EQ(refused.error().code, base::RefusalCode::Unavailable);
 }
 
-INSTANTIATE_TEST_SUITE_P(Storage, HeldInPart, testing::Values(4));
+INSTANTIATE_TEST_SUITE_P(Storage, RetainedInPart, testing::Values(4));
 
-TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
+TEST(Breeding, ShuffledAndOwnFitnessAreBothReported) {
     for (const std::uint64_t keep_every : {1, 4}) {
         TemporaryFolder folder;
         DataFolder data{*DataFolder::open(folder.path())};
@@ -169,7 +169,7 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
         std::size_t migrants = 0, others = 0;
         for (std::uint64_t generation = 1; generation <= 4; ++generation) {
             for (std::uint32_t island = 0; island < 2; ++island) {
-                // Refused if other descendants came of it than those that are stored.
+                // Refused if the descendants differ from the stored ones.
                 const auto bred = breeding_of(
                     *file, {.generation = generation, .seen_from = 5, .island = island, .rows = {.count_max = ~0u}},
                     executor, {});
@@ -190,7 +190,7 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
                     migrants += contender.migrant.has_value();
                     others += contender.fitness != *contender.own_fitness;
                 }
-                // Rows from the middle are of those organisms.
+                // Rows from the middle are those of these organisms.
                 const auto some = breeding_of(*file,
                                               {.generation = generation,
                                                .seen_from = 5,
@@ -209,7 +209,7 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
     }
 }
 
-TEST(Breeding, ARunInItsFirstGenerationHasBredNobody) {
+TEST(Breeding, ARunInItsFirstGenerationHasNotBred) {
     TemporaryFolder folder;
     DataFolder data{*DataFolder::open(folder.path())};
     {

@@ -50,15 +50,15 @@ class FirstPopulationTest : public testing::Test {
     base::InlineExecutor executor;
 };
 
-TEST_F(FirstPopulationTest, TheRunGoesOnAfterAnyEndAndIsVerified) {
+TEST_F(FirstPopulationTest, TheRunContinuesAfterAnyEndAndVerifies) {
     for (const std::uint64_t ticks : {0u, 1u, 70u, 120u, 300u}) {
         folder.clear();
         auto thread = std::make_unique<StorageThread>(RunFile::Options{});
         RecordedRun run{*data, *thread, {7}, population};
         expect_begins_with_it(run.world());
         run.advance(ticks);
-        run.command(set_parameter("food_health", 3.0)); // so that this is the last moment the file tells of
-        thread.reset();                                 // as if the machine stopped now: there is no end mark
+        run.command(set_parameter("food_health", 3.0)); // the last moment in the file
+        thread.reset();                                 // as if the machine failed now: there is no end mark
 
         const auto file = RunFile::open_read_only(data->file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
@@ -70,7 +70,7 @@ TEST_F(FirstPopulationTest, TheRunGoesOnAfterAnyEndAndIsVerified) {
     }
 }
 
-TEST_F(FirstPopulationTest, AFileOfWhichOnlyTheBeginningWasWrittenBeginsWithIt) {
+TEST_F(FirstPopulationTest, AFileWithoutGenerationsBeginsWithIt) {
     ASSERT_TRUE(RunFile::create(
         data->file_of("w"),
         {.name = "w", .run_id = {1, 2}, .seed = {7}, .parameters = small_world(), .first_population = population}, {}));
@@ -80,7 +80,7 @@ TEST_F(FirstPopulationTest, AFileOfWhichOnlyTheBeginningWasWrittenBeginsWithIt) 
     expect_begins_with_it(recovered->world);
 }
 
-TEST_F(FirstPopulationTest, AResetBeginsWithItAgainAfterARestartToo) {
+TEST_F(FirstPopulationTest, AResetAfterARestartBeginsWithIt) {
     {
         StorageThread thread{{}};
         RecordedRun run{*data, thread, {7}, population};
@@ -107,7 +107,7 @@ TEST_F(FirstPopulationTest, AResetBeginsWithItAgainAfterARestartToo) {
     expect_all_agrees(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod");
 }
 
-TEST_F(FirstPopulationTest, AForkGoesOnAsTheRunDidAndIsResetToItsBeginning) {
+TEST_F(FirstPopulationTest, AForkContinuesTheRunAndResetsToItsPopulation) {
     base::StateHash hash;
     {
         StorageThread thread{{}};

@@ -4,6 +4,7 @@
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
+#include "server/run_file/check.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -43,7 +44,7 @@ class ForkTest : public testing::Test {
     static void expect_history(const simulation::World::History& history, RunFile& origin, std::size_t generations) {
         ASSERT_EQ(history.size(), generations);
         for (std::size_t i = 0; i < generations; ++i) {
-            EXPECT_FALSE(compare(history[i], *origin.statistics_of(i + 1))) << "generation " << i + 1;
+            EXPECT_FALSE(compare(history[i], *origin.generations().statistics_of(i + 1))) << "generation " << i + 1;
         }
     }
 
@@ -54,7 +55,7 @@ class ForkTest : public testing::Test {
     base::StateHash last_hash;
 };
 
-TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
+TEST_F(ForkTest, AForkEqualsItsOriginUntilACommand) {
     for (const std::uint64_t generation : {1u, 3u, 4u}) {
         const std::string name = "fork" + std::to_string(generation);
         const auto forked = fork_at(generation, name);
@@ -62,15 +63,15 @@ TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
         const auto file = RunFile::open_read_only(data->file_of(name));
         ASSERT_TRUE(file) << to_text(file.error());
         EXPECT_EQ((*file)->identity().forked_from, (simulation::RunId{1, 2}));
-        EXPECT_TRUE((*file)->check());
-        EXPECT_TRUE((*file)->end_mark()->has_value()); // closed, to be gone on with
+        EXPECT_TRUE(check(**file));
+        EXPECT_TRUE((*file)->end_mark()->has_value()); // closed, to be continued
         auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         simulation::World& world = recovered->world;
         EXPECT_EQ(world.moment().generation, generation);
         EXPECT_EQ(world.moment().generation_tick, 0u);
         EXPECT_FALSE(recovered->control.endless);
-        // The origin's next change does not come with it.
+        // The fork does not contain the origin's next command.
         for (const std::uint64_t last = generation < 2 ? 240 : 500; world.moment().tick < last;) {
             world.advance_tick(executor);
             ASSERT_EQ(world.hash(), hashes[world.moment().tick]) << world.moment().tick;
@@ -78,7 +79,7 @@ TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
     }
 }
 
-TEST_F(ForkTest, WithoutAGenerationItBeginsWhereTheFileEnds) {
+TEST_F(ForkTest, WithoutAGenerationAForkBeginsAtTheEnd) {
     const auto moment = fork_at(std::nullopt, "fork");
     ASSERT_TRUE(moment) << to_text(moment.error());
     EXPECT_EQ(moment->tick, 780u);
@@ -86,7 +87,7 @@ TEST_F(ForkTest, WithoutAGenerationItBeginsWhereTheFileEnds) {
     std::filesystem::remove(data->file_of("w"));
     const auto file = RunFile::open_read_only(data->file_of("fork"));
     ASSERT_TRUE(file) << to_text(file.error());
-    EXPECT_TRUE((*file)->check());
+    EXPECT_TRUE(check(**file));
     EXPECT_EQ((*file)->identity().first_tick, 780u);
     EXPECT_EQ((*file)->identity().parameters.mutation_chance, 0.4);
     EXPECT_EQ((*file)->identity().parameters.food_health, 1.0);
@@ -99,7 +100,7 @@ TEST_F(ForkTest, WithoutAGenerationItBeginsWhereTheFileEnds) {
     EXPECT_TRUE(recovered->journal.empty());
 }
 
-TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
+TEST_F(ForkTest, AForkAfterAGenerationBeginsWithTheNext) {
     data.reset();
     folder.clear();
     data.emplace(*DataFolder::open(folder.path()));
@@ -110,7 +111,7 @@ TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
         while (!run.world().generation_over()) {
             run.advance(1);
         }
-        run.command(set_parameter("mutation_chance", 0.25)); // what is asked for at the end comes with it
+        run.command(set_parameter("mutation_chance", 0.25)); // the fork has the parameters requested at its beginning
         run.recorder().close_all(run.laboratory());
         last_hash = run.world().hash();
         run.world().advance_tick(executor);
@@ -132,14 +133,14 @@ TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
         (*archive)->close();
     }
     const auto file = RunFile::open_read_only(folder.path() + "/fork.evod");
-    const auto checked = (*file)->check();
+    const auto checked = check(**file);
     EXPECT_TRUE(checked) << to_text(checked.error());
     const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
     ASSERT_TRUE(verified) << to_text(verified.error());
     EXPECT_FALSE(verified->difference);
 }
 
-TEST_F(ForkTest, WhatAKilledOneLeftIsInNobodysWay) {
+TEST_F(ForkTest, FilesOfAKilledForkAreReplaced) {
     ASSERT_TRUE(fork_at(3, "fork"));
     std::filesystem::rename(data->file_of("fork"), DataFolder::next_file_of(data->file_of("fork")));
     const auto moment = fork_at(2, "fork");
@@ -148,7 +149,7 @@ TEST_F(ForkTest, WhatAKilledOneLeftIsInNobodysWay) {
     EXPECT_TRUE(data->files()->replaced.empty());
 }
 
-TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
+TEST_F(ForkTest, AForkNeedsNoOtherFile) {
     ASSERT_TRUE(fork_at(3, "fork"));
     std::filesystem::remove(data->file_of("w"));
     data.reset();
@@ -171,18 +172,18 @@ TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
         (*archive)->recorder().close_all(laboratory);
         (*archive)->close();
         const auto file = RunFile::open_read_only(folder.path() + "/fork.evod");
-        const auto checked = (*file)->check();
+        const auto checked = check(**file);
         EXPECT_TRUE(checked) << to_text(checked.error());
     }
     data.emplace(*DataFolder::open(folder.path()));
-    // A fork of a fork; what is before the first is not there.
+    // A fork of a fork has no history from before the first fork.
     const auto origin = RunFile::open_read_only(data->file_of("fork"));
     EXPECT_TRUE(fork(**origin, 5, data->file_of("second"), "second", {}, executor));
     EXPECT_EQ(fork(**origin, 2, data->file_of("third"), "third", {}, executor).error().code,
               base::RefusalCode::NotFound);
 }
 
-TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
+TEST_F(ForkTest, AForkHasTheHistoryAndFoundersOfItsOrigin) {
     ASSERT_TRUE(fork_at(4, "fork"));
     const auto origin = RunFile::open_read_only(data->file_of("w"));
     auto file = RunFile::open(data->file_of("fork"), {});
@@ -191,8 +192,8 @@ TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
     ASSERT_TRUE(recovered) << to_text(recovered.error());
     expect_history(recovered->world.history(), **origin, 3);
     EXPECT_FALSE(recovered->world.founders().empty());
-    EXPECT_EQ(recovered->world.founders(), (*(*origin)->beginning_of(4))->founders);
-    EXPECT_EQ((*file)->last_generation_ended(), 0u) << "of its own";
+    EXPECT_EQ(recovered->world.founders(), (*(*origin)->generations().beginning_of(4))->founders);
+    EXPECT_EQ((*file)->generations().last_ended(), 0u) << "of its own";
     while (!recovered->world.generation_over()) {
         recovered->world.advance_tick(executor);
     }
@@ -205,16 +206,16 @@ TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
     ASSERT_TRUE(fork(**file, 5, data->file_of("second"), "second", {}, executor));
     const auto second = RunFile::open_read_only(data->file_of("second"));
     expect_history(recover(**second, executor)->world.history(), **origin, 4);
-    EXPECT_EQ((*second)->history(5, 2)->size(), 2u);
+    EXPECT_EQ((*second)->generations().history(5, 2)->size(), 2u);
 
     file->reset();
     Database{data->file_of("fork"), Database::Mode::Write}.run("DELETE FROM inherited_statistics WHERE generation = 1");
-    EXPECT_THAT(to_text((*RunFile::open_read_only(data->file_of("fork")))->check().error()),
+    EXPECT_THAT(to_text(check(**RunFile::open_read_only(data->file_of("fork"))).error()),
                 HasSubstr("inherited_statistics"));
 }
 
-/// A link of the hash chain is written every 60 ticks; a generation of these worlds takes 120.
-TEST_F(ForkTest, AgreesWithItselfWhereverItBegins) {
+/// A state hash is recorded every 60 ticks; a generation of these worlds takes 120.
+TEST_F(ForkTest, AForkVerifiesWhereverItBegins) {
     for (std::uint64_t first_tick = 179; first_tick <= 240; ++first_tick) {
         SCOPED_TRACE("fork at tick " + std::to_string(first_tick));
         const TemporaryFolder elsewhere;
@@ -236,8 +237,8 @@ TEST_F(ForkTest, AgreesWithItselfWhereverItBegins) {
     }
 }
 
-TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
-    for (const std::uint64_t ticks : {360u, 400u}) { // a generation is over; within the next
+TEST_F(ForkTest, AForkOfALiveWorldKeepsItsHistoryAtARestart) {
+    for (const std::uint64_t ticks : {360u, 400u}) { // at the end of a generation, and within the next
         const TemporaryFolder elsewhere;
         auto there = *DataFolder::open(elsewhere.path());
         StorageThread thread{{}};
@@ -250,7 +251,7 @@ TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
         while (!thread.idle()) {
         }
         const auto file = RunFile::open_read_only(there.file_of("fork"));
-        const auto checked = (*file)->check();
+        const auto checked = check(**file);
         EXPECT_TRUE(checked) << to_text(checked.error());
         const auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
@@ -262,7 +263,7 @@ TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
     }
 }
 
-TEST_F(ForkTest, IsRefusedWhereThereIsNothingToBeginWithOrAFileAlready) {
+TEST_F(ForkTest, AMissingGenerationOrAnExistingFileIsRefused) {
     const auto refused = fork_at(8, "fork").error();
     EXPECT_EQ(refused.code, base::RefusalCode::NotFound);
     EXPECT_THAT(to_text(refused), HasSubstr("got 8, allowed 1 to 7"));

@@ -1,8 +1,8 @@
-// Founders in run files: families are told apart in worlds that are made again from their file, whatever the way.
+// Founders in run files: recovered, forked and replayed worlds have the founders of the original.
 #include "server/replay/lineage.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
-#include "tests/support/older_run_file.h"
+#include "server/run_file/check.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -37,11 +37,11 @@ class FoundersTest : public testing::Test {
     TemporaryFolder folder;
     DataFolder data = *DataFolder::open(folder.path());
     base::InlineExecutor executor;
-    std::vector<simulation::Founders> founders; // of each generation; before somebody left for another island
+    std::vector<simulation::Founders> founders; // of each generation, before migration
 };
 
-/// The lineage follows migrants with the fitness that they were chosen by.
-TEST_F(FoundersTest, AreWhereTheLineageOfFirstParentsLeads) {
+/// Lineage finds migrants by the fitness with which they were chosen.
+TEST_F(FoundersTest, FoundersFollowTheFirstParents) {
     for (const bool shuffled : {false, true}) {
         folder.clear();
         founders.clear();
@@ -67,15 +67,15 @@ TEST_F(FoundersTest, AreWhereTheLineageOfFirstParentsLeads) {
     }
 }
 
-TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
+TEST_F(FoundersTest, FoundersAreEqualAfterARestartAndInAReplay) {
     for (const std::uint64_t keep_every : {1u, 3u}) {
         record(keep_every);
         ASSERT_EQ(founders.size(), 7u);
         EXPECT_TRUE(std::ranges::any_of(founders, [](const simulation::Founders& islands) {
             return std::ranges::any_of(islands[0], [](std::uint32_t founder) { return founder >= 12; });
-        })) << "nobody came from the other island";
+        })) << "no organism came from the other island";
         const auto file = RunFile::open_read_only(path());
-        const auto checked = (*file)->check();
+        const auto checked = check(**file);
         EXPECT_TRUE(checked) << to_text(checked.error());
         EXPECT_EQ(recover(**file, executor)->world.founders(), founders.back());
         for (std::uint64_t generation = 1; generation <= 7; ++generation) {
@@ -87,38 +87,11 @@ TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
     }
 }
 
-TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
-    record(1);
-    change(path(), support::as_of_format(2));
-    {
-        const auto file = RunFile::open_read_only(path());
-        ASSERT_TRUE(file) << to_text(file.error());
-        EXPECT_TRUE((*file)->check());
-        EXPECT_TRUE(recover(**file, executor)->world.founders().empty());
-    }
-    const auto file = RunFile::open(path(), {});
-    auto recovered = recover(**file, executor);
-    ASSERT_TRUE(recovered) << to_text(recovered.error());
-    simulation::World& world = recovered->world;
-    while (!world.generation_over()) {
-        world.advance_tick(executor);
-    }
-    (*file)->begin();
-    (*file)->write(end_of(world));
-    world.turn_over(executor);
-    (*file)->write(beginning_of(world));
-    ASSERT_TRUE((*file)->commit());
-    const auto checked = (*file)->check();
-    EXPECT_TRUE(checked) << to_text(checked.error());
-    EXPECT_TRUE((*(*file)->beginning_of(8))->founders.empty());
-    EXPECT_EQ(Rerun::at(**file, 1, executor)->world().founders(), founders.front());
-}
-
-TEST_F(FoundersTest, ThatAreMissingAreNamed) {
+TEST_F(FoundersTest, MissingFoundersAreNamed) {
     record(1);
     change(path(), "DELETE FROM founders WHERE generation = 5 AND island = 1");
     const auto file = RunFile::open_read_only(path());
-    EXPECT_THAT(to_text((*file)->check().error()), HasSubstr("the founders of generation 5"));
+    EXPECT_THAT(to_text(check(**file).error()), HasSubstr("the founders of generation 5"));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// A run that another model made, as who reads its file finds it: what is not held cannot be simulated again.
+// Other model: a run file of another model version, whose generations that are not retained are lost.
 #pragma once
 
 #include "server/base/inline_executor.h"
@@ -12,7 +12,7 @@
 namespace evod::replay {
 using namespace run_file;
 
-/// Eight generations, of which 1, 4, 7 and the last are held.
+/// Eight generations, of which 1, 4, 7 and the last are retained.
 inline std::unique_ptr<RunFile> record_other_model(const std::string& path, const parameters::Parameters& parameters) {
     RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {7}, .parameters = parameters};
     identity.model_version = simulation::model_version + 1;

@@ -20,7 +20,7 @@ class RerunTest : public testing::Test {
   protected:
     RerunTest() : data{*DataFolder::open(folder.path())} {}
 
-    /// What a machine that stops now leaves: everything handed over, no end mark.
+    /// The file as a failure of the machine would leave it now: all records, no end mark.
     std::unique_ptr<RunFile> file_left() {
         thread.reset();
         auto file = RunFile::open(data.file_of("w"), {});
@@ -35,7 +35,7 @@ class RerunTest : public testing::Test {
     support::ThreadExecutor three_threads{3};
 };
 
-TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
+TEST_F(RerunTest, AWorldContinuesExactly) {
     std::mt19937 random{1};
     for (int round = 0; round < 30; ++round) {
         folder.clear();
@@ -50,7 +50,7 @@ TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
         run.command(set_parameter("food_health", 3.0));
         run.command(set_parameter("population_size", 17u)); // from the next generation on
         run.advance(random() % 300);
-        run.command(set_parameter("food_health", 4.0)); // so that this is the last moment the file tells of
+        run.command(set_parameter("food_health", 4.0)); // the last moment in the file
 
         const auto file = file_left();
         auto recovered = recover(*file, three_threads);
@@ -70,9 +70,9 @@ TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
     }
 }
 
-TEST_F(RerunTest, ComesBackAtTheEndOfAGeneration) {
+TEST_F(RerunTest, ARunIsRecoveredAtTheEndOfAGeneration) {
     RecordedRun run{data, *thread};
-    run.advance(240); // two generations to a tick
+    run.advance(240); // exactly two generations
     ASSERT_TRUE(run.world().generation_over());
     const auto file = file_left();
     const auto recovered = recover(*file, executor);
@@ -82,7 +82,7 @@ TEST_F(RerunTest, ComesBackAtTheEndOfAGeneration) {
     EXPECT_EQ(recovered->world.history().size(), 2u);
 }
 
-TEST_F(RerunTest, AClosedRunComesBackAtItsLastTick) {
+TEST_F(RerunTest, AClosedRunIsRecoveredAtItsLastTick) {
     RecordedRun run{data, *thread};
     run.advance(101); // between two stored hashes
     run.recorder().close_all(run.laboratory());
@@ -93,7 +93,7 @@ TEST_F(RerunTest, AClosedRunComesBackAtItsLastTick) {
     EXPECT_EQ(recovered->world.hash(), run.world().hash());
 }
 
-TEST_F(RerunTest, RunControlIsThatOfTheLastCommandLessTheGoalsReached) {
+TEST_F(RerunTest, RunControlIsOfTheLastCommandWithoutReachedGoals) {
     const auto control_after = [&](std::uint64_t ticks, auto... requests) {
         folder.clear();
         thread = std::make_unique<StorageThread>(RunFile::Options{});
@@ -129,7 +129,7 @@ TEST_F(RerunTest, RunControlIsThatOfTheLastCommandLessTheGoalsReached) {
     EXPECT_TRUE(control.endless && !control.paused && !control.leased);
 }
 
-TEST_F(RerunTest, EveryGenerationCanBeBegunAgain) {
+TEST_F(RerunTest, EveryGenerationCanBeReproduced) {
     RecordedRun run{data, *thread};
     std::vector<base::StateHash> hashes{run.world().hash()};
     for (int tick = 0; tick < 600; ++tick) {
@@ -152,14 +152,14 @@ TEST_F(RerunTest, EveryGenerationCanBeBegunAgain) {
     EXPECT_EQ(Rerun::at(*file, 6, executor).error().code, base::RefusalCode::NotFound);
 }
 
-TEST_F(RerunTest, AnotherStateHashThanTheStoredOneIsNamed) {
+TEST_F(RerunTest, ADifferentStateHashIsReported) {
     {
         RecordedRun run{data, *thread};
         run.advance(200);
     }
     const auto file = file_left();
     file->begin();
-    file->write(HashLink{180, {1, 2}});
+    file->write(HashRecord{180, {1, 2}});
     ASSERT_TRUE(file->commit());
     const auto refused = recover(*file, executor).error();
     EXPECT_EQ(refused.code, base::RefusalCode::DataLoss);

@@ -1,4 +1,4 @@
-// Run tables of files that another model made, and that do not hold every generation.
+// Run tables of files of another model version that do not retain every generation.
 #include "server/base/inline_executor.h"
 #include "server/replay/run_tables.h"
 #include "tests/unit/recording/recorded_run.h"
@@ -59,7 +59,7 @@ class OtherModel : public testing::Test {
     std::vector<std::string> lines;
 };
 
-TEST_F(OtherModel, LineageLeavesOutWhatIsNotHeldAndWhatNobodyKnows) {
+TEST_F(OtherModel, LineageLeavesOutWhatIsPurgedOrUnknown) {
     parameters::Parameters parameters = recording::small_world();
     parameters.migration = evolution::Topology::None;
     record(parameters);
@@ -75,7 +75,7 @@ TEST_F(OtherModel, LineageLeavesOutWhatIsNotHeldAndWhatNobodyKnows) {
     EXPECT_THAT(generations(), ElementsAre("8", "7"));
 }
 
-TEST_F(OtherModel, LineageDoesNotTellWhoBredWhereMigrantsMayHaveCome) {
+TEST_F(OtherModel, LineageHasNoParentsWhereMigrantsMayHaveCome) {
     parameters::Parameters parameters = recording::small_world();
     parameters.migration_epoch = 1;
     record(parameters);
@@ -86,7 +86,7 @@ TEST_F(OtherModel, LineageDoesNotTellWhoBredWhereMigrantsMayHaveCome) {
     EXPECT_TRUE(row_of("7,0,11").ends_with(",,")) << row_of("7,0,11");
 }
 
-TEST_F(OtherModel, WhoAsksForWhatIsNotHeldIsToldTheNearestThatIs) {
+TEST_F(OtherModel, APurgedGenerationIsRefusedWithTheNearest) {
     record(recording::small_world());
     for (const auto& [wanted, field] :
          {std::pair{WantedTable{.table = RunTable::Population, .generation = 5}, "generation"},

@@ -5,7 +5,6 @@
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
-#include "tests/support/older_run_file.h"
 #include "tests/support/thread_executor.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -52,13 +51,13 @@ class StoredScheduleTest : public testing::Test {
     support::ThreadExecutor three_threads{3};
 };
 
-TEST_F(StoredScheduleTest, AWorldThatWasKilledGoesOnWithItWhereverThatWas) {
+TEST_F(StoredScheduleTest, ItContinuesAfterAKillAtAnyMoment) {
     for (const std::uint64_t ticks : {0u, 100u, 239u, 240u, 241u, 300u, 480u, 481u, 550u}) {
         folder.clear();
         thread = std::make_unique<StorageThread>(RunFile::Options{});
         RecordedRun run{data, *thread, {7}, {}, schedule};
         run.advance(ticks);
-        run.command(set_parameter("mutation_step", 9.0)); // so that the file tells of this moment
+        run.command(set_parameter("mutation_step", 9.0)); // so that the file contains this moment
         const auto file = file_left();
         EXPECT_EQ(file->identity().schedule, schedule);
         auto recovered = recover(*file, three_threads);
@@ -79,7 +78,7 @@ TEST_F(StoredScheduleTest, AWorldThatWasKilledGoesOnWithItWhereverThatWas) {
     }
 }
 
-TEST_F(StoredScheduleTest, EveryGenerationAndEveryCheckpointLeadsToTheSame) {
+TEST_F(StoredScheduleTest, EveryGenerationAndCheckpointReproducesTheRun) {
     std::vector<base::StateHash> hashes;
     {
         RecordedRun run{data, *thread, {7}, {}, schedule};
@@ -90,10 +89,10 @@ TEST_F(StoredScheduleTest, EveryGenerationAndEveryCheckpointLeadsToTheSame) {
                 run.checkpoint();
             }
             if (tick == 300) {
-                run.command(set_parameter("mutation_chance", 0.7)); // after what is scheduled for its generation
+                run.command(set_parameter("mutation_chance", 0.7)); // after the scheduled value of its generation
             }
             if (tick == 400) {
-                run.command(set_parameter("food_health", 33.0)); // until the next that is scheduled
+                run.command(set_parameter("food_health", 33.0)); // until the next scheduled value
             }
             hashes.push_back(run.world().hash());
         }
@@ -119,7 +118,7 @@ TEST_F(StoredScheduleTest, EveryGenerationAndEveryCheckpointLeadsToTheSame) {
     }
 }
 
-TEST_F(StoredScheduleTest, AForkHasIt) {
+TEST_F(StoredScheduleTest, AForkHasTheSchedule) {
     base::StateHash origin;
     {
         RecordedRun run{data, *thread, {7}, {}, schedule};
@@ -144,7 +143,7 @@ TEST_F(StoredScheduleTest, AForkHasIt) {
     }
 }
 
-TEST_F(StoredScheduleTest, AnotherScheduleIsFound) {
+TEST_F(StoredScheduleTest, AChangedScheduleIsReported) {
     {
         RecordedRun run{data, *thread, {7}, {}, schedule};
         run.advance(300);
@@ -158,13 +157,13 @@ TEST_F(StoredScheduleTest, AnotherScheduleIsFound) {
         const auto file = RunFile::open(path, {});
         return file ? base::Refusal{.code = {}, .message = "read", .violations = {}} : file.error();
     };
-    for (const char* sql : {"UPDATE run SET value = '{}' WHERE key = 'schedule'", // its checksum is another
+    for (const char* sql : {"UPDATE run SET value = '{}' WHERE key = 'schedule'", // with a wrong checksum
                             "DELETE FROM run WHERE key = 'schedule'"}) {
         const base::Refusal refused = forged(sql);
         EXPECT_EQ(refused.code, base::RefusalCode::DataLoss) << sql;
         EXPECT_THAT(refused.message, HasSubstr("table run")) << sql;
     }
-    // With a checksum as it should be.
+    // With a right checksum.
     const auto rewritten = [&](const std::string& text) {
         std::filesystem::copy_file(path + ".sound", path, std::filesystem::copy_options::overwrite_existing);
         Database database{path, Database::Mode::Write};
@@ -181,41 +180,13 @@ TEST_F(StoredScheduleTest, AnotherScheduleIsFound) {
     }
     Schedule other = schedule;
     other.remove("food_health");
-    rewritten(parameters::to_schedule_text(other)); // one that could be
+    rewritten(parameters::to_schedule_text(other)); // a valid schedule
     const auto file = RunFile::open(path, {});
     ASSERT_TRUE(file) << to_text(file.error());
     const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
     ASSERT_TRUE(verified) << to_text(verified.error());
     ASSERT_TRUE(verified->difference);
     EXPECT_EQ(verified->difference->differs.generation, 2u);
-}
-
-TEST_F(StoredScheduleTest, AFileOfTheFormatBeforeHasNoneAndIsGoneOnWith) {
-    {
-        RecordedRun run{data, *thread};
-        run.advance(170);
-    }
-    (void)file_left();
-    change(data.file_of("w"), support::as_of_format(3));
-    {
-        const auto file = RunFile::open_read_only(data.file_of("w"));
-        ASSERT_TRUE(file) << to_text(file.error());
-        EXPECT_TRUE((*file)->identity().schedule.empty());
-        EXPECT_TRUE((*file)->check());
-    }
-    {
-        const auto file = RunFile::open(data.file_of("w"), {});
-        ASSERT_TRUE(recover(**file, executor));
-        (*file)->begin();
-        (*file)->write(EndMark{.tick = (*file)->last_tick()});
-        ASSERT_TRUE((*file)->commit());
-    }
-    Database database{data.file_of("w"), Database::Mode::Read};
-    EXPECT_EQ(database.number("PRAGMA user_version"), 4);
-    EXPECT_EQ(database.number("SELECT count(*) FROM run WHERE key = 'schedule' AND value = '{}' || char(10)"), 1);
-    const auto file = RunFile::open(data.file_of("w"), {});
-    ASSERT_TRUE(file) << to_text(file.error());
-    EXPECT_TRUE((*file)->check());
 }
 
 v1::Request at_generation(v1::Request request, std::uint64_t generation) {
@@ -232,7 +203,7 @@ v1::Request cancel(std::uint64_t id) {
     return request;
 }
 
-TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
+TEST_F(StoredScheduleTest, PlannedChangesSurviveAKillAtAnyMoment) {
     for (const std::uint64_t ticks : {11u, 120u, 121u, 199u, 200u, 201u, 239u, 240u, 241u, 300u, 470u}) {
         folder.clear();
         thread = std::make_unique<StorageThread>(RunFile::Options{});
@@ -241,7 +212,7 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
         run.command(at_generation(set_parameter("mutation_step", 3.0), 3)); // 1
         run.command(at_tick(set_parameter("poison_harm", 1.0), 200));       // 2
         run.command(at_generation(set_parameter("food_count", 9u), 4));     // 3
-        run.command(at_tick(set_parameter("impulse_min", 240.0), 450));     // 4: does not fit then
+        run.command(at_tick(set_parameter("impulse_min", 240.0), 450));     // 4: not allowed at that moment
         run.command(at_tick(set_parameter("respawn_s", 2.0), 460));         // 5
         run.command(cancel(3));
         run.command(set_parameter("impulse_max", 230.0));
@@ -249,7 +220,7 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
         if (ticks % 2 == 0) {
             run.checkpoint();
         }
-        run.command(set_parameter("steering_lookahead_s", 0.2)); // so that the file tells of this moment
+        run.command(set_parameter("steering_lookahead_s", 0.2)); // so that the file contains this moment
         const auto file = file_left();
         auto recovered = recover(*file, three_threads);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
@@ -261,7 +232,7 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
             EXPECT_EQ(again.planned()[i].id, run.world().planned()[i].id);
             EXPECT_EQ(again.planned()[i].at, run.world().planned()[i].at);
             EXPECT_EQ(again.planned()[i].assignments, run.world().planned()[i].assignments);
-            EXPECT_EQ(again.planned()[i].by, "somebody") << "as its client is known";
+            EXPECT_EQ(again.planned()[i].by, "alice") << "with the name of its client";
         }
         EXPECT_EQ(again.plan({.id = 0, .at = {.generation = 99, .tick = {}}, .assignments = {}, .by = {}}), 6u);
         while (again.moment().tick < 600) {
@@ -282,7 +253,7 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
     }
 }
 
-TEST_F(StoredScheduleTest, EveryMomentOfAPastWithPlannedChangesLeadsToTheSame) {
+TEST_F(StoredScheduleTest, EveryMomentWithPlannedChangesIsReproduced) {
     std::vector<base::StateHash> hashes;
     {
         RecordedRun run{data, *thread};
@@ -318,7 +289,7 @@ TEST_F(StoredScheduleTest, EveryMomentOfAPastWithPlannedChangesLeadsToTheSame) {
     rerun->advance_to(600, executor);
     EXPECT_EQ(rerun->world().hash(), hashes[600]);
 
-    // A fork has nothing of what waits in its origin.
+    // A fork has no planned changes of its origin.
     const std::string path = folder.path() + "/fork.evod";
     ASSERT_TRUE(fork(*file, 3, path, "fork", {3, 3}, executor));
     const auto forked = RunFile::open(path, {});
@@ -332,7 +303,7 @@ TEST_F(StoredScheduleTest, EveryMomentOfAPastWithPlannedChangesLeadsToTheSame) {
     EXPECT_NE(recovered->world.hash(), hashes[600]);
 }
 
-TEST_F(StoredScheduleTest, APlanThatCannotHaveBeenIsNamed) {
+TEST_F(StoredScheduleTest, AnImpossiblePlannedChangeIsReported) {
     const auto error_of = [&](const v1::Request& forged, bool found_by_recovery) {
         folder.clear();
         thread = std::make_unique<StorageThread>(RunFile::Options{});
@@ -343,7 +314,7 @@ TEST_F(StoredScheduleTest, APlanThatCannotHaveBeenIsNamed) {
             run.advance(250);
         }
         const auto file = file_left();
-        JournalEntry entry = (*file->journal())[0];
+        JournalEntry entry = (*file->journal().read())[0];
         v1::Request request = forged;
         request.set_client_key("test");
         entry.origin.request = request.SerializeAsString();
@@ -358,7 +329,7 @@ TEST_F(StoredScheduleTest, APlanThatCannotHaveBeenIsNamed) {
         }
         return verified ? std::string{"agrees"} : verified.error().message;
     };
-    // Recovery begins later, and looks back only for what may still wait.
+    // Recovery starts later, and reads earlier entries only for planned changes.
     const v1::Request past_generation = at_generation(set_parameter("mutation_chance", 0.9), 1);
     EXPECT_THAT(error_of(past_generation, false), HasSubstr("entry 1 of its journal"));
     for (const v1::Request& forged : {at_tick(set_parameter("mutation_chance", 0.9), 50),

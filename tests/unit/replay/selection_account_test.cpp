@@ -1,10 +1,8 @@
-// Accounts of selection in run files: they are the same in worlds that are made again from their file, whatever the
-// way, and in files of before there were any nobody knows them.
+// Selection accounts in run files: recovered, forked and replayed worlds have the accounts of the original.
 #include "server/replay/mismatch.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
-#include "tests/support/older_run_file.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -57,8 +55,6 @@ class SelectionAccountTest : public testing::Test {
         run.recorder().close_all(run.laboratory());
     }
     std::string path() const { return data.file_of("w"); }
-    /// As it was before there were accounts.
-    void bring_to_format_3() const { change(path(), support::as_of_format(3)); }
     void expect_agrees(RunFile& file) {
         const auto verified = verify(file, executor, [](const VerifyProgress&) {});
         ASSERT_TRUE(verified) << to_text(verified.error());
@@ -73,14 +69,14 @@ class SelectionAccountTest : public testing::Test {
     std::vector<Accounts> accounts; // of each generation
 };
 
-TEST_F(SelectionAccountTest, AreWhatTheStatisticsOfTwoGenerationsDifferBy) {
+TEST_F(SelectionAccountTest, TheyAddUpToTheChangeOfTheStatistics) {
     record(1);
     ASSERT_EQ(accounts.size(), 7u);
     const auto file = RunFile::open_read_only(path());
-    auto before = *(*file)->statistics_of(1);
+    auto before = *(*file)->generations().statistics_of(1);
     EXPECT_EQ(accounts_of(before), Accounts(2)) << "nothing came before";
     for (std::uint64_t generation = 2; generation <= 6; ++generation) {
-        const auto statistics = *(*file)->statistics_of(generation);
+        const auto statistics = *(*file)->generations().statistics_of(generation);
         EXPECT_EQ(accounts_of(statistics), accounts[generation - 1]);
         for (std::size_t island = 0; island < 2; ++island) {
             ASSERT_TRUE(statistics[island].account) << generation;
@@ -98,7 +94,7 @@ TEST_F(SelectionAccountTest, AreWhatTheStatisticsOfTwoGenerationsDifferBy) {
     }
 }
 
-TEST_F(SelectionAccountTest, AreTheSameAfterARestartAndInThePast) {
+TEST_F(SelectionAccountTest, AccountsAreEqualAfterARestartAndInAReplay) {
     for (const std::uint64_t keep_every : {1u, 3u}) {
         record(keep_every);
         const auto file = RunFile::open_read_only(path());
@@ -118,7 +114,7 @@ TEST_F(SelectionAccountTest, AreTheSameAfterARestartAndInThePast) {
     }
 }
 
-TEST_F(SelectionAccountTest, ACheckpointOfAGenerationThatIsOverHasThemFromItsBeginning) {
+TEST_F(SelectionAccountTest, ACheckpointAfterAGenerationHasItsAccounts) {
     record(1);
     const auto file = RunFile::open_read_only(path());
     const auto rerun = Rerun::before(**file, 600, executor);
@@ -128,14 +124,14 @@ TEST_F(SelectionAccountTest, ACheckpointOfAGenerationThatIsOverHasThemFromItsBeg
     EXPECT_EQ(accounts_of(rerun->world().history().back()), accounts[4]);
 }
 
-TEST_F(SelectionAccountTest, AForkHasThoseOfItsOriginAndItsOwn) {
+TEST_F(SelectionAccountTest, AForkHasTheAccountsOfItsOriginAndItsOwn) {
     auto thread = std::make_unique<StorageThread>(RunFile::Options{});
     RecordedRun run{data, *thread};
     run.advance(400);
     const Accounts present = accounts_of(run.world());
     run.fork({3, 4});
     run.recorder().close_all(run.laboratory());
-    thread.reset(); // so that all is written
+    thread.reset(); // writes everything
     const auto file = RunFile::open_read_only(data.file_of("fork"));
     ASSERT_TRUE(file) << to_text(file.error());
     expect_agrees(**file);
@@ -149,45 +145,7 @@ TEST_F(SelectionAccountTest, AForkHasThoseOfItsOriginAndItsOwn) {
     EXPECT_TRUE(fork->world.history()[1][0].account);
 }
 
-TEST_F(SelectionAccountTest, OfAFileOfTheFormatBeforeNobodyKnowsAndItIsGoneOnWith) {
-    for (const std::uint64_t keep_every : {1u, 3u}) {
-        record(keep_every);
-        bring_to_format_3();
-        {
-            const auto file = RunFile::open_read_only(path());
-            ASSERT_TRUE(file) << to_text(file.error());
-            expect_agrees(**file);
-            EXPECT_EQ(accounts_of(*(*file)->statistics_of(4)), Accounts(2));
-            EXPECT_EQ(accounts_of(recover(**file, executor)->world), Accounts(2));
-        }
-        {
-            const auto file = RunFile::open(path(), {});
-            auto recovered = recover(**file, executor);
-            ASSERT_TRUE(recovered) << to_text(recovered.error());
-            simulation::World& world = recovered->world;
-            while (!world.generation_over()) {
-                world.advance_tick(executor);
-            }
-            (*file)->begin();
-            (*file)->write(HashLink{world.moment().tick, world.hash()});
-            (*file)->write(end_of(world));
-            world.turn_over(executor);
-            (*file)->write(beginning_of(world));
-            ASSERT_TRUE((*file)->commit());
-            accounts.push_back(accounts_of(world));
-            EXPECT_TRUE(accounts.back()[1]) << "both generations are known now";
-        }
-        const auto file = RunFile::open_read_only(path());
-        ASSERT_TRUE(file) << to_text(file.error());
-        expect_agrees(**file);
-        EXPECT_EQ(accounts_of(*(*file)->statistics_of(7)), Accounts(2)) << "bred before there were accounts";
-        EXPECT_EQ(accounts_of(recover(**file, executor)->world), accounts.back());
-        EXPECT_EQ(recover(**file, executor)->world.history().size(), 7u);
-        folder.clear();
-    }
-}
-
-TEST_F(SelectionAccountTest, ThatAreMissingOrChangedAreNamed) {
+TEST_F(SelectionAccountTest, MissingOrChangedAccountsAreNamed) {
     record(1);
     const auto complaint = [&] {
         const auto file = RunFile::open_read_only(path());
@@ -201,10 +159,10 @@ TEST_F(SelectionAccountTest, ThatAreMissingOrChangedAreNamed) {
     EXPECT_THAT(complaint(), HasSubstr("the selection accounts of generation 3"));
 }
 
-TEST_F(SelectionAccountTest, AnotherThanIsSimulatedIsFound) {
+TEST_F(SelectionAccountTest, AChangedAccountIsReported) {
     record(1);
     const auto file = RunFile::open_read_only(path());
-    auto begun = *(*file)->beginning_of(5);
+    auto begun = *(*file)->generations().beginning_of(5);
     const auto simulated = begun->born;
     EXPECT_FALSE(compare(begun->born, simulated));
     (*begun->born[1].account)[2].transmission += 1e-13;
@@ -212,9 +170,9 @@ TEST_F(SelectionAccountTest, AnotherThanIsSimulatedIsFound) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->part, "the selection account: body_size_transmission on island 1");
     begun->born[1].account.reset();
-    EXPECT_FALSE(compare(begun->born, simulated)) << "nobody knows";
+    EXPECT_FALSE(compare(begun->born, simulated)) << "not known";
 
-    const auto ended = *(*file)->statistics_of(5);
+    const auto ended = *(*file)->generations().statistics_of(5);
     auto other = ended;
     (*other[0].account)[0].change = std::nextafter((*other[0].account)[0].change, 1e9);
     const auto in_statistics = compare(other, ended);

@@ -1,4 +1,4 @@
-// Runs that are told as they were, and runs of which one thing is told otherwise, with a right checksum.
+// Verifies runs as they were recorded, and runs with one record changed, with a right checksum.
 #include "server/replay/verify.h"
 
 #include "server/replay/archive.h"
@@ -62,7 +62,7 @@ class VerifyTest : public testing::Test {
     base::Result<Verified> verified(base::Executor& executor) {
         return verify(*file(), executor, [](const VerifyProgress&) {});
     }
-    /// What is told of a run that differs; the same by every executor.
+    /// The difference of a changed run; the same with every executor.
     Difference difference() {
         Difference first;
         for (base::Executor* executor : std::initializer_list<base::Executor*>{&one_thread, &two_threads, &many}) {
@@ -72,36 +72,36 @@ class VerifyTest : public testing::Test {
             if (!result || !result->difference) {
                 return {};
             }
-            const Difference& told = *result->difference;
+            const Difference& found = *result->difference;
             if (executor == &one_thread) {
-                first = told;
+                first = found;
             }
-            EXPECT_EQ(told.agrees.has_value(), first.agrees.has_value());
-            if (told.agrees && first.agrees) {
-                EXPECT_EQ(told.agrees->tick, first.agrees->tick);
+            EXPECT_EQ(found.agrees.has_value(), first.agrees.has_value());
+            if (found.agrees && first.agrees) {
+                EXPECT_EQ(found.agrees->tick, first.agrees->tick);
             }
-            EXPECT_EQ(told.differs.generation, first.differs.generation);
-            EXPECT_EQ(told.differs.tick, first.differs.tick);
-            EXPECT_EQ(told.part, first.part);
-            EXPECT_EQ(told.stored, first.stored);
-            EXPECT_EQ(told.simulated, first.simulated);
+            EXPECT_EQ(found.differs.generation, first.differs.generation);
+            EXPECT_EQ(found.differs.tick, first.differs.tick);
+            EXPECT_EQ(found.part, first.part);
+            EXPECT_EQ(found.stored, first.stored);
+            EXPECT_EQ(found.simulated, first.simulated);
         }
         return first;
     }
     void expect_difference(std::uint64_t generation, std::uint64_t tick, const std::string& part,
                            std::optional<std::uint64_t> agrees) {
-        const Difference told = difference();
-        EXPECT_EQ(told.differs.generation, generation);
-        EXPECT_EQ(told.differs.tick, tick);
-        EXPECT_THAT(told.part, HasSubstr(part));
-        EXPECT_NE(told.stored, told.simulated);
-        EXPECT_EQ(told.agrees ? std::optional{told.agrees->tick} : std::nullopt, agrees);
+        const Difference found = difference();
+        EXPECT_EQ(found.differs.generation, generation);
+        EXPECT_EQ(found.differs.tick, tick);
+        EXPECT_THAT(found.part, HasSubstr(part));
+        EXPECT_NE(found.stored, found.simulated);
+        EXPECT_EQ(found.agrees ? std::optional{found.agrees->tick} : std::nullopt, agrees);
     }
 
     TemporaryFolder folder;
     DataFolder data;
     base::InlineExecutor one_thread;
-    support::ThreadExecutor two_threads{2}, many{7}; // fewer and more than there are generations
+    support::ThreadExecutor two_threads{2}, many{7}; // fewer and more threads than generations
 };
 
 TEST_F(VerifyTest, ARunAgreesWithItselfOnAnyNumberOfThreads) {
@@ -126,11 +126,11 @@ TEST_F(VerifyTest, ARunWhoseFitnessWasShuffledForAWhileAgrees) {
             RecordedRun run{data, thread};
             run.advance(130);
             if (shuffled) {
-                run.command(set_parameter("shuffle_fitness", true)); // for the breeding of generations 3 …
+                run.command(set_parameter("shuffle_fitness", true)); // from the breeding after generation 3 on …
             }
             run.advance(230);
             if (shuffled) {
-                run.command(set_parameter("shuffle_fitness", false)); // … but not of 4, though 3 is over
+                run.command(set_parameter("shuffle_fitness", false)); // … and not after generation 4
             }
             run.advance(180);
             parents.push_back(run.world().islands()[0].born().parents);
@@ -146,20 +146,20 @@ TEST_F(VerifyTest, ARunWhoseFitnessWasShuffledForAWhileAgrees) {
     EXPECT_NE(parents[0], parents[1]);
 }
 
-TEST_F(VerifyTest, EveryMomentOfAKillLeavesARunThatAgrees) {
+TEST_F(VerifyTest, ARunAgreesAfterAKillAtAnyMoment) {
     for (const std::uint64_t ticks : {0, 1, 59, 60, 119, 120, 121, 180, 239, 240, 241, 299, 300, 301}) {
         record(ticks);
         const auto result = verified(two_threads);
         ASSERT_TRUE(result) << to_text(result.error());
         EXPECT_FALSE(result->difference) << ticks << " ticks: " << result->difference->part;
         EXPECT_LE(result->ticks, ticks);
-        EXPECT_EQ(result->hashes, ticks / ticks_per_link);
+        EXPECT_EQ(result->hashes, ticks / ticks_per_hash);
     }
 }
 
 TEST_F(VerifyTest, AgreesWhereverTheLastCommitCame) {
     record();
-    // The records of the last moments, newest first, as they were handed over.
+    // The last records, newest first, in the order of handing over.
     for (const char* sql : {"DELETE FROM state_hash WHERE tick = 540", "DELETE FROM generation WHERE generation = 5",
                             "DELETE FROM statistics WHERE generation = 4", "DELETE FROM state_hash WHERE tick = 480",
                             "DELETE FROM state_hash WHERE tick = 420", "DELETE FROM generation WHERE generation = 4",
@@ -174,7 +174,7 @@ TEST_F(VerifyTest, AgreesWhereverTheLastCommitCame) {
     }
 }
 
-TEST_F(VerifyTest, ARunThatWentOnAfterItsEndAgrees) {
+TEST_F(VerifyTest, ARunContinuedAfterItsEndAgrees) {
     {
         StorageThread thread{{}};
         RecordedRun run{data, thread};
@@ -190,9 +190,9 @@ TEST_F(VerifyTest, ARunThatWentOnAfterItsEndAgrees) {
     EXPECT_FALSE(result->difference) << result->difference->part;
     EXPECT_EQ(result->ticks, 360u);
 
-    // Had the limit not been raised, there would be no third generation.
-    auto entry = (*file()->journal())[1];
-    entry.origin.request = (*file()->journal())[0].origin.request;
+    // Without the raised limit, the run would end before its third generation.
+    auto entry = (*file()->journal().read())[1];
+    entry.origin.request = (*file()->journal().read())[0].origin.request;
     write(entry);
     expect_difference(3, 240, "the run's end", 240);
 }
@@ -219,7 +219,7 @@ TEST_F(VerifyTest, AFunctionOfTheChromosomeIsVerifiedTickByTick) {
     EXPECT_EQ(result->generations, 150u);
     EXPECT_EQ(result->hashes, 2u);
 
-    auto ended = **file()->outcome_of(77);
+    auto ended = **file()->generations().outcome_of(77);
     ended.outcomes[0].fitness[3] += 1;
     write(ended);
     expect_difference(77, 77, "the fitness of organism 3 on island 0", 76);
@@ -254,7 +254,7 @@ TEST_F(VerifyTest, AForkAgreesFromItsBeginningOn) {
     EXPECT_EQ(ticks_in_all, 200u);
 }
 
-TEST_F(VerifyTest, ARunOfWhichNotAllIsHeldAgreesAndWhatIsHeldIsCompared) {
+TEST_F(VerifyTest, APurgedRunAgreesAndItsRetainedPartIsCompared) {
     const auto record_much = [this] {
         folder.clear();
         StorageThread thread{
@@ -263,42 +263,43 @@ TEST_F(VerifyTest, ARunOfWhichNotAllIsHeldAgreesAndWhatIsHeldIsCompared) {
         for (int part = 0; part < 12; ++part) {
             run.advance(1010);
             run.command(set_parameter("mutation_chance", 0.1 + 0.01 * part));
-            while (!thread.idle()) { // so that the file is thinned many times
+            while (!thread.idle()) { // so that the retention is reduced several times
             }
         }
         run.recorder().close_all(run.laboratory());
     };
     record_much();
     constexpr std::uint64_t taken_out = 2;
-    ASSERT_FALSE(*file()->beginning_of(taken_out)) << "nothing was taken out";
+    ASSERT_FALSE(*file()->generations().beginning_of(taken_out)) << "nothing was taken out";
     const auto result = verified(two_threads);
     ASSERT_TRUE(result) << to_text(result.error());
     EXPECT_FALSE(result->difference) << result->difference->part;
     EXPECT_EQ(result->generations, 101u);
     EXPECT_EQ(result->ticks, 12'120u);
-    EXPECT_EQ(result->hashes, file()->contents().links);
+    EXPECT_EQ(result->hashes, file()->contents().hashes);
     EXPECT_LT(result->hashes, 190u);
 
-    GenerationEnded ended{.generation = taken_out, .outcomes = {}, .statistics = *file()->statistics_of(taken_out)};
+    GenerationEnded ended{
+        .generation = taken_out, .outcomes = {}, .statistics = *file()->generations().statistics_of(taken_out)};
     ++ended.statistics[1].food_eaten;
     write(ended);
     expect_difference(2, 240, "the statistics: food_eaten on island 1", 120);
 
     record_much();
-    GenerationBegun begun{.opening = **file()->opening_of(taken_out), .born = {}};
+    GenerationBegun begun{.opening = **file()->generations().opening_of(taken_out), .born = {}};
     begun.opening.progress.best_fitness += 1;
     write(begun);
     expect_difference(2, 120, "the best fitness so far", 120);
 
     record_much();
-    HashLink link = (*file()->links(0, 12'000)).at(2);
+    HashRecord link = (*file()->hashes(0, 12'000)).at(2);
     ASSERT_GT(link.tick, 180u);
     link.hash.low ^= 1;
     write(link);
     expect_difference((link.tick - 1) / 120 + 1, link.tick, "the state hash", difference().agrees->tick);
 }
 
-TEST_F(VerifyTest, TellsHowFarItIsWhileItReadsAndWhileItSimulates) {
+TEST_F(VerifyTest, ReportsItsProgressOfReadingAndSimulating) {
     record();
     std::vector<std::uint64_t> read;
     VerifyProgress last;
@@ -306,7 +307,7 @@ TEST_F(VerifyTest, TellsHowFarItIsWhileItReadsAndWhileItSimulates) {
         if (now.ticks == 0) {
             read.push_back(now.generations);
         }
-        EXPECT_EQ(now.generations_in_all, file()->last_generation());
+        EXPECT_EQ(now.generations_in_all, file()->generations().last());
         EXPECT_GE(now.ticks, last.ticks);
         last = now;
     }));
@@ -317,9 +318,9 @@ TEST_F(VerifyTest, TellsHowFarItIsWhileItReadsAndWhileItSimulates) {
     EXPECT_EQ(last.generations, last.generations_in_all);
 }
 
-TEST_F(VerifyTest, AnotherStateHashIsTold) {
+TEST_F(VerifyTest, AChangedStateHashIsReported) {
     record();
-    HashLink link = (*file()->links(120, 180)).at(0);
+    HashRecord link = (*file()->hashes(120, 180)).at(0);
     const std::string was = to_text(link.hash);
     link.hash.high ^= 1;
     write(link);
@@ -328,13 +329,13 @@ TEST_F(VerifyTest, AnotherStateHashIsTold) {
     EXPECT_EQ(difference().stored, to_text(link.hash));
 }
 
-TEST_F(VerifyTest, AStateHashThatIsMissingAtTheEndIsTold) {
+TEST_F(VerifyTest, AMissingLastStateHashIsReported) {
     record();
     change(data.file_of("w"), "DELETE FROM state_hash WHERE tick >= 480");
     expect_difference(4, 480, "the state hash", 420);
 }
 
-TEST_F(VerifyTest, AnotherOutcomeIsTold) {
+TEST_F(VerifyTest, AChangedOutcomeIsReported) {
     struct Change {
         std::function<void(GenerationEnded&)> make;
         const char* part;
@@ -361,14 +362,14 @@ TEST_F(VerifyTest, AnotherOutcomeIsTold) {
               "the statistics: poison_radius_max on island 0"},
          }) {
         record();
-        GenerationEnded ended = **file()->outcome_of(3);
+        GenerationEnded ended = **file()->generations().outcome_of(3);
         change.make(ended);
         write(ended);
         expect_difference(3, 360, change.part, 360);
     }
 }
 
-TEST_F(VerifyTest, AnotherBeginningIsTold) {
+TEST_F(VerifyTest, AChangedBeginningIsReported) {
     struct Change {
         std::function<void(GenerationBegun&)> make;
         const char* part;
@@ -400,10 +401,10 @@ TEST_F(VerifyTest, AnotherBeginningIsTold) {
              {[](auto& begun) { ++begun.opening.progress.stagnant; }, "generations without improvement"},
              {[](auto& begun) { begun.opening.progress.best_fitness += 1; }, "the best fitness so far"},
              {[](auto& begun) { begun.opening.progress.last_best_fitness += 1; }, "of the generation before"},
-             {[](auto& begun) { begun.opening.progress.last_died_out ^= true; }, "whether everyone had died"},
+             {[](auto& begun) { begun.opening.progress.last_died_out ^= true; }, "whether all had died out"},
          }) {
         record();
-        GenerationBegun begun = **file()->beginning_of(4);
+        GenerationBegun begun = **file()->generations().beginning_of(4);
         change.make(begun);
         write(begun);
         SCOPED_TRACE(change.part);
@@ -413,7 +414,7 @@ TEST_F(VerifyTest, AnotherBeginningIsTold) {
 
 TEST_F(VerifyTest, AnotherBeginningOfTheRunAgreesWithNothing) {
     record();
-    GenerationBegun begun = **file()->beginning_of(1);
+    GenerationBegun begun = **file()->generations().beginning_of(1);
     begun.born[0].genes(3, 3) += 1;
     write(begun);
     expect_difference(1, 0, "the chromosomes: gene base_health of organism 3 on island 0", std::nullopt);
@@ -427,29 +428,29 @@ TEST_F(VerifyTest, ARunUnderAnotherSeedAgreesWithNothing) {
     const std::string path = folder.path() + "/other.evod";
     auto to = *RunFile::create(path, identity, {});
     to->begin();
-    to->write(**from->beginning_of(1));
+    to->write(**from->generations().beginning_of(1));
     ASSERT_TRUE(to->commit());
     const auto result = verify(*to, one_thread, [](const VerifyProgress&) {});
     ASSERT_TRUE(result && result->difference);
     EXPECT_FALSE(result->difference->agrees);
 }
 
-TEST_F(VerifyTest, AnotherFirstTickIsTold) {
+TEST_F(VerifyTest, AChangedFirstTickIsReported) {
     for (const auto& [first_tick, tick] : {std::pair{239u, 239u}, {241u, 240u}, {0u, 120u}, {100'000u, 240u}}) {
         record();
-        GenerationBegun begun = **file()->beginning_of(3);
+        GenerationBegun begun = **file()->generations().beginning_of(3);
         begun.opening.moment.tick = first_tick;
         write(begun);
-        const Difference told = difference();
-        EXPECT_EQ(told.differs.generation, 2u) << first_tick;
-        EXPECT_EQ(told.differs.tick, tick) << first_tick;
-        EXPECT_EQ(told.part, "the generation's end") << first_tick;
+        const Difference found = difference();
+        EXPECT_EQ(found.differs.generation, 2u) << first_tick;
+        EXPECT_EQ(found.differs.tick, tick) << first_tick;
+        EXPECT_EQ(found.part, "the generation's end") << first_tick;
     }
 }
 
-TEST_F(VerifyTest, AnotherCommandIsToldWhereItActs) {
+TEST_F(VerifyTest, AChangedCommandIsReportedWhereItActs) {
     record();
-    JournalEntry entry = (*file()->journal())[2];
+    JournalEntry entry = (*file()->journal().read())[2];
     entry.origin.request = [] {
         v1::Request request = set_parameter("mutation_chance", 0.25);
         request.set_client_key("test");
@@ -461,18 +462,18 @@ TEST_F(VerifyTest, AnotherCommandIsToldWhereItActs) {
     EXPECT_EQ(difference().simulated, "0.25");
 }
 
-TEST_F(VerifyTest, ACommandAtAnotherTickIsTold) {
+TEST_F(VerifyTest, AMovedCommandIsReported) {
     record();
-    JournalEntry entry = (*file()->journal())[2];
+    JournalEntry entry = (*file()->journal().read())[2];
     entry.tick = 245;
     write(entry);
     expect_difference(3, 240, "the parameter mutation_chance", 240);
 }
 
-TEST_F(VerifyTest, WhatNoCommandCanBeIsNamed) {
+TEST_F(VerifyTest, AnUnknownCommandIsReported) {
     const auto refused_with = [&](const std::string& request, std::uint64_t tick = 130) {
         record();
-        JournalEntry entry = (*file()->journal())[1];
+        JournalEntry entry = (*file()->journal().read())[1];
         entry.origin.request = request;
         entry.tick = tick;
         write(entry);
@@ -494,14 +495,14 @@ TEST_F(VerifyTest, WhatNoCommandCanBeIsNamed) {
     EXPECT_THAT(refused_with(request("food_health", 7.0), 241).message, HasSubstr("entry 3 of its journal"));
 }
 
-TEST_F(VerifyTest, OfManyDifferencesTheFirstIsTold) {
+TEST_F(VerifyTest, TheFirstOfManyDifferencesIsReported) {
     record();
     for (const std::uint64_t generation : {2, 3, 4}) {
-        GenerationEnded ended = **file()->outcome_of(generation);
+        GenerationEnded ended = **file()->generations().outcome_of(generation);
         ended.outcomes[0].fitness[0] += 1;
         write(ended);
     }
-    HashLink link = (*file()->links(180, 240)).at(0);
+    HashRecord link = (*file()->hashes(180, 240)).at(0);
     link.hash.low += 1;
     write(link);
     expect_difference(2, 240, "the state hash", 180);
@@ -546,7 +547,7 @@ TEST_F(VerifyTest, ProgressCountsEveryTick) {
     EXPECT_EQ(most, 540u);
 }
 
-TEST_F(VerifyTest, AServerMayGoOnWriting) {
+TEST_F(VerifyTest, AServerMayWriteMeanwhile) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
     run.advance(400);

@@ -1,4 +1,5 @@
-#include "server/replay/past.h"
+#include "server/replay/stored_run.h"
+#include "server/run_file/check.h"
 
 #include <algorithm>
 #include <utility>
@@ -14,7 +15,7 @@ namespace {
 simulation::Replay replay_of_file(run_file::RunFile& file) {
     return {.replay_of = {},
             .first_generation = file.identity().first_generation,
-            .last_generation = std::max(file.identity().first_generation, file.last_generation()),
+            .last_generation = std::max(file.identity().first_generation, file.generations().last()),
             .first_tick = file.identity().first_tick,
             .last_tick = file.last_tick()};
 }
@@ -31,27 +32,27 @@ Refusal no_such(const char* field, const std::string& there_are, std::uint64_t g
             .reason = base::Reason::MomentNotFound};
 }
 
-Result<PastMoment> find(run_file::RunFile& file, const WantedMoment& wanted, const simulation::Replay& there) {
+Result<SeekTarget> find(run_file::RunFile& file, const WantedMoment& wanted, const simulation::Replay& there) {
     const auto generations = range_text(there.first_generation, there.last_generation);
     if (!wanted.generation) {
         const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
         if (tick < there.first_tick || tick > there.last_tick) {
             return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
         }
-        return PastMoment{file.generation_at(tick), tick};
+        return SeekTarget{file.generations().at_tick(tick), tick};
     }
     const std::uint64_t generation = *wanted.generation;
     if (generation < there.first_generation || generation > there.last_generation) {
         return no_such("generation", generations, generation);
     }
-    const auto opening = file.opening_of(generation);
+    const auto opening = file.generations().opening_of(generation);
     if (!opening) {
         return opening.error();
     }
     const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
     std::uint64_t last = there.last_tick;
     if (generation < there.last_generation) {
-        const auto next = file.opening_of(generation + 1);
+        const auto next = file.generations().opening_of(generation + 1);
         if (!next) {
             return next.error();
         }
@@ -63,12 +64,12 @@ Result<PastMoment> find(run_file::RunFile& file, const WantedMoment& wanted, con
     if (tick < begins || tick > last - first) {
         return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
     }
-    return PastMoment{generation, first + tick};
+    return SeekTarget{generation, first + tick};
 }
 
 } // namespace
 
-Result<Past> Past::of_file(const std::string& path) {
+Result<StoredRun> StoredRun::of_file(const std::string& path) {
     const auto file = run_file::RunFile::open_checked(path);
     if (!file) {
         return file.error();
@@ -76,16 +77,16 @@ Result<Past> Past::of_file(const std::string& path) {
     if (auto refused = (*file)->other_model()) {
         return *refused;
     }
-    if (auto held = (*file)->hold_still(); !held) {
+    if (auto held = (*file)->pin_snapshot(); !held) {
         return held.error();
     }
-    if (auto whole = (*file)->check_end_mark(); !whole) {
+    if (auto whole = check_end_mark(**file); !whole) {
         return whole.error();
     }
-    return Past{{path}, (*file)->identity().run_id};
+    return StoredRun{{path}, (*file)->identity().run_id};
 }
 
-Result<std::unique_ptr<run_file::RunFile>> Past::open() const {
+Result<std::unique_ptr<run_file::RunFile>> StoredRun::open() const {
     std::optional<Refusal> refused;
     for (const std::string& path : paths_) {
         auto file = run_file::RunFile::open_read_only(path);
@@ -98,11 +99,11 @@ Result<std::unique_ptr<run_file::RunFile>> Past::open() const {
     }
     return refused.value_or(
         Refusal{.code = RefusalCode::NotFound,
-                .message = paths_.front() + " is the file of another run now: close this past, and open it again",
+                .message = paths_.front() + " is the file of another run now: close this replay and open it again",
                 .violations = {}});
 }
 
-Result<std::string> Past::world_name() const {
+Result<std::string> StoredRun::world_name() const {
     const auto file = open();
     if (!file) {
         return file.error();
@@ -110,13 +111,13 @@ Result<std::string> Past::world_name() const {
     return (*file)->identity().name;
 }
 
-Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
-                               base::Executor& executor) const {
+Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil known,
+                                        base::Executor& executor) const {
     const auto file = open();
     if (!file) {
         return file.error();
     }
-    if (auto held = (*file)->hold_still(); !held) {
+    if (auto held = (*file)->pin_snapshot(); !held) {
         return held.error();
     }
     simulation::Replay there = replay_of_file(**file);
@@ -131,22 +132,22 @@ Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownU
     if (!from) {
         return from.error();
     }
-    return Departure{std::move(there), *to, *std::move(from)};
+    return SeekStart{std::move(there), *to, *std::move(from)};
 }
 
-Result<PastNews> Past::news(std::uint64_t after_entry) const {
+Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry) const {
     const auto file = open();
     if (!file) {
         return file.error();
     }
-    if (auto held = (*file)->hold_still(); !held) {
+    if (auto held = (*file)->pin_snapshot(); !held) {
         return held.error();
     }
-    PastNews news{.there = replay_of_file(**file),
-                  .path = (*file)->path(),
-                  .after_entry = after_entry,
-                  .last_entry = std::max(after_entry, (*file)->last_journal_entry()),
-                  .changes = {}};
+    NewRecords news{.there = replay_of_file(**file),
+                    .path = (*file)->path(),
+                    .after_entry = after_entry,
+                    .last_entry = std::max(after_entry, (*file)->journal().last_number()),
+                    .changes = {}};
     auto changes = parameter_changes(**file, after_entry);
     if (!changes) {
         return changes.error();

@@ -1,4 +1,4 @@
-#include "server/replay/past.h"
+#include "server/replay/stored_run.h"
 
 #include "tests/unit/recording/recorded_run.h"
 
@@ -8,7 +8,7 @@ namespace {
 using namespace run_file;
 using namespace recording;
 
-TEST(Past, NewsAreReadAfterTheLastEntryThatIsKnown) {
+TEST(StoredRun, NewRecordsBeginAfterTheLastKnownEntry) {
     const TemporaryFolder folder;
     auto data = DataFolder::open(folder.path());
     ASSERT_TRUE(data);
@@ -22,9 +22,9 @@ TEST(Past, NewsAreReadAfterTheLastEntryThatIsKnown) {
         run.advance(10);
         run.recorder().close_all(run.laboratory());
     }
-    const Past past{{data->file_of("w")}, {1, 2}};
+    const StoredRun past{{data->file_of("w")}, {1, 2}};
     for (const std::uint64_t known : {0u, 1u, 2u, 3u}) {
-        const auto news = past.news(known);
+        const auto news = past.new_records(known);
         ASSERT_TRUE(news) << to_text(news.error());
         EXPECT_EQ(news->after_entry, known);
         EXPECT_EQ(news->last_entry, 3u);
@@ -34,10 +34,10 @@ TEST(Past, NewsAreReadAfterTheLastEntryThatIsKnown) {
             EXPECT_EQ(news->changes[i].entry, known + 1 + i);
         }
     }
-    // What is known is not read: it does not show that this row is damaged.
-    change(data->file_of("w"), "UPDATE journal SET client = 'nobody' WHERE number = 1");
-    EXPECT_FALSE(past.news(0));
-    EXPECT_TRUE(past.news(1));
+    // Entries that are known are not read, so the damage of this row is not found.
+    change(data->file_of("w"), "UPDATE journal SET client = 'mallory' WHERE number = 1");
+    EXPECT_FALSE(past.new_records(0));
+    EXPECT_TRUE(past.new_records(1));
 }
 
 } // namespace
