@@ -17,7 +17,7 @@ Damage wrong_line(std::uint64_t line, const std::string& allowed, std::string_vi
             allowed};
 }
 
-/// The next field of a line, which is shortened by it; false if it is no T.
+/// Parses the next field of a line and removes it from the line. false: it is not a T.
 template <class T>
 bool take(std::string_view& line, T& value) {
     const std::string_view field = line.substr(0, line.find(','));

@@ -1,7 +1,7 @@
 // Snapshot: an immutable copy of a world between two ticks, for streaming.
 //
-// The simulation thread copies columns in memory order, because the worlds wait meanwhile. The reader's thread sorts entities
-// and computes everything else.
+// The worlds wait while the simulation thread copies, so it only copies columns in memory order. The thread that reads the
+// snapshot sorts entities and computes everything else.
 //
 // Owner        shared; the last owner returns the memory to the pool it came from.
 // Threads      taken by the simulation thread, read by any.

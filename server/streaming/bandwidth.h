@@ -22,7 +22,7 @@ namespace evod::streaming {
 class Bandwidth {
   public:
     using Clock = runtime::Clock;
-    static constexpr double accumulated_s_max = 2;                     // seconds of the rate that can accumulate
+    static constexpr double accumulated_s_max = 2;                     // bytes of so many seconds accumulate at most
     static constexpr std::chrono::seconds retry_min{2}, retry_max{64}; // until more detail is tried
 
     /// bytes_per_s  > 0.
@@ -57,10 +57,10 @@ class Bandwidth {
     void lower_detail(Clock::time_point now);
     static v1::Detail less(v1::Detail detail) { return static_cast<v1::Detail>(detail + 1); }
 
-    double bytes_per_s_ = 0, bytes_ = 0; // < 0 after a snapshot longer than can accumulate
+    double bytes_per_s_ = 0, bytes_ = 0; // accumulated; < 0 after a snapshot that cost more
     v1::Detail most_ = v1::DETAIL_FULL, detail_ = v1::DETAIL_FULL;
     Clock::duration retry_after_ = retry_min;
-    std::optional<Clock::time_point> updated_; // bytes_
+    std::optional<Clock::time_point> updated_; // when bytes_ was
     Clock::time_point raised_, try_more_;      // when detail_ was raised; when more detail is tried
 };
 

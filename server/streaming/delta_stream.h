@@ -24,7 +24,7 @@
 
 namespace evod::streaming {
 
-/// Every viewer can be sent a keyframe for all at least this often, while there are snapshots.
+/// At least this often all viewers are sent a keyframe, while there are snapshots.
 constexpr std::chrono::seconds keyframe_interval{2};
 
 /// Ticks from one snapshot to the next. nullopt: the next cannot be predicted from the one before, because the run, the

@@ -37,7 +37,7 @@ void SnapshotStreams::subscribe(std::uint64_t session, SnapshotQueue& queue, std
     queues_.emplace(session, &queue);
     Group& group = groups_[group_of(subscription)];
     ++group.subscription_count;
-    // The first viewer of an island has the simulation make a snapshot; the others are sent the newest.
+    // For the first viewer of an island the simulation makes a snapshot; later viewers are sent the newest one.
     bool joins = false;
     each_newest(subscription, [&](std::uint32_t, const StreamedSnapshotPtr&) { joins = true; });
     if (!joins) {
