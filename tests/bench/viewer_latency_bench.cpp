@@ -193,7 +193,8 @@ class TickClock {
     double rate_hz_;
     evod::v1::Request question_;
     std::mutex mutex_;
-    std::vector<std::pair<Clock::time_point, Clock::time_point>> begins_; // an answer's arrival, and its upper bound for tick 0
+    // Of each answer: its arrival, and its upper bound for the time of tick 0.
+    std::vector<std::pair<Clock::time_point, Clock::time_point>> begins_;
 };
 
 void measure_running(RealServer& server, Viewer& viewer, const std::string& world, double factor) {
@@ -244,11 +245,11 @@ void measure_slider(RealServer& server, Viewer& viewer, const std::string& world
     pause.mutable_pause()->set_world(world);
     style.mutable_get_parameters()->set_world(world);
     server.ask(run);
-    std::vector<double> there_and_back;
+    std::vector<double> round_trips;
     for (int i = 0; i < 200; ++i) {
         const auto sent = Clock::now();
         server.ask(style);
-        there_and_back.push_back(Ms{Clock::now() - sent}.count());
+        round_trips.push_back(Ms{Clock::now() - sent}.count());
     }
     viewer.renderer().panels().show("Parameters");
     viewer.click("apply on release");
@@ -299,7 +300,7 @@ void measure_slider(RealServer& server, Viewer& viewer, const std::string& world
     }
     server.ask(pause);
     print(world + ", slider", ms);
-    print(world + ", there and back", there_and_back);
+    print(world + ", round trip", round_trips);
 }
 
 void measure(std::uint32_t organism_count) {

@@ -29,7 +29,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::ReplayOrLive, .key = Key::P, .help = "replay the world's past; again: the live world"},
     {.action = Action::PreviousGeneration, .sign = '[', .help = "in a replay: the previous generation"},
     {.action = Action::NextGeneration, .sign = ']', .help = "in a replay: the next generation"},
-    {.action = Action::Beside, .key = Key::B, .help = "show a second world beside; again: only the one with the focus"},
+    {.action = Action::Beside, .key = Key::B, .help = "show a second world beside; again: only the focused one"},
     {.action = Action::OtherPane, .key = Key::X, .help = "give the keyboard to the other half"},
     {.action = Action::LinkCameras, .key = Key::K, .help = "link the cameras of all islands, or unlink them"},
     {.action = Action::Fit, .key = Key::F, .help = "show the whole island"},

@@ -95,7 +95,7 @@ std::string generation_title(const evod::v1::SnapshotFrame& snapshot) {
 }
 
 std::string replay_label(const evod::v1::Replay& replay) {
-    return replay.replay_of().empty() ? "REPLAY" : "PAST of " + replay.replay_of();
+    return replay.replay_of().empty() ? "REPLAY" : "REPLAY of " + replay.replay_of();
 }
 
 std::string place_text(const evod::v1::SnapshotFrame& snapshot) {

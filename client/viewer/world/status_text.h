@@ -30,7 +30,7 @@ std::string connection_loss_text(const core::ConnectionStatus& status, bool has_
 /// "Generation 12".
 std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
 
-/// The label of a replay: "PAST of default" for one of a live world, "REPLAY" for one of a run file.
+/// The label of a replay: "REPLAY of default" for one of a live world, "REPLAY" for one of a run file.
 std::string replay_label(const evod::v1::Replay& replay);
 
 /// "default · island 2 of 0–7"

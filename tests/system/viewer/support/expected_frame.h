@@ -38,7 +38,7 @@ class ExpectedFrame {
 
     /// organisms  colours by index in the snapshot, drawn as discs with a thin outline; empty: rings
     ExpectedFrame(const codec::DecodedSnapshot& snapshot, const Camera& camera,
-                    const std::vector<Colour>& organisms = {})
+                  const std::vector<Colour>& organisms = {})
         : camera_{camera}
         , left_{static_cast<unsigned>(camera.viewport().left)}
         , top_{static_cast<unsigned>(camera.viewport().top)}
@@ -82,8 +82,7 @@ class ExpectedFrame {
 
     /// Leaves the pixels of a rectangle open.
     void leave_open(const Rectangle& area) {
-        paint(area.left, area.top, area.left + area.width, area.top + area.height,
-              [](double, double) { return open; });
+        paint(area.left, area.top, area.left + area.width, area.top + area.height, [](double, double) { return open; });
     }
 
     Mismatch compare(const sf::Image& image) const {

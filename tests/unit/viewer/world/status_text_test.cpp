@@ -108,5 +108,12 @@ TEST(StatusText, ListsTheStatisticsOfBothGenerations) {
     EXPECT_EQ(statistics_texts(snapshot, nullptr).size(), 5u);
 }
 
+TEST(StatusText, LabelsReplaysOfLiveWorldsAndOfRunFiles) {
+    evod::v1::Replay replay;
+    EXPECT_EQ(replay_label(replay), "REPLAY");
+    replay.set_replay_of("default");
+    EXPECT_EQ(replay_label(replay), "REPLAY of default");
+}
+
 } // namespace
 } // namespace evod::viewer
