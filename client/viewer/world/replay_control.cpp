@@ -10,7 +10,7 @@ namespace {
 
 // The server may have to simulate from a checkpoint far before the moment.
 constexpr std::chrono::minutes seek_timeout{10};
-// A replay of a live world grows: how often its range is asked for.
+// How often the range of a replay is requested: it grows with the live world.
 constexpr std::chrono::seconds range_interval{1};
 
 } // namespace

@@ -52,14 +52,14 @@ class WorldFeed {
     /// The region and detail to receive. Nullopt, as at first and after each show(): whole snapshots.
     void set_view(std::optional<evod::v1::View> view);
 
-    /// The name as it was asked for; empty: the server's choice.
+    /// The requested name; empty: the server's choice.
     const std::string& world() const { return world_; }
     /// The world's name as soon as the server has reported it; before that the same as world().
     const std::string& name() const { return control_.known() ? control_.world() : world_; }
     /// The chosen island.
     std::uint32_t island() const { return island_; }
     /// Changes whenever another world, replay or island is shown; no two feeds have the same number. An answer that was
-    /// asked for under another number is out of date.
+    /// requested under another number is out of date.
     std::uint64_t place_number() const { return place_number_; }
 
     /// The organism that panels describe and the camera may follow: an id of the current generation.
