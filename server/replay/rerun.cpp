@@ -251,7 +251,7 @@ Result<void> ComingChanges::plan_again(const std::string& path, std::span<const 
             (change.at->tick && *change.at->tick <= change.tick)) {
             return not_to_be_had(path, change);
         }
-        (void)world.plan_anew({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+        (void)world.add_planned({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
     }
     world.forget_what_was_due();
     return {};

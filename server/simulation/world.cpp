@@ -175,10 +175,10 @@ std::uint64_t World::alive_count() const {
 
 std::uint64_t World::plan(parameters::PlannedChange change) {
     EVOD_ASSERT(is_to_come(change.at));
-    return plan_anew(std::move(change));
+    return add_planned(std::move(change));
 }
 
-std::uint64_t World::plan_anew(parameters::PlannedChange change) {
+std::uint64_t World::add_planned(parameters::PlannedChange change) {
     change.id = ++planned_count_;
     planned_.push_back(std::move(change));
     return planned_count_;

@@ -137,7 +137,7 @@ class World {
     bool is_to_come(const parameters::PlannedMoment& moment) const;
     /// Of a world that was brought to a later moment than where things were planned: plans them again under the same
     /// ids, and forgets those that were due by now, which have been made there.
-    std::uint64_t plan_anew(parameters::PlannedChange change);
+    std::uint64_t add_planned(parameters::PlannedChange change);
     void forget_what_was_due();
     /// Takes a set that assign() has made from parameters().requested; each parameter holds from when its effect says.
     void request_parameters(const parameters::Parameters& requested);

@@ -8,9 +8,6 @@
 namespace evod::recording {
 namespace {
 
-using namespace run_file;
-using namespace replay;
-
 std::atomic<std::uint64_t> operations_left = 0;
 std::atomic<bool> failed = false;
 std::atomic<Failure> how_to_fail = Failure::InputOutput;

@@ -16,7 +16,6 @@ namespace evod::run_file {
 namespace {
 
 using namespace recording;
-using namespace replay;
 
 std::string bytes_of_file(const std::string& path) {
     std::ifstream file{path, std::ios::binary};

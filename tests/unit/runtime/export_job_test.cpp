@@ -17,7 +17,7 @@ using replay::RunTable;
 using run_file::RunFile;
 using testing::HasSubstr;
 
-class ExportThreadTest : public testing::Test {
+class ExportJobTest : public testing::Test {
   protected:
     /// Records so many generations, and one tick of the next.
     void record(int generations, std::uint64_t keep_every = 1) {
@@ -51,7 +51,7 @@ class ExportThreadTest : public testing::Test {
     std::optional<replay::StoredRun> past;
 };
 
-TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
+TEST_F(ExportJobTest, PartsPutTogetherAreTheTable) {
     record(300, 100);
     const replay::WantedTable wanted{.table = RunTable::Organisms, .format = replay::Table::Format::JsonLines};
     ExportJob thread{jobs, *past, wanted};
@@ -69,7 +69,7 @@ TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
     EXPECT_EQ(next(thread).error().code, RefusalCode::FailedPrecondition);
 }
 
-TEST_F(ExportThreadTest, ReportsHowManyGenerationsAreLeftOut) {
+TEST_F(ExportJobTest, ReportsHowManyGenerationsAreLeftOut) {
     const auto run_id = replay::record_other_model(data.file_of("w"), recording::small_world())->identity().run_id;
     past.emplace(std::vector{data.file_of("w")}, run_id);
     for (const auto& [table, left_out] :
@@ -81,7 +81,7 @@ TEST_F(ExportThreadTest, ReportsHowManyGenerationsAreLeftOut) {
     }
 }
 
-TEST_F(ExportThreadTest, AnErrorIsReportedInsteadOfAPart) {
+TEST_F(ExportJobTest, AnErrorIsReportedInsteadOfAPart) {
     record(2);
     ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 7}};
     const auto part = next(thread);
@@ -90,7 +90,7 @@ TEST_F(ExportThreadTest, AnErrorIsReportedInsteadOfAPart) {
     EXPECT_EQ(part.error().violations.at(0).field, "generation");
 }
 
-TEST_F(ExportThreadTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
+TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     record(300);
     ExportJob thread{jobs, *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
@@ -99,7 +99,7 @@ TEST_F(ExportThreadTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     EXPECT_THAT(part.error().message, HasSubstr("given up"));
 }
 
-TEST_F(ExportThreadTest, StoppingEndsASimulationUnderWay) {
+TEST_F(ExportJobTest, StoppingEndsASimulationUnderWay) {
     record(300, 1'000'000); // all but the first and the last are simulated again
     ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 299}};
     thread.request_stop();
