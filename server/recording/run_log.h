@@ -53,7 +53,7 @@ struct RunLog {
     /// A new file, which has the name NAME.evod-next or does not exist yet.
     struct Creation {
         run_file::RunIdentity identity;
-        std::optional<RunNumber> replaces = {}; // the run whose place it takes
+        std::optional<RunNumber> replaces = {}; // the run that it replaces
         bool committed = false;                 // its first records are
     };
     struct LogCopy {

@@ -59,7 +59,7 @@ class StorageThread::Worker {
 
     StorageThread& thread_;
     std::map<RunNumber, RunLog> runs_;
-    RunNumber last_written_ = 0, last_background_ = 0; // the runs whose turn was last
+    RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
     bool failed_ = false;                              // something, in this round
     bool advanced_ = false;                            // something has been written in this round
 };

@@ -252,7 +252,7 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
     if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
         return found;
     }
-    if (auto found = compare_part("as it held", stored.parameters.active, simulated.parameters.active)) {
+    if (auto found = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
         return found;
     }
     if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
@@ -311,7 +311,7 @@ Found compare(const simulation::WorldState& stored, const simulation::WorldState
     if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
         return found;
     }
-    if (auto found = compare_part("as it held", stored.parameters.active, simulated.parameters.active)) {
+    if (auto found = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
         return found;
     }
     if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
@@ -332,7 +332,7 @@ Found compare(const base::StateHash& stored, const base::StateHash& simulated) {
 }
 
 Found compare_requested(const parameters::Parameters& stored, const parameters::Parameters& simulated) {
-    return compare_part("as it was asked for", stored, simulated);
+    return compare_part("requested", stored, simulated);
 }
 
 } // namespace evod::replay

@@ -21,7 +21,7 @@ using simulation::IslandShape;
 using simulation::IslandState;
 using simulation::Items;
 
-static_assert(std::endian::native == std::endian::little, "columns are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "columns are written as they are in memory");
 
 constexpr int compression_level = 1; // higher levels take much longer and save little: most values are positions
 
@@ -223,23 +223,23 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
-        return refusal("it has another size than such a world's state");
+        return refusal("its size is not that of a state of this world");
     }
     std::string columns(bytes, '\0');
     const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
     if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
-        return refusal("it cannot be unpacked");
+        return refusal("it cannot be decompressed");
     }
     return read_columns(columns, shapes, state);
 }
 
 Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
     if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > 1) {
-        return refusal("it does not say whether a generation is over");
+        return refusal("its first byte is neither 0 nor 1");
     }
     const bool over = bytes.front() == 1;
     if (bytes.size() != bytes_of(shapes, over)) {
-        return refusal("it has another size than such a world's state");
+        return refusal("its size is not that of a state of this world");
     }
     Columns columns{bytes.substr(1)};
     state.islands.assign(shapes.size(), {});

@@ -360,7 +360,7 @@ void Replays::seek(const Seek& request, const ReplayReply& reply) {
             return sought(owner_gone());
         }
         const replay::StoredRun& run = shown->second.run;
-        // The world may have begun another run: what is looked at is still the one of the shown.
+        // The world may have begun another run; the replay still shows the run with which it was opened.
         const simulation::Replay& seen = *entry_of(name)->replay;
         replay::RecordedUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
         if (all_is_written) {

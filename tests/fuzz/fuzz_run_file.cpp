@@ -231,7 +231,7 @@ bool add_to_schema(sqlite3* database, Bytes& bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const Place place;
-    std::cerr.rdbuf(nullptr); // what is refused is said there
+    std::cerr.rdbuf(nullptr); // refusals are printed there
     Bytes bytes{data, size};
     const auto kind = take<std::uint8_t>(bytes);
     const std::string& sound = place.sound[kind / 3 % place.sound.size()];

@@ -89,8 +89,8 @@ class FullDisk(unittest.TestCase):
         return client
 
     def fill(self):
-        """Takes every byte that is left, and sees to it that nothing is given back: a file's log goes when the last who
-        has it open closes it, and a server in trouble does so before it tries again."""
+        """Fills the disk. A reader keeps the log of the run file in existence: otherwise SQLite would delete it, and free space,
+        when the server closes the file before it tries again."""
         reader = sqlite3.connect(f"file:{self.data}/default.evod?mode=ro", uri=True)
         reader.execute("SELECT count(*) FROM journal").fetchall()
         self.readers.append(reader)

@@ -381,7 +381,7 @@ class Recovery(unittest.TestCase):
         server.kill()
         server = self.serve()
         with Client(server, "k") as client:
-            until(lambda: client.world().tick > lent.applied_tick, "it goes on")
+            until(lambda: client.world().tick > lent.applied_tick, "it resumes")
             self.assertEqual((client.world().leased, client.world().state), (False, w.RUN_STATE_RUNNING))
         server.end()
 

@@ -205,7 +205,7 @@ TEST_F(CheckpointTest, ACheckpointOfAnotherWorldIsReported) {
     expect_reported(other, "another size", "the checkpoint");
     other = sound;
     other.state.parameters.active.damping = 0.5;
-    expect_reported(other, "its parameters", "the checkpoint: the parameter damping, as it held");
+    expect_reported(other, "its parameters", "the checkpoint: the parameter damping, in effect");
     other = sound;
     other.state.islands[0].counts.food_eaten += 1; // no hash covers this
     file->begin();
