@@ -134,8 +134,8 @@ TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
     const std::string said = testing::internal::GetCapturedStdout();
     EXPECT_THAT(said,
                 testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
-                                       "commands, and where it stood last. " +
-                                       data.file_of("w") + " has all that was answered"));
+                                       "commands, and its last tick. " +
+                                       data.file_of("w") + " contains everything that was answered"));
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal().read()->size(), 1u);
 }
 

@@ -378,7 +378,7 @@ TEST_F(CheckpointTest, ARunMayBeginWithOne) {
     }
     const auto file = RunFile::open_read_only(path);
     EXPECT_THAT(check(**file).error().message, HasSubstr("the row 170 of its table checkpoint"));
-    EXPECT_THAT(Rerun::at(**file, 2, executor).error().message, HasSubstr("the checkpoint is missing"));
+    EXPECT_THAT(Rerun::at(**file, 2, executor).error().message, HasSubstr("with which the run begins is missing"));
 }
 
 TEST_F(CheckpointTest, ACheckpointIsDueWhenSimulatingWouldTakeLong) {
