@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 namespace evod::viewer {
@@ -36,7 +37,7 @@ sf::Uint8 byte(unsigned number) {
     return static_cast<sf::Uint8>(number);
 }
 
-// Rows for which each of the five filters is the best, one below the other.
+// Rows for each of which another of the five PNG filters is the best.
 sf::Color any_filter(unsigned x, unsigned y) {
     const unsigned noise = (x * 2654435761u ^ y * 40503u * 2246822519u) >> 13;
     switch (y / 8 % 5) {
@@ -60,11 +61,11 @@ TEST(Png, EveryPixelIsReadBack) {
     expect_read_back(image_of(40, 1, any_filter));
 }
 
-TEST(Png, WhatIsTheSameAllOverOrRunsOnIsSmall) {
+TEST(Png, UniformAndRegularImagesAreSmall) {
     const auto bytes = [](auto shade) { return png_of(image_of(256, 256, shade)).size(); };
     EXPECT_LT(bytes([](unsigned, unsigned) { return sf::Color{204, 204, 204}; }), 1'000u);
     EXPECT_LT(bytes([](unsigned x, unsigned y) { return sf::Color{byte(x), byte(y), byte(x + y)}; }), 2'000u);
-    // Columns that are nothing like each other; then rows that are nothing like each other, each a slope.
+    // Unrelated columns; then unrelated rows, each with a constant slope.
     EXPECT_LT(bytes([](unsigned x, unsigned) { return sf::Color{byte(x * 91), byte(x * x), byte(x * 37)}; }), 3'000u);
     EXPECT_LT(
         bytes([](unsigned x, unsigned y) {
@@ -72,6 +73,10 @@ TEST(Png, WhatIsTheSameAllOverOrRunsOnIsSmall) {
             return sf::Color{byte(start + x * (y % 7)), byte(3 * start + x * (y % 5)), byte(x * (y % 11) - start)};
         }),
         10'000u);
+}
+
+TEST(Png, AnImageWithoutPixelsIsRefused) {
+    EXPECT_THROW(png_of(sf::Image{}), std::runtime_error);
 }
 
 } // namespace
