@@ -3,7 +3,6 @@
 #include "server/base/assert.h"
 #include "server/evolution/breeding.h"
 #include "server/evolution/scaling.h"
-#include "server/evolution/selection_law.h"
 #include "server/evolution/tournament.h"
 
 #include <algorithm>
@@ -60,7 +59,7 @@ std::vector<Contender> contenders_of(Ranking& ranking, std::span<const std::uint
             contender.slot_begin = i == 0 ? 0 : ends[i - 1] / ends.back();
             contender.slot_end = ends[i] / ends.back();
         }
-        contender.expected_copies = law.expected_copies(ranks[i], wheel ? wheel->share(i) : 0);
+        contender.law = law.copies(ranks[i], wheel ? wheel->share(i) : 0);
         contender.copies = copies[i];
     }
     return contenders;

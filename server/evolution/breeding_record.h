@@ -12,6 +12,7 @@
 #include "server/evolution/migration.h"
 #include "server/evolution/mutation.h"
 #include "server/evolution/next_generation.h"
+#include "server/evolution/selection_law.h"
 
 #include <array>
 #include <optional>
@@ -32,8 +33,8 @@ struct BreedingRecord {
         double weight = 0;      // scaled fitness
         double slot_begin = 0;  // of the wheel, in turns; 0 for methods without a wheel
         double slot_end = 0;
-        double expected_copies = 0; // mean number of the picks, before chance
-        std::uint32_t copies = 0;
+        CopiesLaw law{};                   // of the copies in all picks
+        std::uint32_t copies = 0;          // in all picks, as it happened
         std::optional<Migrant> migrant;    // the migrant that took its place; set by the caller, which knows the
                                            // migration
         std::optional<double> own_fitness; // its fitness before the shuffle, if `fitness` was shuffled; set by the

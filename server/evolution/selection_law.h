@@ -1,7 +1,11 @@
-// Selection law: how often a selection method picks each organism on average.
+// Selection law: how often a selection method picks each organism on average, and how far one breeding deviates from that.
 //
-// Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361; for tournaments with several
-//              winners, the mean of a binomial or hypergeometric number that is limited to the number of winners.
+// Owner        BreedingRecord; nothing in a running world uses it.
+// Threads      none of its own.
+// Determinism  reads no random stream.
+// Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361; Baker 1987, "Reducing bias and
+//              inefficiency in the selection algorithm". For tournaments with several winners: the number of wins is a
+//              binomial or hypergeometric count of contestants, cut off at the number of winners.
 #pragma once
 
 #include "server/evolution/parameters.h"
@@ -13,32 +17,41 @@ namespace evod::evolution {
 
 struct Tournament;
 
+/// The distribution of one organism's copies, over all picks of one breeding.
+struct CopiesLaw {
+    double expected = 0;
+    double standard_error = 0;  // standard deviation of the copies from one breeding to the next
+    double unpicked_chance = 1; // chance of no copy at all
+};
+
 class SelectionLaw {
   public:
     /// population  organisms to pick from, >= 1.
-    /// picks       as passed to select().
+    /// picks       as select() receives them.
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
-    /// The expected number of picks, of all the picks, that go to one organism.
-    ///
     /// rank   0 is the fittest.
-    /// share  of the wheel; ignored by methods without a wheel.
-    double expected_copies(std::uint32_t rank, double share) const;
+    /// share  of the wheel, for roulette and universal sampling; the other methods ignore it.
+    CopiesLaw copies(std::uint32_t rank, double share) const;
 
   private:
-    double expected_wins(std::uint32_t rank) const;
+    CopiesLaw tournament_copies(std::uint32_t rank) const;
 
     std::uint32_t population_;
     Picks picks_;
     Parameters parameters_;
 };
 
-/// The mean number of winners of one tournament whose rank is at most `rank`: the contestants with such a rank, but not
-/// more than the number of winners.
-///
+/// The distribution of one rank's wins in one tournament.
+struct WinsLaw {
+    double mean = 0;
+    double mean_square = 0;
+    double none_chance = 1;
+};
+
 /// tournament  size, without replacement at most the population; winners at most its size.
-/// cost        grows with the square root of the size.
-double expected_winners_up_to(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
+/// cost        grows with the root of the size; with replacement and several winners with the root squared at most.
+WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

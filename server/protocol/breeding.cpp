@@ -31,7 +31,9 @@ v1::Contender to_proto(const evolution::BreedingRecord::Contender& contender) {
     to.set_weight(contender.weight);
     to.set_slot_begin(contender.slot_begin);
     to.set_slot_end(contender.slot_end);
-    to.set_expected_copies(contender.expected_copies);
+    to.set_expected_copies(contender.law.expected);
+    to.set_expected_copies_error(contender.law.standard_error);
+    to.set_unpicked_chance(contender.law.unpicked_chance);
     to.set_copies(contender.copies);
     if (contender.migrant) {
         to.mutable_migrant()->set_island(contender.migrant->from);

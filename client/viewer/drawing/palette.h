@@ -1,8 +1,10 @@
 // Palette: every colour of the window.
 //
-// Food and poison differ in lightness as well as in hue, so that they can be told apart without seeing red and green.
-// What stands for a number comes from a ramp, which gets lighter all the way; what stands for a kind from Okabe and
-// Ito.
+// Food and poison differ in lightness as well as in hue, so that red-green colour-blind users can distinguish them.
+// Colours of numbers come from a ramp of rising lightness, colours of kinds from Okabe and Ito.
+//
+// Owner        none: constants.
+// Threads      any.
 #pragma once
 
 #include <array>
@@ -34,7 +36,7 @@ constexpr Colour selected{255, 255, 255};
 constexpr Colour food_radius{62, 176, 76, 220};
 constexpr Colour poison_radius{140, 8, 24, 220};
 constexpr Colour trail{70, 30, 100};
-constexpr Colour unknown{140, 140, 144}; // what has no value, or is of no family that has a colour
+constexpr Colour unknown{140, 140, 144}; // no value, or a lineage without a colour
 
 constexpr Colour strip{230, 230, 232};
 constexpr Colour strip_edge{150, 150, 154};
@@ -43,27 +45,27 @@ constexpr Colour text_quiet{92, 92, 100};
 constexpr Colour running{22, 118, 48};
 constexpr Colour stopped{168, 84, 0};
 
-constexpr Colour past{206, 142, 32}; // marks what has been
+constexpr Colour replay{206, 142, 32}; // marks a world that shows a stored run
 constexpr Colour focus{28, 98, 190};
 
 constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
 
-/// Colours of rising numbers.
+/// Colours for rising numbers.
 enum class Ramp { Viridis, Cividis };
 constexpr std::array<Ramp, 2> ramps{Ramp::Viridis, Ramp::Cividis};
 std::string_view name_of(Ramp ramp);
 
-/// The colour of a share of the ramp; below 0 and above 1 its ends, of what is not a number `unknown`.
+/// The colour at `share` of the ramp, clamped to 0 to 1; `unknown` if `share` is not a number.
 ///
-/// Source   every 15th of the 256 colours of matplotlib, between them straight. Viridis: S. van der Walt and N. Smith,
+/// Source   every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van der Walt and N. Smith,
 ///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
 Colour at(Ramp ramp, double share);
 
-/// Colours of kinds, which can be told apart with every kind of colour vision.
+/// Colours for kinds, distinguishable with every kind of colour vision.
 ///
-/// Source   Okabe & Ito 2002, "Color Universal Design", without the black, which is the walls'.
+/// Source   Okabe & Ito 2002, "Color Universal Design", without black, the colour of walls.
 constexpr std::array<Colour, 7> kinds{{
     {230, 159, 0},  // orange
     {86, 180, 233}, // sky blue
@@ -74,7 +76,7 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
-// What an organism is about to do.
+// The choice of an organism.
 constexpr Colour wanders{90, 90, 96};
 constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
@@ -89,7 +91,7 @@ constexpr Colour series_blue = kinds[4];
 constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
-// How the demonstration of time steps moves.
+// Integrators in the time step demonstration.
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];
 
@@ -101,6 +103,9 @@ constexpr Colour glass_mutated{122, 36, 150};
 constexpr Colour glass_elite{20, 20, 24};
 constexpr Colour glass_survivor{104, 104, 112};
 constexpr Colour glass_child{184, 184, 192};
+
+/// Black or white, the one with more contrast on `paper`; a translucent colour is seen over a light background.
+Colour text_on(Colour paper);
 
 } // namespace palette
 } // namespace evod::viewer

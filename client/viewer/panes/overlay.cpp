@@ -90,7 +90,7 @@ void Overlay::build_strips(const ViewedWorld& world, const Gui& gui, Rectangle p
         const std::string mark = replay_label(*world.replay.info());
         const float mark_end = title_begin + size_of(mark, text).x + 16 * scale;
         list.AddRectFilled({title_begin, top + 7 * scale}, {mark_end, top + title_height - 8 * scale},
-                           ink(palette::past), 4 * scale);
+                           ink(palette::replay), 4 * scale);
         write(list, text, {title_begin + 8 * scale, top_line}, palette::text, mark);
         title_begin = mark_end + margin;
     }

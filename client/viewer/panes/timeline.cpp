@@ -123,7 +123,7 @@ void Timeline::build_line(ViewedWorld& world, const Gui& gui, Rectangle place) {
     const auto left = static_cast<float>(scale.left), right = left + static_cast<float>(scale.width);
     const auto x = std::round(static_cast<float>(scale.x_of(shown)));
     list.AddRectFilled({left, top}, {right, bottom}, ink(palette::strip_edge), 3 * pixel);
-    list.AddRectFilled({left, top}, {x, bottom}, ink(palette::past), 3 * pixel);
+    list.AddRectFilled({left, top}, {x, bottom}, ink(palette::replay), 3 * pixel);
     const auto count_max = static_cast<std::size_t>(width / (mark_room * pixel));
     find_first_ticks(world, replay, count_max);
     std::vector<std::string> texts;

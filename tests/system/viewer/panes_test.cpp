@@ -106,7 +106,7 @@ struct TimelineTest : PanesTest {
         EXPECT_TRUE(person.finds_window());
         EXPECT_TRUE(person.sees(palette::organism));
         person.press(XK_p);
-        EXPECT_TRUE(person.sees(palette::past)) << "the label of the replay, and the time line";
+        EXPECT_TRUE(person.sees(palette::replay)) << "the label of the replay, and the time line";
     }
 
     /// The viewport above the time line.

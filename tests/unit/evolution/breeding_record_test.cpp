@@ -125,8 +125,8 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         const auto& contender = record.contenders[i];
         EXPECT_EQ(contender.copies, copies[i]);
         EXPECT_EQ(contender.fitness, bred.fitness[i]);
-        EXPECT_GE(contender.expected_copies, 0);
-        expected += contender.expected_copies;
+        EXPECT_GE(contender.law.expected, 0);
+        expected += contender.law.expected;
         ASSERT_FALSE(ranked[contender.rank]);
         ranked[contender.rank] = true;
         for (std::uint32_t j = 0; j < i; ++j) {
@@ -223,7 +223,7 @@ TEST(SelectionLaw, OfASingleWinnerIsTheClosedForm) {
         parameters.tournament_size = k;
         const SelectionLaw law{n, {.wanted = 100, .pool = n}, parameters};
         for (std::uint32_t r = 0; r < n; ++r) {
-            EXPECT_NEAR(law.expected_copies(r, 0),
+            EXPECT_NEAR(law.copies(r, 0).expected,
                         100 * (std::pow((n - r) / 20.0, k) - std::pow((n - r - 1) / 20.0, k)), 1e-9);
         }
         parameters.tournament_replacement = false;
@@ -231,7 +231,7 @@ TEST(SelectionLaw, OfASingleWinnerIsTheClosedForm) {
         double none_better = 1; // no contestant has rank 0 ... r - 1
         for (std::uint32_t r = 0; r < n; ++r) {
             const double hit = std::min(1.0, static_cast<double>(std::min(k, n)) / (n - r));
-            EXPECT_NEAR(without.expected_copies(r, 0), 100 * none_better * hit, 1e-9);
+            EXPECT_NEAR(without.copies(r, 0).expected, 100 * none_better * hit, 1e-9);
             none_better *= 1 - hit;
         }
     }
@@ -261,7 +261,7 @@ TEST(SelectionLaw, IsTheMeanOfManySelections) {
             picks = record.pick_count;
             for (std::uint32_t i = 0; i < population; ++i) {
                 copies[i] += record.contenders[i].copies;
-                law[i] = record.contenders[i].expected_copies / picks;
+                law[i] = record.contenders[i].law.expected / picks;
             }
         }
         EXPECT_GT(p_value_of_law(copies, law), alpha) << choice.name;
@@ -280,7 +280,7 @@ TEST(SelectionLaw, OfTournamentsWithSeveralWinnersAddsUpAtAnySize) {
                 const SelectionLaw law{50, {.wanted = 31, .pool = 50}, parameters};
                 double sum = 0, before = 31;
                 for (std::uint32_t rank = 0; rank < 50; ++rank) {
-                    const double copies = law.expected_copies(rank, 0);
+                    const double copies = law.copies(rank, 0).expected;
                     EXPECT_LE(copies, before + 1e-9);
                     before = copies;
                     sum += copies;

@@ -152,7 +152,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     record.places = {.elite = 1, .survivors = 3, .children = 5};
     record.contender_count = 7;
     record.pick_count = 9;
-    record.contenders.push_back({1, 2, 3, 4, 5, 6, 7, evolution::Migrant{8, 99, 9, 99}, 10});
+    record.contenders.push_back({1, 2, 3, 4, 5, {6, 11, 12}, 7, evolution::Migrant{8, 99, 9, 99}, 10});
     record.picks.push_back({1, 2.5, 3, {4, 5, 6}});
     for (const std::uint32_t id : {0, 2, 3}) {
         record.descendants.push_back({.id = id,
@@ -178,7 +178,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     EXPECT_THAT(unset, testing::IsEmpty());
     std::vector<double> contender;
     collect_numbers(told.contenders(0), contender);
-    EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10));
+    EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
     EXPECT_EQ(told.descendant_count(), 8u);
     EXPECT_EQ(told.descendants(0).kind(), v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(told.descendants(1).kind(), v1::DESCENDANT_KIND_SURVIVOR);

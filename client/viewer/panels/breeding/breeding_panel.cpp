@@ -2,7 +2,7 @@
 
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/caption.h"
-#include "client/viewer/panels/breeding/drawing.h"
+#include "client/viewer/panels/breeding/descendant_drawing.h"
 #include "client/viewer/panels/breeding/selection_drawing.h"
 #include "client/viewer/world/status_text.h"
 
@@ -15,10 +15,10 @@ namespace evod::viewer {
 
 namespace {
 
-// Following a fast world: one breeding is shown at least so long, and after it was played a little longer.
+// How long a breeding stays on screen at least while following a fast world, and after it was played to its end.
 constexpr std::chrono::milliseconds shown_min{500}, shown_after_playing{1500};
 
-/// A rectangle of the window to draw in, as wide as there is room.
+/// Reserves a rectangle of the window to draw in, as wide as the window.
 Sheet sheet_of(const Gui& gui, float height) {
     const Sheet sheet{*ImGui::GetWindowDrawList(),
                       gui.label(),
@@ -32,7 +32,7 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
     return number ? with_unit(*number, unit) : "–";
 }
 
-/// The past stays as it was, and who only watches holds nothing.
+/// Observers and replays cannot hold a world.
 bool may_hold(const ViewedWorld& world) {
     return world.commands.may_command() && world.replay.info() == nullptr;
 }
@@ -50,36 +50,40 @@ bool pressed(ImGuiKey key) {
 std::span<const Panel::Key> BreedingPanel::keys() const {
     using Keyboard = sf::Keyboard;
     static constexpr Key keys[] = {
-        {Keyboard::Space, "play, stop"},           {Keyboard::Enter, ""},
-        {Keyboard::Left, "one step back"},         {Keyboard::Right, "one step"},
-        {Keyboard::PageUp, "to the stage before"}, {Keyboard::PageDown, "to the next stage"},
-        {Keyboard::Home, "to the beginning"},      {Keyboard::End, "to the end"},
+        {Keyboard::Space, "play, stop"},
+        {Keyboard::Enter, ""},
+        {Keyboard::Left, "one step back"},
+        {Keyboard::Right, "one step"},
+        {Keyboard::PageUp, "to the previous stage"},
+        {Keyboard::PageDown, "to the next stage"},
+        {Keyboard::Home, "to the beginning"},
+        {Keyboard::End, "to the end"},
     };
     return keys;
 }
 
 void BreedingPanel::build(Context& context) {
     if (context.world.feed.snapshot() == nullptr) {
-        ImGui::TextUnformatted("Waiting for the first picture …");
+        ImGui::TextUnformatted("Waiting for the first snapshot …");
         return;
     }
     choose(context);
-    ask(context);
+    request(context);
     hold_world(context.world);
     build_generation(context);
     if (!error_.empty()) {
         widgets::say(error_, palette::text);
-        if (widgets::button("Ask again")) {
+        if (widgets::button("Retry")) {
             error_.clear();
             poll_.hurry();
         }
     }
     if (!shown_) {
         if (newest_ == 0) {
-            widgets::say("The first generation has not been bred from yet: it has to end, and the next to begin.",
+            widgets::say("No generation has bred yet. The first one breeds when it ends and the next begins.",
                          palette::text);
         } else if (error_.empty()) {
-            ImGui::TextUnformatted("Asked for …");
+            ImGui::TextUnformatted("Loading …");
         }
         return;
     }
@@ -89,7 +93,7 @@ void BreedingPanel::build(Context& context) {
     const bool here = moment.stage == BreedingStage::Picking    ? shown_->pick(moment.index) != nullptr
                       : moment.stage == BreedingStage::Breeding ? shown_->descendant(moment.index) != nullptr
                                                                 : true;
-    if (here) { // or else it waits for the answer
+    if (here) { // otherwise wait for the answer
         stepper_.advance(double{ImGui::GetIO().DeltaTime});
     }
     const float theory_width = std::floor(ImGui::GetContentRegionAvail().x * 0.4f);
@@ -102,12 +106,12 @@ void BreedingPanel::build(Context& context) {
     ImGui::EndChild();
 }
 
-// ---- what is looked at, and what has to be asked ---------------------------------------------------------------
+// ---- which generation is shown, and what to request --------------------------------------------------------------
 
 void BreedingPanel::choose(const Context& context) {
-    const evod::v1::SnapshotFrame& picture = context.world.feed.snapshot()->about;
-    BreedingRecord::Key key{picture.world(), picture.run_id(), picture.island(), 0};
-    newest_ = picture.generation() - std::min<std::uint64_t>(picture.generation(), 1);
+    const evod::v1::SnapshotFrame& about = context.world.feed.snapshot()->about;
+    BreedingRecord::Key key{about.world(), about.run_id(), about.island(), 0};
+    newest_ = about.generation() - std::min<std::uint64_t>(about.generation(), 1);
     const auto is_of = [&](const std::optional<BreedingRecord>& record) {
         return record && record->key().world == key.world && record->key().run_id == key.run_id &&
                record->key().island == key.island;
@@ -117,43 +121,43 @@ void BreedingPanel::choose(const Context& context) {
         comparison_.reset();
         stepper_.load(0, 0);
     }
-    if (!is_of(coming_)) {
-        coming_.reset();
+    if (!is_of(next_)) {
+        next_.reset();
     }
     if (newest_ == 0) {
         return;
     }
     if (stepper_.playing()) {
-        next_look_ = context.now + shown_after_playing;
+        next_change_ = context.now + shown_after_playing;
     }
-    // What was asked for is waited for: in a fast world there is always something newer.
-    const bool idle = !coming_ || !error_.empty();
+    // Wait for a pending answer before following: in a fast world there is always a newer generation.
+    const bool idle = !next_ || !error_.empty();
     const bool settled = !stepper_.playing() && (stepper_.at_begin() || stepper_.at_end());
-    if (follow_ && idle && settled && context.now >= next_look_) {
+    if (follow_ && idle && settled && context.now >= next_change_) {
         chosen_ = newest_;
     }
     chosen_ = std::clamp<std::uint64_t>(chosen_, 1, newest_);
     key.generation = chosen_;
-    const auto& looked_at = coming_ ? coming_ : shown_;
-    if (!looked_at || looked_at->key() != key) {
-        coming_.emplace(key);
+    const auto& current = next_ ? next_ : shown_;
+    if (!current || current->key() != key) {
+        next_.emplace(key);
         poll_.reset();
         error_.clear();
-        next_look_ = context.now + shown_min;
+        next_change_ = context.now + shown_min;
     }
 }
 
-void BreedingPanel::ask(const Context& context) {
-    auto& record = coming_ ? coming_ : shown_;
+void BreedingPanel::request(const Context& context) {
+    auto& record = next_ ? next_ : shown_;
     if (!poll_.due(context.world, context.now) || !record || !error_.empty()) {
         return;
     }
-    if (auto wanted = record->wanted(coming_ ? Moment{} : stepper_.moment())) {
+    if (auto wanted = record->wanted(next_ ? Moment{} : stepper_.moment())) {
         evod::v1::Request request;
         *request.mutable_get_breeding() = std::move(*wanted);
         poll_.send(context.world, std::move(request), context.now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
-                take(response->breeding());
+                receive(response->breeding());
             } else {
                 error_ = poll_.problem();
             }
@@ -161,14 +165,14 @@ void BreedingPanel::ask(const Context& context) {
     }
 }
 
-void BreedingPanel::take(const evod::v1::Breeding& breeding) {
-    if (coming_) {
-        coming_->add(breeding);
-        if (coming_->known()) {
-            show_coming();
+void BreedingPanel::receive(const evod::v1::Breeding& breeding) {
+    if (next_) {
+        next_->add(breeding);
+        if (next_->known()) {
+            show_next();
         } else {
-            error_ = "The server answered with something else than the breeding of generation " +
-                     with_separators(coming_->key().generation);
+            error_ = "The server answered with the breeding of another generation than " +
+                     with_separators(next_->key().generation);
         }
     } else if (shown_) {
         shown_->add(breeding);
@@ -178,29 +182,29 @@ void BreedingPanel::take(const evod::v1::Breeding& breeding) {
     }
 }
 
-void BreedingPanel::show_coming() {
+void BreedingPanel::show_next() {
     const bool at_end = shown_ && stepper_.at_end() && !stepper_.at_begin();
-    shown_ = std::exchange(coming_, std::nullopt);
+    shown_ = std::exchange(next_, std::nullopt);
     comparison_.reset();
     stepper_.load(shown_->pick_count(), shown_->descendant_count());
     if (play_each_) {
         stepper_.play();
     } else if (at_end) {
-        stepper_.to_end(); // who skips one skips the next
+        stepper_.to_end(); // the user skipped the steps of the last one
     }
 }
 
 void BreedingPanel::hold_world(ViewedWorld& world) {
     if (!may_hold(world)) {
-        hold_.let_go();
+        hold_.release();
     }
     switch (hold_.update(run_of(world), world.feed.control().state(), world.feed.control().stepping())) {
-    case GenerationHold::Ask::Nothing:
+    case GenerationHold::Action::None:
         break;
-    case GenerationHold::Ask::RunOneGeneration:
+    case GenerationHold::Action::RunOneGeneration:
         world.commands.run_generations(1);
         break;
-    case GenerationHold::Ask::RunOneTick:
+    case GenerationHold::Action::RunOneTick:
         world.commands.step(1);
         break;
     }
@@ -221,25 +225,25 @@ void BreedingPanel::build_generation(const Context& context) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    widgets::explain("Of the parents: any that was bred from");
+    widgets::explain("Of the parents: any generation that has bred");
     ImGui::SameLine();
     ImGui::Checkbox("the newest", &follow_);
     widgets::mark("the newest");
-    widgets::explain("Shows each breeding when it has happened, once the one before was looked at");
+    widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped");
     ImGui::SameLine();
     ImGui::Checkbox("play each", &play_each_);
     widgets::mark("play each");
-    widgets::explain("Begins to play when another breeding is shown");
+    widgets::explain("Plays each breeding from the start when it appears");
     if (may_hold(context.world)) {
         ImGui::SameLine();
         bool held = hold_.on();
         if (ImGui::Checkbox("hold the world", &held)) {
-            held ? hold_.hold(run_of(context.world)) : hold_.let_go();
+            held ? hold_.hold(run_of(context.world)) : hold_.release();
         }
         widgets::mark("hold the world");
         widgets::explain(
-            "Pauses the world after each generation, one tick into the next, as long as this is shown. Going on runs "
-            "the next one.");
+            "While this panel is open, pauses the world after each generation, one tick into the next. Resuming runs "
+            "one more generation.");
     }
     if (const auto selected = context.world.feed.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
@@ -264,13 +268,13 @@ void BreedingPanel::build_transport(const Gui& gui) {
     if (button("|<", "To the beginning (Home)")) {
         stepper_.to_begin();
     }
-    if (button("<<", "To the stage before (Page Up)")) {
+    if (button("<<", "To the previous stage (Page Up)")) {
         stepper_.previous_stage();
     }
     if (button("<", "One step back (left)")) {
         stepper_.back();
     }
-    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays, or stops (Space, Enter)")) {
+    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter)")) {
         stepper_.play_or_stop();
     }
     if (button(">", "One step (right)")) {
@@ -344,23 +348,22 @@ void BreedingPanel::build_stage(const Context& context) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
-        widgets::say("the picks in order, light: the fittest, dark: the last in rank");
+        widgets::say("the picks in order; light: the fittest, dark: the lowest rank");
         break;
     }
     case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
-        widgets::say("black: the elite, dark: survivors, light: children");
+        widgets::say("black: elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
             widgets::say(
-                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or "
-                "clamped");
+                "blue: genes of the first parent, orange: of the second, dashed: cuts, framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
-            ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
+            ImGui::Dummy({1, used}); // makes the panel scroll
         }
         break;
     case BreedingStage::Done:
         draw_descendants(sheet_of(gui, strip), *shown_, nullptr);
-        widgets::say("black: the elite, dark: survivors, light: children");
+        widgets::say("black: elite, dark: survivors, light: children");
         if (comparison_) {
             draw_ranking(sheet_of(gui, height - 50 * gui.scale()), *shown_, *comparison_, comparison_->copies, nullptr);
         }
@@ -369,36 +372,36 @@ void BreedingPanel::build_stage(const Context& context) {
 }
 
 void BreedingPanel::build_theory(const Gui& gui) {
-    ImGui::TextUnformatted("What theory says");
+    ImGui::TextUnformatted("Theory");
     if (!comparison_) {
         const evod::v1::Breeding& breeding = shown_->breeding();
         widgets::say(breeding.contender_count() > BreedingRecord::rows_kept_max
-                         ? "Of so many organisms the first " + with_separators(BreedingRecord::rows_kept_max) +
-                               " are asked for, and theory needs all of them."
+                         ? "Theory needs all organisms; only the first " +
+                               with_separators(BreedingRecord::rows_kept_max) + " are requested."
                          : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
-                               with_separators(breeding.contender_count()) + " organisms have come …");
+                               with_separators(breeding.contender_count()) + " organisms received …");
         return;
     }
     const Moment moment = stepper_.moment();
     const std::uint32_t picks = shown_->breeding().pick_count();
     const bool picking = moment.stage == BreedingStage::Picking && picks > 0;
-    const std::uint32_t happened = picking ? moment.index + 1 : moment.stage == BreedingStage::Scaling ? 0 : picks;
+    const std::uint32_t made = picking ? moment.index + 1 : moment.stage == BreedingStage::Scaling ? 0 : picks;
     draw_copies(sheet_of(gui, std::min(300.f * gui.scale(), ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
-                picking || happened == 0 ? copies_after(*shown_, happened) : comparison_->copies,
-                picking ? double(happened) / picks : 1);
-    widgets::say(print("%zu of %zu ranks are more than two standard errors off", comparison_->beyond_two,
+                picking || made == 0 ? copies_after(*shown_, made) : comparison_->copies,
+                picking ? double(made) / picks : 1);
+    widgets::say(print("%zu of %zu ranks deviate by more than two standard errors", comparison_->beyond_two,
                        comparison_->organisms.size()),
                  palette::text);
-    for (const Finding& finding : comparison_->findings) {
+    for (const Prediction& prediction : comparison_->predictions) {
         ImGui::Separator();
-        widgets::say(print("%.*s: expected %s, happened %s", static_cast<int>(finding.name.size()), finding.name.data(),
-                           shown(finding.expected, finding.unit).c_str(),
-                           shown(finding.happened, finding.unit).c_str()),
+        widgets::say(print("%.*s: expected %s, observed %s", static_cast<int>(prediction.name.size()),
+                           prediction.name.data(), shown(prediction.expected, prediction.unit).c_str(),
+                           shown(prediction.observed, prediction.unit).c_str()),
                      palette::text);
-        if (const auto off = finding.deviation()) {
+        if (const auto off = prediction.deviation()) {
             widgets::say(print("%+.2f standard errors", *off), palette::text);
         }
-        widgets::say(std::string{finding.sentence} + " (" + std::string{finding.source} + ")");
+        widgets::say(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
     }
 }
 

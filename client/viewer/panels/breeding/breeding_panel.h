@@ -1,8 +1,9 @@
-// BreedingPanel: the glass box: how a generation was bred, step by step, and what theory says of it.
+// BreedingPanel: the glass box: shows step by step how a generation was bred, beside the predictions of theory.
 //
-// While it is shown it asks for the breeding of each generation that comes, or for the one that is chosen.
+// While open, it requests the breeding of each new generation, or of the generation the user chose.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/breeding/breeding_record.h"
@@ -29,9 +30,9 @@ class BreedingPanel : public Panel {
     using Time = core::WorldView::Clock::time_point;
 
     void choose(const Context& context);
-    void ask(const Context& context);
-    void take(const evod::v1::Breeding& breeding);
-    void show_coming();
+    void request(const Context& context);
+    void receive(const evod::v1::Breeding& breeding);
+    void show_next();
     void hold_world(ViewedWorld& world);
 
     void build_generation(const Context& context);
@@ -40,16 +41,16 @@ class BreedingPanel : public Panel {
     void build_stage(const Context& context);
     void build_theory(const Gui& gui);
 
-    std::optional<BreedingRecord> shown_, coming_; // what comes is shown when its first page is here
-    std::optional<Comparison> comparison_;         // of what is shown; nullopt until all of it is known
+    std::optional<BreedingRecord> shown_, next_; // next_ is shown when its first page has arrived
+    std::optional<Comparison> comparison_;       // of shown_; nullopt until all contenders have arrived
     Stepper stepper_;
-    std::string error_; // why there is no more to be shown
+    std::string error_; // why nothing more is shown
     Poll poll_;
 
-    std::uint64_t newest_ = 0; // generation that was bred from; 0: none yet
+    std::uint64_t newest_ = 0; // the last generation that has bred; 0: none yet
     std::uint64_t chosen_ = 0;
     bool follow_ = true, play_each_ = false;
-    Time next_look_{}; // for a newer generation
+    Time next_change_{}; // earliest time to show a newer generation
 
     GenerationHold hold_;
 };

@@ -6,7 +6,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// Rows that are asked for beyond the one that is shown, so that playing does not stumble.
+/// Rows requested beyond the one shown, so that playing does not wait for the server.
 constexpr std::uint32_t rows_ahead = 64;
 
 template <class Rows>
@@ -14,7 +14,7 @@ const typename Rows::value_type* row(const Rows& rows, std::uint32_t index) {
     return index < static_cast<std::uint32_t>(rows.size()) ? &rows.Get(static_cast<int>(index)) : nullptr;
 }
 
-/// How many more rows are kept of a list that has `have`.
+/// Appends the rows of `page`, up to `count` and rows_kept_max. Returns whether any was added.
 template <class Rows>
 bool append(Rows& have, const Rows& page, std::uint32_t count) {
     const auto kept = static_cast<int>(std::min(count, BreedingRecord::rows_kept_max));
@@ -40,7 +40,7 @@ std::optional<evod::v1::GetBreeding> BreedingRecord::wanted(Moment moment) const
         return std::nullopt;
     }
     bool any = false;
-    // A list of which nothing is needed is asked for beyond its end.
+    // To leave a list out of the answer, request it from its end.
     const auto first_of = [&any](std::uint32_t have, std::uint32_t shown, std::uint32_t count) {
         if (have >= std::min({shown, count, rows_kept_max})) {
             return count;

@@ -1,6 +1,7 @@
-// BreedingRecord: how one generation was bred, as far as the server has told of it: its answers come in pages.
+// BreedingRecord: how one generation was bred, collected from the pages that the server has sent so far.
 //
-// Threads      none; used by the thread that draws.
+// Owner        BreedingPanel.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/breeding/stepper.h"
@@ -14,7 +15,7 @@ namespace evod::viewer {
 
 class BreedingRecord {
   public:
-    /// Of each list no more than this is asked for; who is beyond is not shown.
+    /// Rows requested of each list; further rows are not shown.
     static constexpr std::uint32_t rows_kept_max = 20'000;
 
     struct Key {
@@ -27,36 +28,35 @@ class BreedingRecord {
     explicit BreedingRecord(Key key) : key_{std::move(key)} {}
     const Key& key() const { return key_; }
 
-    /// What is to be asked so that `moment` can be shown, or nullopt: nothing is missing, or the server gave none of
-    /// what it was asked for.
+    /// The next request that `moment` needs; nullopt if nothing is missing, or if the last answer brought no new row.
     std::optional<evod::v1::GetBreeding> wanted(Moment moment) const;
 
-    /// Takes in the answer to wanted(). An answer of another generation is left out.
+    /// Adds the answer to wanted(). Ignores an answer about another generation.
     void add(const evod::v1::Breeding& page);
 
     bool known() const { return known_.has_value(); }
-    /// The lists hold what has come, from the first row on. Only where known().
+    /// Each list holds the rows received so far, from row 0. Requires known().
     const evod::v1::Breeding& breeding() const { return *known_; }
-    /// Null where the row has not come.
+    /// Null if the row has not been received.
     const evod::v1::Contender* contender(std::uint32_t organism) const;
     const evod::v1::Pick* pick(std::uint32_t index) const;
     const evod::v1::Descendant* descendant(std::uint32_t id) const;
 
-    /// The picks and descendants there are to step through.
+    /// Picks and descendants to step through, at most rows_kept_max.
     std::uint32_t pick_count() const;
     std::uint32_t descendant_count() const;
 
-    /// The choice of a parameter of the genetic algorithm, "roulette"; empty where it is not told.
+    /// The choice of a parameter of the genetic algorithm, "roulette"; empty if the server did not send it.
     std::string choice(const char* parameter) const;
-    /// A number of it, whether real or a count, or a flag as 0 or 1.
+    /// The value of a real or count parameter, or a flag as 0 or 1.
     std::optional<double> number(const char* parameter) const;
 
   private:
     const evod::v1::ParameterValue* parameter(const char* name) const;
 
     Key key_;
-    std::optional<evod::v1::Breeding> known_; // of all pages together
-    bool fruitless_ = false;                  // the last page brought nothing
+    std::optional<evod::v1::Breeding> known_; // all pages merged
+    bool fruitless_ = false;                  // the last page brought no new row
 };
 
 } // namespace evod::viewer

@@ -20,8 +20,8 @@ std::string upper_first(std::string text) {
     return text;
 }
 
-/// "organism 17 (rank 3, fitness 182.4)"; the fittest has rank 1 for a person.
-std::string who(const BreedingRecord& record, std::uint32_t organism) {
+/// "organism 17 (rank 3, fitness 182.4)". Users see ranks from 1, the fittest.
+std::string organism_text(const BreedingRecord& record, std::uint32_t organism) {
     const evod::v1::Contender* contender = record.contender(organism);
     if (contender == nullptr) {
         return print("organism %u", organism);
@@ -29,10 +29,10 @@ std::string who(const BreedingRecord& record, std::uint32_t organism) {
     std::string text =
         print("organism %u (rank %u, fitness %.4g", organism, contender->rank() + 1, contender->fitness());
     if (contender->has_own_fitness()) {
-        text += print(" by shuffling, its own %.4g", contender->own_fitness());
+        text += print(" assigned by shuffling, its own %.4g", contender->own_fitness());
     }
     if (contender->has_migrant()) {
-        text += print(", came from island %u", contender->migrant().island());
+        text += print(", migrated from island %u", contender->migrant().island());
     }
     return text + ")";
 }
@@ -40,21 +40,20 @@ std::string who(const BreedingRecord& record, std::uint32_t organism) {
 std::string scaling_caption(const BreedingRecord& record) {
     const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
     if (method == "tournament") {
-        return print(
-            "Fitness by rank. Each tournament draws %g contestants, whoever they are; the fittest of them win.",
-            record.number("tournament_size").value_or(0));
+        return print("Fitness by rank. Each tournament draws %g contestants at random; the fittest of them win.",
+                     record.number("tournament_size").value_or(0));
     }
     if (method == "random") {
-        return "Fitness by rank. Uniform random selection does not look at it.";
+        return "Fitness by rank. Uniform random selection ignores it.";
     }
     if (method == "truncation") {
-        return "Fitness by rank. Truncation takes the best, in order, over and over.";
+        return "Fitness by rank. Truncation picks the best in order, repeatedly.";
     }
     if (scaling == "none") {
-        return "Fitness by rank. Nothing is done to it: a slot of the wheel is as wide as the fitness.";
+        return "Fitness by rank, not scaled: the slots of the wheel are proportional to the fitness.";
     }
-    return "Fitness by rank, and the weight that " + shown_choice(scaling) +
-           " makes of it: a slot of the wheel is as wide as the weight.";
+    return "Fitness by rank, and its weight after " + shown_choice(scaling) +
+           ": the slots of the wheel are proportional to the weight.";
 }
 
 std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
@@ -62,9 +61,9 @@ std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
         "Pick " + with_separators(index + 1) + " of " + with_separators(record.breeding().pick_count()) + ". ";
     const evod::v1::Pick* pick = record.pick(index);
     if (pick == nullptr) {
-        return text + "Asked for …";
+        return text + "Loading …";
     }
-    const std::string winner = who(record, pick->organism());
+    const std::string winner = organism_text(record, pick->organism());
     if (pick->has_turns()) {
         text += print("The pointer stopped at %.4f turns, in the slot of ", pick->turns()) + winner;
         const evod::v1::Contender* contender = record.contender(pick->organism());
@@ -74,8 +73,8 @@ std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
     }
     if (pick->has_tournament()) {
         text += "Tournament " + with_separators(std::uint64_t{pick->tournament()} + 1);
-        if (pick->contestants().empty()) { // too many, or its outcome was drawn directly
-            return text + " was too large to be shown. " + upper_first(winner) + " won.";
+        if (pick->contestants().empty()) { // too many, or the server drew the outcome directly
+            return text + " is too large to show. " + upper_first(winner) + " won.";
         }
         return text + " of " +
                counted(static_cast<std::uint64_t>(pick->contestants_size()), "contestant", "contestants") + ": " +
@@ -88,26 +87,26 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
     std::string text = "Organism " + with_separators(id) + " of the next generation: ";
     const evod::v1::Descendant* descendant = record.descendant(id);
     if (descendant == nullptr) {
-        return text + "asked for …";
+        return text + "loading …";
     }
     switch (descendant->kind()) {
     case evod::v1::DESCENDANT_KIND_ELITE:
-        text += "of the elite, " + who(record, descendant->first_parent()) + ", kept unchanged.";
+        text += "of the elite, " + organism_text(record, descendant->first_parent()) + ", kept unchanged.";
         break;
     case evod::v1::DESCENDANT_KIND_SURVIVOR:
-        text += "a survivor, " + who(record, descendant->first_parent()) +
+        text += "a survivor, " + organism_text(record, descendant->first_parent()) +
                 (descendant->mutations().empty() && !descendant->has_order_mutation() ? "." : ", mutated.");
         break;
     default: {
         text += "a child of organisms " + std::to_string(descendant->first_parent()) + " and " +
                 std::to_string(descendant->second_parent()) +
-                (descendant->first_parent() == descendant->second_parent() ? ", the same twice" : "") +
+                (descendant->first_parent() == descendant->second_parent() ? ", the same organism twice" : "") +
                 (descendant->crossed() ? "" : ", not crossed");
         const auto mutated = std::ranges::count_if(descendant->mutations(), [](const evod::v1::Mutation& mutation) {
             return mutation.kind() != evod::v1::MUTATION_KIND_CLAMP;
         });
         if (descendant->has_order_mutation()) {
-            text += ", " + shown_choice(descendant->order_mutation().method()) + " moved genes";
+            text += ", " + shown_choice(descendant->order_mutation().method()) + " reordered genes";
         }
         text += mutated == 0 ? ", no mutation."
                              : ", " + counted(static_cast<std::uint64_t>(mutated), "mutation.", "mutations.");
@@ -144,7 +143,7 @@ std::string breeding_summary(const BreedingRecord& record) {
     }
     text += " and " + counted(breeding.descendant_count() - breeding.survivor_count(), "child", "children");
     if (record.number("shuffle_fitness") == 1.0) {
-        text += " · fitness shuffled among the organisms";
+        text += " · fitness shuffled among organisms";
     }
     return text;
 }
@@ -163,7 +162,7 @@ std::string caption(const BreedingRecord& record, Moment moment) {
     case BreedingStage::Done:
         break;
     }
-    return "The next generation. Bars: how often each rank was picked; lines: how often its law expects it.";
+    return "The next generation. Bars: how often each rank was picked; lines: the expected number of picks.";
 }
 
 } // namespace evod::viewer

@@ -1,5 +1,6 @@
-// Captions: what is seen at a moment of a breeding, in one or two sentences.
+// Captions: one or two sentences that explain what the glass box shows at a moment.
 //
+// Owner        BreedingPanel.
 // Threads      none.
 #pragma once
 
@@ -9,13 +10,13 @@
 
 namespace evod::viewer {
 
-/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty before it is known.
+/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty before the first page.
 std::string breeding_summary(const BreedingRecord& record);
 
 /// "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …"
 std::string caption(const BreedingRecord& record, Moment moment);
 
-/// A parameter's choice as it is written: "stochastic universal".
+/// A parameter's choice as text: "stochastic universal".
 std::string shown_choice(std::string choice);
 
 } // namespace evod::viewer

@@ -18,6 +18,10 @@ std::optional<Comparison> compare(const BreedingRecord& record) {
     comparison.organisms.resize(count);
     comparison.fitness.resize(count);
     comparison.copies.resize(count);
+    Expectation& expected = comparison.expected;
+    expected.copies.resize(count);
+    expected.standard_error.resize(count);
+    expected.unpicked_chance.resize(count);
     for (std::size_t organism = 0; organism < count; ++organism) {
         const evod::v1::Contender& contender = breeding.contenders(static_cast<int>(organism));
         if (contender.rank() >= count) {
@@ -26,14 +30,14 @@ std::optional<Comparison> compare(const BreedingRecord& record) {
         comparison.organisms[contender.rank()] = static_cast<std::uint32_t>(organism);
         comparison.fitness[contender.rank()] = contender.fitness();
         comparison.copies[contender.rank()] = contender.copies();
+        expected.copies[contender.rank()] = contender.expected_copies();
+        expected.standard_error[contender.rank()] = contender.expected_copies_error();
+        expected.unpicked_chance[contender.rank()] = contender.unpicked_chance();
     }
-    const Selection selection =
-        selection_of(breeding.parameters(), breeding.contender_count(), breeding.descendant_count());
-    comparison.expected = expect(selection, comparison.fitness);
-    comparison.findings = findings(selection, comparison.fitness, comparison.copies);
+    comparison.predictions =
+        predictions(selection_of(breeding), comparison.expected, comparison.fitness, comparison.copies);
     for (std::size_t rank = 0; rank < count; ++rank) {
-        const double off = deviation(comparison.copies[rank], comparison.expected.copies[rank],
-                                     comparison.expected.standard_error[rank]);
+        const double off = deviation(comparison.copies[rank], expected.copies[rank], expected.standard_error[rank]);
         comparison.deviations.push_back(off);
         comparison.beyond_two += std::abs(off) > 2;
     }

@@ -1,5 +1,6 @@
-// Comparison: the copies that a selection made beside those that its law expects, rank by rank.
+// Comparison: the copies a selection made beside the copies its law expects, rank by rank.
 //
+// Owner        BreedingPanel.
 // Threads      none.
 #pragma once
 
@@ -16,42 +17,42 @@ namespace evod::viewer {
 
 /// All by rank, shape (contenders).
 struct Comparison {
-    std::vector<std::uint32_t> organisms; // who has the rank
+    std::vector<std::uint32_t> organisms; // id of the organism with this rank
     std::vector<double> fitness;
-    std::vector<std::uint32_t> copies; // that happened, of all the picks
+    std::vector<std::uint32_t> copies; // observed, in all picks
     Expectation expected;
     std::vector<double> deviations; // of the copies, in standard errors
-    std::vector<Finding> findings;
-    std::size_t beyond_two = 0; // ranks whose copies are more than two standard errors off
+    std::vector<Prediction> predictions;
+    std::size_t beyond_two = 0; // ranks whose copies deviate by more than two standard errors
 };
 
-/// returns  nullopt until every contender is known.
+/// returns  nullopt until the server has sent every contender.
 std::optional<Comparison> compare(const BreedingRecord& record);
 
-/// How often each rank has been picked with picks 0 to `count` - 1, as far as they are known.
+/// How often picks 0 to `count` - 1 picked each rank. Picks and contenders not yet received do not count.
 std::vector<std::uint32_t> copies_after(const BreedingRecord& record, std::uint32_t count);
 
-/// Some ranks side by side, drawn as one bar.
+/// Neighbouring ranks drawn as one bar.
 struct RankColumn {
     std::size_t first = 0, last = 0; // ranks
-    double copies = 0, expected = 0; // of all of them
-    double deviation = 0; // of all the picks, in standard errors; of several ranks as if they were independent
+    double copies = 0, expected = 0; // sums over the ranks
+    double deviation = 0;            // after all picks, in standard errors; several ranks are treated as independent
 };
 
-/// The ranks as at most `columns` columns, each of as many ranks as any other but for one.
+/// Distributes the ranks over at most `columns` columns whose sizes differ by at most one.
 ///
 /// copies          shape (ranks)
-/// expected_share  how much of what is expected of all the picks is expected of `copies`, 0 to 1
+/// expected_share  the fraction of the picks that `copies` counts, 0 to 1: scales the expected copies
 std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<const std::uint32_t> copies,
                                      double expected_share, std::size_t columns);
 
-/// Some picks side by side, drawn as one cell.
+/// Neighbouring picks drawn as one cell.
 struct PickColumn {
     std::uint32_t first = 0, last = 0; // picks
-    std::optional<double> rank{};      // mean of those made so far; nullopt: none of them is, or is known
+    std::optional<double> rank{};      // mean rank of the picks made so far; nullopt: none made, or none received
 };
 
-/// All picks in order as at most `columns` columns, those after pick `index` not made yet.
+/// Distributes all picks in order over at most `columns` columns; picks after `index` count as not yet made.
 std::vector<PickColumn> pick_columns(const BreedingRecord& record, std::uint32_t index, std::size_t columns);
 
 } // namespace evod::viewer

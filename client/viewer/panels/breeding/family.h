@@ -1,5 +1,6 @@
-// Family: how the genes of a descendant came about, step by step, from what its parents had.
+// Family: how a descendant's genes were made from its parents' genes: crossover, order mutation, mutations, bounds.
 //
+// Owner        none: a value.
 // Threads      none.
 #pragma once
 
@@ -17,7 +18,7 @@ struct GeneOrigin {
     std::uint32_t gene = 0;   // of the parent
 };
 
-/// What a value-making mutation, or a bound, made of a gene.
+/// A change of one gene by a mutation or by its bound.
 struct GeneChange {
     evod::v1::MutationKind kind = evod::v1::MUTATION_KIND_UNSPECIFIED;
     std::uint32_t gene = 0;
@@ -25,7 +26,7 @@ struct GeneChange {
     double delta() const { return double{after} - double{before}; }
 };
 
-/// A gene's value that went elsewhere in the chromosome.
+/// A gene value that the order mutation moved to another place of the chromosome.
 struct GeneMove {
     std::uint32_t from = 0, to = 0;
     friend bool operator==(const GeneMove&, const GeneMove&) = default;
@@ -34,18 +35,18 @@ struct GeneMove {
 struct Family {
     std::vector<std::uint32_t> cuts;  // g: between gene g - 1 and gene g the child changes from one parent to the other
     std::vector<GeneOrigin> crossed;  // after the crossover
-    std::vector<GeneMove> moves;      // of the permutation mutation; genes that stayed are not among them
-    std::vector<GeneOrigin> arranged; // after it
+    std::vector<GeneMove> moves;      // of the order mutation, without the genes that stayed
+    std::vector<GeneOrigin> arranged; // after the order mutation
     std::vector<GeneChange> changes;  // in the order in which they happened
-    std::vector<float> genes;         // after them, worked out here
+    std::vector<float> genes;         // after the changes, computed here
 };
 
-/// A descendant of malformed lists has a family without genes.
+/// Returns a family without genes if the lists of the descendant are malformed.
 Family family_of(const evod::v1::Descendant& descendant);
 
 /// "creep", "reset", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);
-/// "+7.31", "−0.4": with the sign that it has, and as many digits as can be told apart.
+/// "+7.31", "−0.4": always with a sign, four significant digits.
 std::string shown_delta(double delta);
 
 } // namespace evod::viewer

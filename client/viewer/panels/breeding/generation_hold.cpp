@@ -9,25 +9,25 @@ void GenerationHold::hold(Run run) {
     limited_ = false;
 }
 
-void GenerationHold::let_go() {
+void GenerationHold::release() {
     run_.reset();
     limited_ = false;
 }
 
-GenerationHold::Ask GenerationHold::update(const Run& shown, evod::v1::RunState state, bool stepping) {
+GenerationHold::Action GenerationHold::update(const Run& shown, evod::v1::RunState state, bool stepping) {
     if (run_ != shown) {
-        let_go();
-        return Ask::Nothing;
+        release();
+        return Action::None;
     }
     if (state == evod::v1::RUN_STATE_RUNNING && !stepping && !limited_) {
         limited_ = true;
-        return Ask::RunOneGeneration;
+        return Action::RunOneGeneration;
     }
     if (state == evod::v1::RUN_STATE_WAITING && limited_) {
         limited_ = false;
-        return Ask::RunOneTick;
+        return Action::RunOneTick;
     }
-    return Ask::Nothing;
+    return Action::None;
 }
 
 } // namespace evod::viewer

@@ -1,8 +1,9 @@
-// GenerationHold: has a world stop after each generation, so that its breeding can be looked at.
+// GenerationHold: stops a world after each generation, so that the user can inspect how the next one was bred.
 //
-// A generation that is over waits with its dead and its living; the next is bred with its first tick. So the world is
-// told to run one generation, and then that tick.
+// A world that has finished a generation waits before it breeds; the first tick of the next generation breeds it. The
+// hold therefore sends two commands: run one generation, then step one tick.
 //
+// Owner        BreedingPanel.
 // Threads      none.
 #pragma once
 
@@ -15,27 +16,27 @@ namespace evod::viewer {
 
 class GenerationHold {
   public:
-    enum class Ask { Nothing, RunOneGeneration, RunOneTick };
+    enum class Action { None, RunOneGeneration, RunOneTick };
 
-    /// Who is held. A look at the past has the id of the run it shows, and another world's name.
+    /// The held run. A replay has the id of the run that it shows and a world name of its own.
     struct Run {
         std::string world, id;
         friend bool operator==(const Run&, const Run&) = default;
     };
 
     void hold(Run run);
-    void let_go();
+    void release();
     bool on() const { return run_.has_value(); }
 
-    /// What is to be asked of the world now. A run that is not the one that is held ends the hold: nobody meant it.
+    /// Returns the command to send to the world now. The hold ends when another run is shown.
     ///
-    /// state     as it is known
-    /// stepping  it runs to a tick that somebody named, and stops there anyway
-    Ask update(const Run& shown, evod::v1::RunState state, bool stepping);
+    /// state     the last that the server reported
+    /// stepping  the world runs to a given tick and stops there by itself
+    Action update(const Run& shown, evod::v1::RunState state, bool stepping);
 
   private:
     std::optional<Run> run_;
-    bool limited_ = false; // the world was told to run one generation, and has not come to its end
+    bool limited_ = false; // the world runs one generation and has not finished it
 };
 
 } // namespace evod::viewer

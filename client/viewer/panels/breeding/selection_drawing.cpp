@@ -14,13 +14,13 @@ namespace evod::viewer {
 
 namespace {
 
-std::string told(std::uint32_t organism, const evod::v1::Contender& contender) {
+std::string tooltip_of(std::uint32_t organism, const evod::v1::Contender& contender) {
     std::string text = print("organism %u\nrank %u, fitness %.5g", organism, contender.rank() + 1, contender.fitness());
     if (contender.slot_end() > contender.slot_begin()) {
         text += print("\nweight %.5g: %.3g %% of the wheel", contender.weight(),
                       100 * (contender.slot_end() - contender.slot_begin()));
     }
-    text += print("\nexpected copies %.3g, happened %u", contender.expected_copies(), contender.copies());
+    text += print("\nexpected copies %.3g, observed %u", contender.expected_copies(), contender.copies());
     if (contender.has_migrant()) {
         text += print("\ncame from island %u, organism %u there", contender.migrant().island(),
                       contender.migrant().organism());
@@ -28,7 +28,7 @@ std::string told(std::uint32_t organism, const evod::v1::Contender& contender) {
     return text;
 }
 
-/// Bars of one number for each rank, neighbours as their mean where there are more ranks than pixels.
+/// One bar per rank; where there are more ranks than pixels, a bar shows the mean of neighbouring ranks.
 template <class ValueOf, class OrganismOf>
 void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, ValueOf value_of,
                OrganismOf organism_of, const BreedingRecord& record, std::span<const std::uint32_t> copies,
@@ -71,7 +71,7 @@ void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, 
         }
         if (end - first == 1 && pointed_at({left, top - 12}, {left + width, bottom})) {
             if (const auto* contender = record.contender(organism_of(first))) {
-                ImGui::SetTooltip("%s", told(organism_of(first), *contender).c_str());
+                ImGui::SetTooltip("%s", tooltip_of(organism_of(first), *contender).c_str());
             }
         }
     }
@@ -125,7 +125,7 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
     const ImVec2 centre{sheet.corner.x + sheet.size.x / 2, sheet.corner.y + sheet.size.y / 2};
     const float inner = outer * 0.6f, middle = (outer + inner) / 2, thickness = outer - inner;
     const double circumference = 2 * std::numbers::pi * outer;
-    stroke_arc(sheet, centre, middle, 0, 1, palette::strip_edge, thickness); // whoever is not known
+    stroke_arc(sheet, centre, middle, 0, 1, palette::strip_edge, thickness); // slots not yet received
     const evod::v1::Pick* pick = record.pick(index);
     for (const Arc& arc : wheel_arcs(breeding.contenders(), circumference)) {
         stroke_arc(sheet, centre, middle, arc.begin, arc.end, rank_colour(arc.rank, breeding.contender_count()),
@@ -135,7 +135,7 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
                                ink(palette::background));
             if (arc.first == arc.last && (arc.end - arc.begin) * circumference > 26) {
                 const Colour paper = rank_colour(arc.rank, breeding.contender_count());
-                sheet.write_centred(on_circle(centre, middle, (arc.begin + arc.end) / 2), text_on(paper),
+                sheet.write_centred(on_circle(centre, middle, (arc.begin + arc.end) / 2), palette::text_on(paper),
                                     std::to_string(arc.first));
             }
         }
@@ -150,7 +150,7 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
                                ink(palette::glass_current), 2);
         }
     }
-    // One spin sets all pointers of universal sampling; roulette spins for each anew.
+    // In universal sampling one spin sets all pointers; in roulette each pick has its own spin.
     const bool all_at_once = record.choice("selection") == "stochastic_universal";
     const auto ticks = all_at_once ? static_cast<std::uint32_t>(breeding.picks_size()) : index;
     for (std::uint32_t i = 0; i < ticks && record.pick(i) != nullptr; ++i) {
@@ -180,7 +180,7 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
         if (const auto* slot = slot_at(breeding.contenders(), turns < 0 ? turns + 1 : turns)) {
             for (int i = 0; i < breeding.contenders_size(); ++i) {
                 if (&breeding.contenders(i) == slot) {
-                    ImGui::SetTooltip("%s", told(static_cast<std::uint32_t>(i), *slot).c_str());
+                    ImGui::SetTooltip("%s", tooltip_of(static_cast<std::uint32_t>(i), *slot).c_str());
                 }
             }
         }
@@ -226,7 +226,7 @@ void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint
         sheet.write({end.x + 6, begin.y}, contestant.won ? palette::text : palette::text_quiet,
                     print("%.4g%s", contender->fitness(), contestant.won ? " won" : ""));
         if (pointed_at(corner, {corner.x + width, corner.y + height})) {
-            ImGui::SetTooltip("%s", told(contestant.organism, *contender).c_str());
+            ImGui::SetTooltip("%s", tooltip_of(contestant.organism, *contender).c_str());
         }
     }
 }
@@ -271,7 +271,7 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
     sheet.write(sheet.corner, palette::text, "Copies by rank");
     sheet.write_to_the_left({sheet.end().x, sheet.corner.y}, palette::text_quiet, print("up to %.4g", most));
 
-    // Deviations are of all the picks: the axis goes to four standard errors, and further ones lie on its edge.
+    // Deviations are those after all picks. The axis ends at four standard errors; larger ones are drawn at its end.
     constexpr double deviation_max = 4;
     const float lower_top = bottom + 2 * line, lower_bottom = sheet.end().y, zero = (lower_top + lower_bottom) / 2;
     const auto deviation_y = [&](double deviation) {
@@ -297,7 +297,7 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
                                           ? print("rank %zu: organism %u, fitness %.5g", column.first + 1,
                                                   comparison.organisms[column.first], comparison.fitness[column.first])
                                           : print("ranks %zu to %zu", column.first + 1, column.last + 1);
-            ImGui::SetTooltip("%s\ncopies %.0f, expected %.3g\nin the end %+.2f standard errors", ranks.c_str(),
+            ImGui::SetTooltip("%s\ncopies %.0f, expected %.3g\nafter all picks %+.2f standard errors", ranks.c_str(),
                               column.copies, column.expected, column.deviation);
         }
     }

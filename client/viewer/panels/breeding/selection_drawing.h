@@ -1,6 +1,7 @@
-// Pictures of a selection, for the glass box: each fills the sheet that it is given.
+// Drawings of a selection for the glass box. Each fills its sheet.
 //
-// Threads      none; used by the thread that draws.
+// Owner        BreedingPanel.
+// Threads      none; called on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/breeding/breeding_record.h"
@@ -11,21 +12,23 @@
 
 namespace evod::viewer {
 
-/// Fitness by rank; where a wheel is spun, the weights below. A dot is above those that have `copies`, a pointer above
-/// `current`.
+/// Fitness by rank, and for a scaled wheel the weights below it. A dot marks ranks that have `copies`, a pointer marks
+/// the organism of `current`.
 void draw_ranking(const Sheet& sheet, const BreedingRecord& record, const Comparison& comparison,
                   std::span<const std::uint32_t> copies, const evod::v1::Pick* current);
 
-/// The wheel, with the pointer of pick `index`, and small ones where those before fell; of universal sampling all.
+/// The wheel with the pointer of pick `index` and small marks for the earlier picks; for universal sampling, for all.
 void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// The contestants of a tournament, its winners marked.
+/// The contestants of a tournament with its winners marked.
 void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// The picks so far in order, coloured by rank.
+/// The picks up to `index` in order, coloured by rank.
 void draw_picks(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// How often each rank was picked, and its expectation; below, the deviations in standard errors.
+/// Copies of each rank with the expected copies; below them the deviations in standard errors.
+///
+/// expected_share  the fraction of the picks that `copies` counts, 0 to 1.
 void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<const std::uint32_t> copies,
                  double expected_share);
 

@@ -1,6 +1,7 @@
-// Sheet: a rectangle of the window that one of the glass box's pictures fills.
+// Sheet: a rectangle of the window that one drawing of the glass box fills.
 //
-// Threads      none; used by the thread that draws.
+// Owner        the function that draws; lives for one frame.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/ink.h"
@@ -21,10 +22,7 @@ struct Sheet {
     void write_to_the_left(ImVec2 right, Colour colour, std::string_view text) const;
 };
 
-/// Black or white, whichever can be read on it; what can be seen through is on light paper.
-Colour text_on(Colour paper);
-
-/// Whether the mouse is on a part of the window that is built.
+/// Whether the mouse is inside this rectangle of the current window.
 bool pointed_at(ImVec2 corner, ImVec2 end);
 
 } // namespace evod::viewer

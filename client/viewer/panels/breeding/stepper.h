@@ -1,8 +1,8 @@
-// Stepper: which moment of a breeding is looked at, as if it were a tape: one step on or back, played, or at its end.
+// Stepper: which moment of a breeding the glass box shows: steps forward and back, plays, jumps.
 //
-// The moments: the fitness and what scaling made of it, then pick after pick, then descendant after descendant, then
-// the next generation as a whole.
+// The moments are: the fitness and its scaling, each pick, each descendant, the next generation as a whole.
 //
+// Owner        BreedingPanel.
 // Threads      none.
 #pragma once
 
@@ -20,10 +20,10 @@ struct Moment {
 
 class Stepper {
   public:
-    /// Steps a second while it plays.
+    /// In steps per second.
     static constexpr double speed_min = 0.25, speed_max = 200;
 
-    /// Another breeding: from its beginning.
+    /// Starts another breeding at its first moment.
     void load(std::uint32_t picks, std::uint32_t descendants);
     Moment moment() const;
 
@@ -32,22 +32,22 @@ class Stepper {
     bool at_begin() const { return position_ == 0; }
     bool at_end() const { return position_ == last_position(); }
 
-    // By hand; each of these stops the playing.
+    // Moves by the user; each of them stops playing.
     void step();
     void back();
     void next_stage();     // to its first moment
-    void previous_stage(); // to the first moment of this one; from there, of the one before
+    void previous_stage(); // to the first moment of this stage; from there, to that of the stage before
     void to_begin() { go_to(0); }
     void to_end() { go_to(last_position()); }
     void go_to(std::uint32_t position);
 
-    /// Plays on, or stops. Played at its end, it begins again.
+    /// Plays or stops. Playing from the last moment starts at the first.
     void play_or_stop();
     void play();
     bool playing() const { return playing_; }
     void set_speed(double steps_per_s);
     double speed() const { return steps_per_s_; }
-    /// Time passes; at the end it stops.
+    /// Moves on by the time passed while playing; stops at the last moment.
     void advance(double seconds);
 
   private:
@@ -58,7 +58,7 @@ class Stepper {
     std::uint32_t position_ = 0;
     bool playing_ = false;
     double steps_per_s_ = 2;
-    double due_ = 0; // steps, a fraction of one
+    double due_ = 0; // fraction of a step, 0 to 1
 };
 
 } // namespace evod::viewer

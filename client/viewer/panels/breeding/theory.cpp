@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 namespace evod::viewer {
 
 namespace {
 
 using Method = Selection::Method;
-using Scaling = Selection::Scaling;
+using Pressure = Selection::Pressure;
 
 double sum(std::span<const double> numbers) {
     return std::accumulate(numbers.begin(), numbers.end(), 0.0);
@@ -22,8 +25,8 @@ double density(double z) {
     return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
 }
 
-/// The z above which the share `above` of a normal distribution lies. Newton's method on its logarithm, which is
-/// concave and so cannot miss.
+/// The z that a normal variable exceeds with probability `above`. Newton's method on the logarithm, which is concave, so
+/// it converges.
 double normal_above(double above) {
     if (above > 0.5) {
         return -normal_above(1 - above);
@@ -40,7 +43,7 @@ double normal_above(double above) {
     return z;
 }
 
-/// The mean of a normal distribution over the slice of each rank, best first: the sum is 0.
+/// The mean of a normal variable within the quantiles of each rank, best first. The sum is 0.
 std::vector<double> normal_scores(std::size_t population) {
     std::vector<double> scores(population);
     const auto count = static_cast<double>(population);
@@ -56,7 +59,7 @@ std::vector<double> normal_scores(std::size_t population) {
     return scores;
 }
 
-/// How far each fitness is above the mean, in deviations; all 0 where all are alike.
+/// (fitness − mean) / standard deviation; all 0 where all are equal.
 std::vector<double> standard_scores(std::span<const double> fitness) {
     const auto count = static_cast<double>(fitness.size());
     const double mean = sum(fitness) / count;
@@ -77,27 +80,22 @@ double mean_of_copies(std::span<const double> copies, std::span<const double> sc
     return all > 0 ? std::inner_product(copies.begin(), copies.end(), scores.begin(), 0.0) / all : 0;
 }
 
-// ---- how far apart two breedings of the same population are ------------------------------------------------------
+// ---- standard errors: how far two breedings of the same population differ ----------------------------------------
 
-/// Whether each pick is made without regard to the others.
-bool picks_are_independent(const Selection& selection) {
-    return selection.method == Method::Roulette ||
-           (selection.method == Method::Tournament && std::min(selection.tournament_winners, selection.picks) == 1);
-}
-
-/// Of the mean score of the picked; nullopt where picks hang together in a way that has no simple law.
+/// Of the mean score of the picked; nullopt where the picks depend on each other in a way that has no simple law.
 std::optional<double> error_of_intensity(const Selection& selection, const Expectation& expectation,
                                          std::span<const double> scores) {
-    const double picks = selection.picks, population = selection.population;
+    const auto population = static_cast<double>(scores.size());
+    const double picks = selection.picks;
     if (selection.method == Method::Truncation) {
         return 0;
     }
-    if (selection.method == Method::Random) { // all the same for everyone, but in the last round
-        const double rest = selection.picks % selection.population;
+    if (selection.method == Method::Random) { // full rounds pick every organism once; only the last round varies
+        const double rest = std::fmod(picks, population);
         const double square = std::inner_product(scores.begin(), scores.end(), scores.begin(), 0.0) / population;
         return population > 1 ? std::sqrt(square * rest * (population - rest) / (population - 1)) / picks : 0;
     }
-    if (!picks_are_independent(selection)) {
+    if (!selection.independent_picks) {
         return std::nullopt;
     }
     const double mean = mean_of_copies(expectation.copies, scores);
@@ -108,38 +106,38 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     return std::sqrt(square / picks);
 }
 
-/// Of the share that is not selected. For independent picks the variance of the number of empty cells, as it is in
-/// large populations: Σ(q − q²) − (Σ λq)²/picks, where λ copies are expected and q is the chance of none.
-std::optional<double> error_of_missed(const Selection& selection, const Expectation& expectation) {
+/// Of the share that is not selected. For independent picks, from the variance of the number of empty cells in large
+/// populations: Σ(q − q²) − (Σ λq)²/picks, where λ copies are expected and q is the chance of none.
+std::optional<double> error_of_unpicked(const Selection& selection, const Expectation& expectation) {
     if (selection.method == Method::Truncation || selection.method == Method::Random) {
         return 0;
     }
-    if (!picks_are_independent(selection)) {
+    if (!selection.independent_picks) {
         return std::nullopt;
     }
     double variance = 0, common = 0;
     for (std::size_t rank = 0; rank < expectation.copies.size(); ++rank) {
-        const double missed = expectation.missed[rank];
-        variance += missed * (1 - missed);
-        common += expectation.copies[rank] * missed;
+        const double unpicked = expectation.unpicked_chance[rank];
+        variance += unpicked * (1 - unpicked);
+        common += expectation.copies[rank] * unpicked;
     }
     variance -= common * common / selection.picks;
-    return std::sqrt(std::max(variance, 0.0)) / selection.population;
+    return std::sqrt(std::max(variance, 0.0)) / static_cast<double>(expectation.copies.size());
 }
 
-/// Pearson's chi-square of all copies, with its mean and standard deviation, which are exact however small the numbers
-/// are. Source: Haldane 1937, "The exact value of the moments of the distribution of χ²", Biometrika 29.
-void take_agreement(Finding& finding, const Selection& selection, const Expectation& expectation,
-                    std::span<const std::uint32_t> copies) {
-    if (!picks_are_independent(selection)) {
+/// Pearson's chi-square of all copies, with its mean and standard deviation, which are exact for small numbers too.
+/// Source: Haldane 1937, "The exact value of the moments of the distribution of χ²", Biometrika 29.
+void set_agreement(Prediction& prediction, const Selection& selection, const Expectation& expectation,
+                   std::span<const std::uint32_t> copies) {
+    if (!selection.independent_picks) {
         return;
     }
     const double picks = selection.picks;
     double square = 0, inverse = 0, ranks = 0;
     for (std::size_t rank = 0; rank < expectation.copies.size(); ++rank) {
         const double expected = expectation.copies[rank];
-        // So rare that it would say more of the last digits of a chance than of the picks.
-        if (expected < 1e-6 * picks / selection.population) {
+        // For a rank as rare as this, rounding of its chance would outweigh the picks.
+        if (expected < 1e-6 * picks / static_cast<double>(expectation.copies.size())) {
             continue;
         }
         ++ranks;
@@ -148,19 +146,19 @@ void take_agreement(Finding& finding, const Selection& selection, const Expectat
             square += (copies[rank] - expected) * (copies[rank] - expected) / expected;
         }
     }
-    finding.expected = (ranks - 1) / ranks;
-    finding.standard_error =
+    prediction.expected = (ranks - 1) / ranks;
+    prediction.standard_error =
         std::sqrt(std::max(2 * (ranks - 1) + (inverse - ranks * ranks - 2 * ranks + 2) / picks, 0.0)) / ranks;
     if (!copies.empty()) {
-        finding.happened = square / ranks;
+        prediction.observed = square / ranks;
     }
 }
 
 // ---- takeover --------------------------------------------------------------------------------------------------
 
-constexpr std::uint32_t generations_max = 10'000'000; // what takes longer is as good as never
+constexpr std::uint32_t generations_max = 10'000'000; // longer counts as never
 
-/// On a wheel of the bare fitness an organism's share after t generations is f^t / Σ f^t.
+/// On a wheel of the unscaled fitness an organism's share after t generations is f^t / Σ f^t.
 std::optional<std::uint32_t> takeover_on_wheel(std::span<const double> fitness) {
     const double best = fitness.front(), goal = 1 - 1 / static_cast<double>(fitness.size());
     if (fitness.back() < 0 || best <= 0) {
@@ -178,7 +176,7 @@ std::optional<std::uint32_t> takeover_on_wheel(std::span<const double> fitness) 
     std::uint32_t after = 1;
     while (share(after) < goal) {
         if (after > generations_max) {
-            return std::nullopt; // nobody differs
+            return std::nullopt; // all fitness values are equal
         }
         after *= 2;
     }
@@ -209,28 +207,27 @@ double loss_of_diversity(std::span<const double> copies) {
     return lost;
 }
 
-std::optional<std::uint32_t> takeover_generations(const Selection& selection, std::span<const double> fitness) {
-    if (selection.population <= 1) {
+std::optional<std::uint32_t> takeover_generations(const Selection& selection, std::span<const double> copies,
+                                                  std::span<const double> fitness) {
+    if (copies.size() <= 1) {
         return 0;
     }
-    const bool by_fitness =
-        selection.turns_a_wheel() && (selection.scaling == Scaling::None || selection.scaling == Scaling::Windowing);
-    if (selection.overlapping || (by_fitness && (selection.scaling == Scaling::Windowing || fitness.empty()))) {
+    if (selection.overlapping || selection.pressure == Pressure::WindowedFitness) {
         return std::nullopt;
     }
-    if (by_fitness) {
+    if (selection.pressure == Pressure::Fitness) {
         return takeover_on_wheel(fitness);
     }
-    const std::vector<double> copies = expect(selection, fitness).copies;
     if (copies.front() - copies.back() <= 1e-12 * copies.front()) {
-        return std::nullopt; // nobody is preferred
+        return std::nullopt; // every organism has the same chance
     }
-    // What the best so many ranks get of the picks together, times the population.
-    std::vector<double> got{0};
+    // Expected picks of the best 0, 1, 2, … ranks together.
+    std::vector<double> picks_up_to{0};
     for (const double number : copies) {
-        got.push_back(got.back() + number);
+        picks_up_to.push_back(picks_up_to.back() + number);
     }
-    const double population = selection.population, each = got.back() / population;
+    const auto population = static_cast<double>(copies.size());
+    const double each = picks_up_to.back() / population;
     double places = 1;
     for (std::uint32_t generation = 0; generation < generations_max; ++generation) {
         if (places >= population - 1 - 1e-9) {
@@ -238,13 +235,44 @@ std::optional<std::uint32_t> takeover_generations(const Selection& selection, st
         }
         const auto rank = static_cast<std::size_t>(places);
         const double part = places - static_cast<double>(rank);
-        places = std::min((got[rank] * (1 - part) + got[rank + 1] * part) / each, population);
+        places = std::min((picks_up_to[rank] * (1 - part) + picks_up_to[rank + 1] * part) / each, population);
     }
     return std::nullopt;
 }
 
-double deviation(double happened, double expected, double standard_error) {
-    const double difference = happened - expected;
+Selection selection_of(const evod::v1::Breeding& breeding) {
+    const auto choice = [&](std::string_view name) -> std::string_view {
+        for (const evod::v1::ParameterAssignment& parameter : breeding.parameters()) {
+            if (parameter.name() == name) {
+                return parameter.value().choice();
+            }
+        }
+        return {};
+    };
+    const auto index_of = [](std::string_view wanted, std::initializer_list<std::string_view> names) {
+        const auto found = std::find(names.begin(), names.end(), wanted);
+        return found == names.end() ? 0 : found - names.begin();
+    };
+    Selection selection{.picks = breeding.pick_count()};
+    selection.method = static_cast<Method>(
+        index_of(choice("selection"), {"roulette", "stochastic_universal", "tournament", "random", "truncation"}));
+    const std::string_view scaling = choice("fitness_scaling");
+    const bool wheel = selection.method == Method::Roulette || selection.method == Method::StochasticUniversal;
+    selection.pressure = !wheel || scaling == "linear_ranking" || scaling == "exponential_ranking" ? Pressure::Rank
+                         : scaling == "windowing" ? Pressure::WindowedFitness
+                                                  : Pressure::Fitness;
+    std::uint32_t winners = 1;
+    for (const evod::v1::ParameterAssignment& parameter : breeding.parameters()) {
+        winners = parameter.name() == "tournament_winners" ? parameter.value().count() : winners;
+    }
+    selection.independent_picks = selection.method == Method::Roulette ||
+                                  (selection.method == Method::Tournament && std::min(winners, selection.picks) == 1);
+    selection.overlapping = choice("population_model") == "steady_state";
+    return selection;
+}
+
+double deviation(double observed, double expected, double standard_error) {
+    const double difference = observed - expected;
     if (std::abs(difference) <= 1e-9 * std::max(std::abs(expected), 1.0)) {
         return 0;
     }
@@ -252,96 +280,89 @@ double deviation(double happened, double expected, double standard_error) {
                               : std::copysign(std::numeric_limits<double>::infinity(), difference);
 }
 
-std::optional<double> Finding::deviation() const {
-    if (!expected || !happened || !standard_error) {
+std::optional<double> Prediction::deviation() const {
+    if (!expected || !observed || !standard_error) {
         return std::nullopt;
     }
-    return viewer::deviation(*happened, *expected, *standard_error);
+    return viewer::deviation(*observed, *expected, *standard_error);
 }
 
-std::vector<Finding> findings(const Selection& selection, std::span<const double> fitness,
-                              std::span<const std::uint32_t> copies) {
+std::vector<Prediction> predictions(const Selection& selection, const Expectation& expectation,
+                                    std::span<const double> fitness, std::span<const std::uint32_t> copies) {
     if (selection.picks == 0) {
-        return {}; // nobody breeds
+        return {};
     }
-    const Expectation expectation = expect(selection, fitness);
-    const double population = selection.population;
+    const auto population = static_cast<double>(expectation.copies.size());
     const std::vector<double> counted(copies.begin(), copies.end());
     const bool known = !counted.empty();
-    std::vector<Finding> all;
+    std::vector<Prediction> all;
 
-    Finding& fittest =
-        all.emplace_back(Finding{.name = "Copies of the fittest",
-                                 .sentence = "How often the organism with the best fitness is picked.",
-                                 .source = selection.method == Method::StochasticUniversal ? "Baker 1987"
-                                           : selection.method == Method::Tournament        ? "Goldberg & Deb 1991"
-                                                                                           : "Blickle & Thiele 1996",
-                                 .expected = expectation.copies.front(),
-                                 .standard_error = expectation.standard_error.front()});
-    fittest.happened = known ? std::optional{counted.front()} : std::nullopt;
+    Prediction& fittest =
+        all.emplace_back(Prediction{.name = "Copies of the fittest",
+                                    .sentence = "How often the organism with the best fitness is picked.",
+                                    .source = selection.method == Method::StochasticUniversal ? "Baker 1987"
+                                              : selection.method == Method::Tournament        ? "Goldberg & Deb 1991"
+                                                                                              : "Blickle & Thiele 1996",
+                                    .expected = expectation.copies.front(),
+                                    .standard_error = expectation.standard_error.front()});
+    fittest.observed = known ? std::optional{counted.front()} : std::nullopt;
 
     const auto add_intensity = [&](std::string_view name, std::string_view sentence, std::span<const double> scores) {
-        Finding& intensity =
-            all.emplace_back(Finding{.name = name,
-                                     .sentence = sentence,
-                                     .source = "Blickle & Thiele 1996",
-                                     .unit = "deviations",
-                                     .expected = mean_of_copies(expectation.copies, scores),
-                                     .standard_error = error_of_intensity(selection, expectation, scores)});
-        intensity.happened = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
+        Prediction& intensity =
+            all.emplace_back(Prediction{.name = name,
+                                        .sentence = sentence,
+                                        .source = "Blickle & Thiele 1996",
+                                        .unit = "deviations",
+                                        .expected = mean_of_copies(expectation.copies, scores),
+                                        .standard_error = error_of_intensity(selection, expectation, scores)});
+        intensity.observed = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
     };
-    if (!fitness.empty()) {
-        add_intensity(
-            "Selection intensity",
-            "By how many of its standard deviations the mean fitness of those picked is above the mean of all.",
-            standard_scores(fitness));
-    }
-    const bool by_rank = !selection.turns_a_wheel() || selection.scaling == Scaling::LinearRanking ||
-                         selection.scaling == Scaling::ExponentialRanking;
-    if (by_rank) {
+    add_intensity("Selection intensity",
+                  "By how many standard deviations the mean fitness of the picked exceeds the mean fitness of all.",
+                  standard_scores(fitness));
+    if (selection.pressure == Pressure::Rank) {
         add_intensity("Intensity, normal fitness",
-                      "The selection intensity if the fitness were spread as a normal distribution: it then depends on "
-                      "the ranks alone.",
-                      normal_scores(selection.population));
+                      "The selection intensity if the fitness had a normal distribution: it then depends on the ranks "
+                      "alone.",
+                      normal_scores(expectation.copies.size()));
     }
 
-    Finding& missed = all.emplace_back(Finding{.name = "Share not selected",
-                                               .sentence = "Organisms that are never picked, as a share of all; what "
-                                                           "only they had is lost.",
-                                               .source = "Motoki 2002",
-                                               .expected = sum(expectation.missed) / population,
-                                               .standard_error = error_of_missed(selection, expectation)});
+    Prediction& unpicked = all.emplace_back(
+        Prediction{.name = "Share not selected",
+                   .sentence = "The share of organisms that are never picked; genes that only they had are lost.",
+                   .source = "Motoki 2002",
+                   .expected = sum(expectation.unpicked_chance) / population,
+                   .standard_error = error_of_unpicked(selection, expectation)});
     if (known) {
-        missed.happened = static_cast<double>(std::count(copies.begin(), copies.end(), 0u)) / population;
+        unpicked.observed = static_cast<double>(std::count(copies.begin(), copies.end(), 0u)) / population;
     }
     all.push_back({.name = "Loss of diversity",
-                   .sentence = "The share of the population whose places go to fitter ones if all happens as expected: "
-                               "the least share that can be lost.",
+                   .sentence = "The share of the population that copies of fitter organisms replace if every number is "
+                               "the expected one: the least possible loss.",
                    .source = "Blickle & Thiele 1996",
                    .expected = loss_of_diversity(expectation.copies)});
 
-    const auto takeover = takeover_generations(selection, fitness);
+    const auto takeover = takeover_generations(selection, expectation.copies, fitness);
     all.push_back({.name = "Takeover time",
                    .sentence = selection.overlapping
-                                   ? "Generations until copies of the fittest have all places but one; not told where "
-                                     "most of a generation stays."
+                                   ? "Generations until copies of the fittest fill all places but one; not predicted "
+                                     "where most of a generation stays."
                                : takeover ? "Generations of selection alone, without mutation and crossover, until "
-                                            "copies of the fittest have all places but one."
-                               : selection.turns_a_wheel() && selection.scaling != Scaling::LinearRanking &&
-                                       selection.scaling != Scaling::ExponentialRanking
-                                   ? "Generations until copies of the fittest have all places but one; not told where "
-                                     "the least fitness is taken off anew each time, or nobody differs."
-                                   : "Generations until copies of the fittest have all places but one: never, as "
-                                     "nobody is preferred.",
+                                            "copies of the fittest fill all places but one."
+                               : selection.pressure != Pressure::Rank
+                                   ? "Generations until copies of the fittest fill all places but one; not predicted "
+                                     "where each generation subtracts its least fitness, or where all are equal."
+                                   : "Generations until copies of the fittest fill all places but one: never, as every "
+                                     "organism has the same chance.",
                    .source = "Goldberg & Deb 1991",
                    .unit = "generations",
                    .expected = takeover ? std::optional<double>{*takeover} : std::nullopt});
 
-    Finding agreement{.name = "Agreement of all copies",
-                      .sentence = "Squares of how far the copies of each are from what was expected, divided by that "
-                                  "(chi-square per organism): about 1 if the law holds.",
-                      .source = "Pearson 1900; Haldane 1937"};
-    take_agreement(agreement, selection, expectation, copies);
+    Prediction agreement{.name = "Agreement of all copies",
+                         .sentence = "Squared differences between observed and expected copies, each divided by the "
+                                     "expected copies (chi-square per organism): about 1 if the law holds.",
+                         .source = "Pearson 1900; Haldane 1937"};
+    set_agreement(agreement, selection, expectation, copies);
     if (agreement.expected) {
         all.push_back(agreement);
     }

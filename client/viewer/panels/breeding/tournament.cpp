@@ -13,15 +13,15 @@ std::vector<Contestant> contestants_of(const BreedingRecord& record, std::uint32
     for (const std::uint32_t organism : pick->contestants()) {
         contestants.push_back({.organism = organism});
     }
-    const auto is_of_it = [&](std::uint32_t i) {
+    const auto in_same_tournament = [&](std::uint32_t i) {
         const evod::v1::Pick* other = record.pick(i);
         return other != nullptr && other->has_tournament() && other->tournament() == pick->tournament();
     };
     std::uint32_t first = index;
-    while (first > 0 && is_of_it(first - 1)) {
+    while (first > 0 && in_same_tournament(first - 1)) {
         --first;
     }
-    for (std::uint32_t i = first; is_of_it(i); ++i) {
+    for (std::uint32_t i = first; in_same_tournament(i); ++i) {
         const auto winner = std::ranges::find_if(contestants, [&](const Contestant& contestant) {
             return !contestant.won && contestant.organism == record.pick(i)->organism();
         });

@@ -1,5 +1,6 @@
-// A tournament as it was held, around one pick.
+// The contestants and winners of the tournament that led to one pick.
 //
+// Owner        none: a value.
 // Threads      none.
 #pragma once
 
@@ -13,11 +14,11 @@ namespace evod::viewer {
 struct Contestant {
     std::uint32_t organism = 0;
     bool won = false;
-    bool picked_now = false; // with the pick that is looked at
+    bool picked_now = false; // by the pick that is shown
 };
 
-/// The contestants of the tournament that pick `index` won, as they were drawn. With several winners all of them are
-/// marked; who was drawn twice has won once for each of its picks. Empty where they are not known.
+/// The contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. An organism
+/// drawn several times has one marked entry for each of its picks. Empty if the server sent no contestants.
 std::vector<Contestant> contestants_of(const BreedingRecord& record, std::uint32_t index);
 
 } // namespace evod::viewer

@@ -1,5 +1,6 @@
-// What of a wheel can be seen: its slots as arcs, those narrower than a pixel together.
+// Wheel layout: the slots of a wheel as arcs to draw; neighbouring slots narrower than a pixel are merged.
 //
+// Owner        none: values.
 // Threads      none.
 #pragma once
 
@@ -17,20 +18,20 @@ using Contenders = google::protobuf::RepeatedPtrField<evod::v1::Contender>;
 
 struct Arc {
     double begin = 0, end = 0;         // in turns, 0 to 1
-    std::uint32_t first = 0, last = 0; // organisms: the slots from one to the other
-    double rank = 0;                   // of the organism; of several their mean, each as much as its slot is wide
+    std::uint32_t first = 0, last = 0; // ids of the first and the last organism
+    double rank = 0;                   // of the organism; of several, the mean weighted by slot width
 };
 
-/// The slots in order, those of no width left out. Neighbours narrower than a pixel become one arc, a pixel wide or
-/// more.
+/// The slots in order, without those of width 0. Neighbours narrower than a pixel are merged into arcs at least a pixel
+/// wide.
 ///
 /// circumference_px  > 0
 std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_px);
 
-/// The organism whose slot `turns` lies in, or nullptr: the slot is of one that is not known.
+/// The organism whose slot contains `turns`; nullptr if the server has not sent it yet.
 const evod::v1::Contender* slot_at(const Contenders& contenders, double turns);
 
-/// Light for the fittest to dark for the last: told apart by lightness, with every kind of colour vision.
+/// Light for the fittest to dark for the last. The lightness alone carries the rank, for every kind of colour vision.
 Colour rank_colour(double rank, std::uint32_t contender_count);
 
 } // namespace evod::viewer

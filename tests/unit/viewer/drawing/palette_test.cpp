@@ -1,9 +1,11 @@
-// Colours that stand for something can be told apart by everyone: seen as people with each kind of colour blindness see
-// them, and measured in CIE L*a*b*.
+// Colours with a meaning differ for every kind of colour vision: simulates each kind of colour blindness and measures the
+// differences in CIE L*a*b*.
 //
 // Source   Machado, Oliveira & Fernandes 2009, IEEE Trans. Vis. Comput. Graph. 15(6), doi:10.1109/TVCG.2009.113, the
 //          matrices of severity 1; CIE 1976 L*a*b* with the white of sRGB, D65.
 #include "client/viewer/drawing/palette.h"
+
+#include "client/viewer/drawing/colour_scale.h"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +71,7 @@ double difference(Colour a, Colour b, const Vision& vision) {
 // 2.3 is just noticeable side by side; discs of a few pixels, apart from each other, need several times that.
 constexpr double needed = 12;
 
-TEST(Palette, EveryTwoKindsCanBeToldApartByEveryone) {
+TEST(Palette, KindsDifferForEveryColourVision) {
     for (const Vision& vision : visions) {
         for (std::size_t i = 0; i < kinds.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
@@ -82,7 +84,7 @@ TEST(Palette, EveryTwoKindsCanBeToldApartByEveryone) {
     }
 }
 
-/// What is seen where a colour lets the ground through.
+/// A translucent colour over the background.
 Colour on_the_ground(Colour colour) {
     const auto mix = [&](std::uint8_t above, std::uint8_t below) {
         return static_cast<std::uint8_t>(std::lround(below + (above - below) * (colour.alpha / 255.0)));
@@ -90,7 +92,7 @@ Colour on_the_ground(Colour colour) {
     return {mix(colour.red, background.red), mix(colour.green, background.green), mix(colour.blue, background.blue)};
 }
 
-TEST(Palette, RingsAndCurvesCanBeToldApartByEveryone) {
+TEST(Palette, RingsAndCurvesDifferForEveryColourVision) {
     const Colour food_ring = on_the_ground(food_radius), poison_ring = on_the_ground(poison_radius);
     for (const Vision& vision : visions) {
         EXPECT_GT(difference(food_ring, poison_ring, vision), needed) << vision.name;
@@ -103,7 +105,7 @@ TEST(Palette, RingsAndCurvesCanBeToldApartByEveryone) {
     }
 }
 
-TEST(Palette, RampsGetLighterAllTheWayForEveryone) {
+TEST(Palette, RampsGetLighterForEveryColourVision) {
     for (const Vision& vision : visions) {
         for (const Ramp ramp : ramps) {
             double before = -1;
@@ -113,7 +115,7 @@ TEST(Palette, RampsGetLighterAllTheWayForEveryone) {
                 before = lightness;
             }
             EXPECT_GT(difference(at(ramp, 0), at(ramp, 1), vision), 70) << name_of(ramp) << " " << vision.name;
-            for (int i = 0; i < 8; ++i) { // an eighth of the range is seen
+            for (int i = 0; i < 8; ++i) { // an eighth of the range is visible
                 EXPECT_GT(difference(at(ramp, i / 8.0), at(ramp, (i + 1) / 8.0), vision), 5)
                     << name_of(ramp) << " as seen with " << vision.name << " at " << i;
             }
@@ -121,12 +123,28 @@ TEST(Palette, RampsGetLighterAllTheWayForEveryone) {
     }
 }
 
-TEST(Palette, RampsBeginAndEndAsTheirSourceSays) {
+TEST(Palette, TextHasTheGreaterContrast) {
+    EXPECT_EQ(text_on({255, 255, 255}), text);
+    EXPECT_EQ(text_on({0, 0, 0}), note_text);
+    EXPECT_EQ(text_on(first_parent), note_text);
+    EXPECT_EQ(text_on(second_parent), text);
+    EXPECT_EQ(text_on({0, 0, 0, 40}), text) << "a faint colour over the light background";
+}
+
+TEST(ColourScale, MapsItsRangeAndClampsBeyondIt) {
+    const ColourScale scale{Ramp::Viridis, 10, 20};
+    EXPECT_EQ(scale(10), at(Ramp::Viridis, 0));
+    EXPECT_EQ(scale(15), at(Ramp::Viridis, 0.5));
+    EXPECT_EQ(scale(99), at(Ramp::Viridis, 1));
+    EXPECT_EQ((ColourScale{Ramp::Viridis, 3, 3}(3)), at(Ramp::Viridis, 0.5)) << "an empty range";
+}
+
+TEST(Palette, RampsEndWithTheColoursOfTheirSource) {
     EXPECT_EQ(at(Ramp::Viridis, 0), (Colour{68, 1, 84}));
     EXPECT_EQ(at(Ramp::Viridis, 1), (Colour{253, 231, 37}));
     EXPECT_EQ(at(Ramp::Cividis, 0), (Colour{0, 34, 78}));
     EXPECT_EQ(at(Ramp::Cividis, 1), (Colour{254, 232, 56}));
-    // The 120th of 255 is one of those that are written down.
+    // 120 of 255 is one of the stored stops.
     EXPECT_EQ(at(Ramp::Viridis, 120.0 / 255), (Colour{35, 137, 142}));
     EXPECT_EQ(at(Ramp::Viridis, -3), at(Ramp::Viridis, 0));
     EXPECT_EQ(at(Ramp::Viridis, 7), at(Ramp::Viridis, 1));

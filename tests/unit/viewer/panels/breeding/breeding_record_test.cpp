@@ -26,7 +26,7 @@ evod::v1::Breeding page(const evod::v1::Breeding& whole, const evod::v1::GetBree
     return part;
 }
 
-TEST(BreedingRecord, AsksPageAfterPageAndHoldsTheWholeInOrder) {
+TEST(BreedingRecord, CollectsAllPagesInOrder) {
     const evod::v1::Breeding whole = made_up::wheel();
     BreedingRecord record = record_of_seven();
     unsigned asked = 0;
@@ -44,7 +44,7 @@ TEST(BreedingRecord, AsksPageAfterPageAndHoldsTheWholeInOrder) {
     EXPECT_EQ(record.breeding().SerializeAsString(), whole.SerializeAsString());
 }
 
-TEST(BreedingRecord, AListOfWhichNothingIsNeededIsAskedForBeyondItsEnd) {
+TEST(BreedingRecord, RequestsAListItDoesNotNeedFromItsEnd) {
     const evod::v1::Breeding whole = made_up::wheel();
     BreedingRecord record = record_of_seven();
     record.add(page(whole, *record.wanted({}), 3));
@@ -55,7 +55,7 @@ TEST(BreedingRecord, AListOfWhichNothingIsNeededIsAskedForBeyondItsEnd) {
     EXPECT_EQ(wanted->first_descendant(), 4u);
 }
 
-TEST(BreedingRecord, AServerThatGivesNothingIsNotAskedForever) {
+TEST(BreedingRecord, StopsAskingAServerThatSendsNothing) {
     const evod::v1::Breeding whole = made_up::wheel();
     BreedingRecord record = record_of_seven();
     record.add(page(whole, *record.wanted({}), 3));
@@ -63,7 +63,7 @@ TEST(BreedingRecord, AServerThatGivesNothingIsNotAskedForever) {
     EXPECT_FALSE(record.wanted({}));
 }
 
-TEST(BreedingRecord, AnotherGenerationOrIslandIsNotTakenForThisOne) {
+TEST(BreedingRecord, IgnoresAnotherGenerationOrIsland) {
     for (const bool island : {true, false}) {
         evod::v1::Breeding other = made_up::wheel();
         island ? other.set_island(0) : other.set_generation(8);
@@ -73,7 +73,7 @@ TEST(BreedingRecord, AnotherGenerationOrIslandIsNotTakenForThisOne) {
     }
 }
 
-TEST(BreedingRecord, OfAHugePopulationOnlySoManyRowsAreKept) {
+TEST(BreedingRecord, KeepsAtMostRowsKeptMax) {
     evod::v1::Breeding huge = made_up::wheel();
     huge.set_contender_count(4'000'000);
     huge.set_pick_count(4'000'000);
@@ -92,7 +92,7 @@ TEST(BreedingRecord, OfAHugePopulationOnlySoManyRowsAreKept) {
     EXPECT_EQ(record.contender(BreedingRecord::rows_kept_max), nullptr);
 }
 
-TEST(BreedingRecord, TellsParametersByName) {
+TEST(BreedingRecord, ReturnsParametersByName) {
     evod::v1::Breeding breeding = made_up::wheel();
     made_up::set_count(breeding, "tournament_size", 5);
     BreedingRecord record = record_of_seven();

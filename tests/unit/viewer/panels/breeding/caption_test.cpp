@@ -9,37 +9,38 @@ namespace {
 
 using made_up::record_of;
 
-TEST(Caption, SaysWhereThePointerFell) {
+TEST(Caption, SaysWhereThePointerStopped) {
     evod::v1::Breeding breeding = made_up::wheel();
     EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 1}),
               "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30), "
               "30.00 % of the wheel.");
     breeding.mutable_contenders(2)->mutable_migrant()->set_island(3);
-    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 1}),
-              "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30, came "
-              "from island 3), 30.00 % of the wheel.");
+    EXPECT_EQ(
+        caption(record_of(breeding), {BreedingStage::Picking, 1}),
+        "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30, migrated "
+        "from island 3), 30.00 % of the wheel.");
 }
 
-TEST(Caption, SaysThatTheFitnessWasShuffledAndWhatWasItsOwn) {
+TEST(Caption, ShowsTheOwnFitnessBesideAShuffledOne) {
     evod::v1::Breeding breeding = made_up::wheel();
     EXPECT_EQ(breeding_summary(record_of(breeding)).find("shuffled"), std::string::npos);
     auto& shuffled = *breeding.add_parameters();
     shuffled.set_name("shuffle_fitness");
     shuffled.mutable_value()->set_flag(true);
     breeding.mutable_contenders(2)->set_own_fitness(12.5);
-    EXPECT_TRUE(breeding_summary(record_of(breeding)).ends_with(" · fitness shuffled among the organisms"));
+    EXPECT_TRUE(breeding_summary(record_of(breeding)).ends_with(" · fitness shuffled among organisms"));
     EXPECT_NE(caption(record_of(breeding), {BreedingStage::Picking, 1})
-                  .find("organism 2 (rank 2, fitness 30 by shuffling, its own 12.5)"),
+                  .find("organism 2 (rank 2, fitness 30 assigned by shuffling, its own 12.5)"),
               std::string::npos);
 }
 
-TEST(Caption, SaysWhoWonATournament) {
+TEST(Caption, NamesTheWinnerOfATournament) {
     evod::v1::Breeding breeding = made_up::wheel();
     auto& pick = *breeding.mutable_picks(0);
     pick.clear_turns();
     pick.set_tournament(0);
     EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 0}),
-              "Pick 1 of 4. Tournament 1 was too large to be shown. Organism 0 (rank 1, fitness 40) won.");
+              "Pick 1 of 4. Tournament 1 is too large to show. Organism 0 (rank 1, fitness 40) won.");
     for (const std::uint32_t contestant : {3u, 0u, 3u}) {
         pick.add_contestants(contestant);
     }
@@ -47,7 +48,7 @@ TEST(Caption, SaysWhoWonATournament) {
               "Pick 1 of 4. Tournament 1 of 3 contestants: organism 0 (rank 1, fitness 40) won.");
 }
 
-TEST(Caption, SaysWhatBecameOfADescendant) {
+TEST(Caption, DescribesHowADescendantWasMade) {
     evod::v1::Breeding breeding = made_up::wheel();
     *breeding.mutable_descendants(3) = made_up::child(1);
     breeding.mutable_descendants(3)->set_id(3);
@@ -58,7 +59,7 @@ TEST(Caption, SaysWhatBecameOfADescendant) {
     breeding.mutable_descendants(3)->mutable_order_mutation()->set_method("swap");
     breeding.mutable_descendants(3)->set_crossed(false);
     EXPECT_EQ(of_three(),
-              "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap moved genes, "
+              "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap reordered genes, "
               "1 mutation.");
     breeding.mutable_descendants(3)->Clear();
     breeding.mutable_descendants(3)->set_kind(evod::v1::DESCENDANT_KIND_ELITE);
@@ -66,11 +67,11 @@ TEST(Caption, SaysWhatBecameOfADescendant) {
               "Organism 3 of the next generation: of the elite, organism 0 (rank 1, fitness 40), kept unchanged.");
 }
 
-TEST(Caption, OfWhatHasNotComeSaysSo) {
+TEST(Caption, SaysThatAMissingRowIsLoading) {
     EXPECT_EQ(caption(BreedingRecord{BreedingRecord::Key{}}, {}), "");
     evod::v1::Breeding breeding = made_up::wheel();
     breeding.set_pick_count(100);
-    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 50}), "Pick 51 of 100. Asked for …");
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 50}), "Pick 51 of 100. Loading …");
 }
 
 TEST(BreedingSummary, NamesTheOperatorsAndTheNumbers) {

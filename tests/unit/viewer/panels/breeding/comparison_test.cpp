@@ -10,7 +10,7 @@ namespace {
 using made_up::record_of;
 using testing::ElementsAre;
 
-TEST(Comparison, IsByRankAndExpectsWhatTheSharesOfTheWheelSay) {
+TEST(Comparison, HoldsTheLawOfTheServerByRank) {
     const BreedingRecord record = record_of(made_up::wheel());
     const auto comparison = compare(record);
     ASSERT_TRUE(comparison);
@@ -18,16 +18,18 @@ TEST(Comparison, IsByRankAndExpectsWhatTheSharesOfTheWheelSay) {
     EXPECT_THAT(comparison->fitness, ElementsAre(40, 30, 20, 10));
     EXPECT_THAT(comparison->copies, ElementsAre(2, 1, 1, 0));
     for (std::size_t rank = 0; rank < 4; ++rank) {
-        EXPECT_NEAR(comparison->expected.copies[rank], record.contender(comparison->organisms[rank])->expected_copies(),
-                    1e-12);
+        const evod::v1::Contender& contender = *record.contender(comparison->organisms[rank]);
+        EXPECT_EQ(comparison->expected.copies[rank], contender.expected_copies());
+        EXPECT_EQ(comparison->expected.standard_error[rank], contender.expected_copies_error());
+        EXPECT_EQ(comparison->expected.unpicked_chance[rank], contender.unpicked_chance());
     }
     // Four spins with share 0.4: 1.6 copies with a deviation of sqrt(4 · 0.4 · 0.6).
     EXPECT_NEAR(comparison->deviations[0], 0.4 / std::sqrt(0.96), 1e-12);
     EXPECT_EQ(comparison->beyond_two, 0u);
-    EXPECT_FALSE(comparison->findings.empty());
+    EXPECT_FALSE(comparison->predictions.empty());
 }
 
-TEST(Comparison, WaitsForAllContendersAndTakesNoRankThatThereIsNot) {
+TEST(Comparison, NeedsAllContendersAndValidRanks) {
     evod::v1::Breeding breeding = made_up::wheel();
     breeding.mutable_contenders()->RemoveLast();
     EXPECT_FALSE(compare(record_of(breeding)));
@@ -45,7 +47,7 @@ TEST(CopiesAfter, CountsThePicksSoFarByRank) {
     EXPECT_THAT(copies_after(record, 99), ElementsAre(2, 1, 1, 0));
 }
 
-TEST(PickColumns, ShowEveryPickHoweverManyThereAre) {
+TEST(PickColumns, ShowEveryPickAtAnyWidth) {
     const BreedingRecord record = record_of(made_up::wheel());
     for (const std::size_t most : {1u, 2u, 3u, 4u, 50u}) {
         const auto columns = pick_columns(record, 3, most);
@@ -61,7 +63,7 @@ TEST(PickColumns, ShowEveryPickHoweverManyThereAre) {
     EXPECT_TRUE(pick_columns(record, 3, 0).empty());
 }
 
-TEST(PickColumns, AreTheMeanRankOfThosePickedSoFar) {
+TEST(PickColumns, ShowTheMeanRankOfThePicksMade) {
     const BreedingRecord record = record_of(made_up::wheel());
     const auto rank_of = [&](std::uint32_t pick) -> double {
         return record.contender(record.pick(pick)->organism())->rank();
@@ -93,11 +95,12 @@ TEST(RankColumns, AddUpToTheWhole) {
     }
 }
 
-TEST(RankColumns, OfOneRankHaveItsDeviationAndOfSeveralThatOfTheirSum) {
+TEST(RankColumns, DeviateAsTheSumOfTheirRanks) {
     const auto comparison = compare(record_of(made_up::wheel()));
     const auto single = rank_columns(*comparison, copies_after(record_of(made_up::wheel()), 1), 0.25, 4);
     for (std::size_t rank = 0; rank < 4; ++rank) {
-        EXPECT_EQ(single[rank].deviation, comparison->deviations[rank]) << "of all the picks, not of those so far";
+        EXPECT_EQ(single[rank].deviation, comparison->deviations[rank])
+            << "after all picks, not after those made so far";
     }
     const auto two = rank_columns(*comparison, comparison->copies, 1, 2);
     EXPECT_NEAR(two[0].deviation, (3 - 2.8) / std::sqrt(4 * 0.4 * 0.6 + 4 * 0.3 * 0.7), 1e-12);

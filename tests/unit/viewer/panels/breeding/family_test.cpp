@@ -10,7 +10,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(Family, GenesComeOfTheParentThatTheMaskSays) {
+TEST(Family, GenesComeFromTheParentInTheMask) {
     const Family family = family_of(made_up::child(0b001110));
     EXPECT_THAT(family.genes, ElementsAre(1, 12, 13, 14, 5, 6));
     EXPECT_THAT(family.cuts, ElementsAre(1, 4));
@@ -18,14 +18,14 @@ TEST(Family, GenesComeOfTheParentThatTheMaskSays) {
     EXPECT_TRUE(family.crossed[3].from_second);
 }
 
-TEST(Family, WhoIsACopyHasNoCuts) {
+TEST(Family, ACopyOfOneParentHasNoCuts) {
     EXPECT_THAT(family_of(made_up::child(0)).cuts, IsEmpty());
     const Family second = family_of(made_up::child(0xffff'ffff)); // a complement may have bits beyond the genes
     EXPECT_THAT(second.cuts, IsEmpty());
     EXPECT_THAT(second.genes, ElementsAre(11, 12, 13, 14, 15, 16));
 }
 
-TEST(Family, RearrangedGenesKeepTheParentTheyCameOf) {
+TEST(Family, ReorderedGenesKeepTheirParent) {
     evod::v1::Descendant child = made_up::child(0b000001);
     child.mutable_order_mutation()->set_method("inversion");
     for (const std::uint32_t from : {2u, 1u, 0u, 3u, 4u, 5u}) {
@@ -38,7 +38,7 @@ TEST(Family, RearrangedGenesKeepTheParentTheyCameOf) {
     EXPECT_EQ(family.arranged[2].gene, 0u);
 }
 
-TEST(Family, MutationsFollowOneAnotherAndAClampIsTheLast) {
+TEST(Family, MutationsApplyInOrderAndAClampComesLast) {
     evod::v1::Descendant child = made_up::child(0);
     made_up::mutate(child, evod::v1::MUTATION_KIND_CREEP, 5, 6, 9);
     made_up::mutate(child, evod::v1::MUTATION_KIND_CREEP, 2, 3, 2.5f);
@@ -51,14 +51,14 @@ TEST(Family, MutationsFollowOneAnotherAndAClampIsTheLast) {
     EXPECT_EQ(family.changes[2].kind, evod::v1::MUTATION_KIND_CLAMP);
 }
 
-TEST(Family, OfASurvivorIsItself) {
+TEST(Family, ASurvivorHasOnlyItself) {
     evod::v1::Descendant survivor = made_up::child(0);
     survivor.set_kind(evod::v1::DESCENDANT_KIND_SURVIVOR);
     survivor.clear_second_genes();
     EXPECT_THAT(family_of(survivor).genes, ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
-TEST(Family, MalformedListsHaveNone) {
+TEST(Family, MalformedListsGiveNoGenes) {
     evod::v1::Descendant torn = made_up::child(0);
     torn.mutable_second_genes()->RemoveLast();
     EXPECT_THAT(family_of(torn).genes, IsEmpty());
@@ -73,7 +73,7 @@ TEST(Family, MalformedListsHaveNone) {
     EXPECT_THAT(family_of(evod::v1::Descendant{}).genes, IsEmpty());
 }
 
-TEST(ShownDelta, HasItsSign) {
+TEST(ShownDelta, AlwaysHasASign) {
     EXPECT_EQ(shown_delta(7.3125), "+7.312");
     EXPECT_EQ(shown_delta(-0.5), "−0.5");
     EXPECT_EQ(shown_delta(0), "+0");

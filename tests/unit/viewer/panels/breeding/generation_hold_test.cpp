@@ -5,60 +5,61 @@
 namespace evod::viewer {
 namespace {
 
-using Ask = GenerationHold::Ask;
+using Action = GenerationHold::Action;
 
 const GenerationHold::Run run{"default", "a"};
 
 TEST(GenerationHold, RunsOneGenerationThenTheTickThatBreedsTheNext) {
     GenerationHold hold;
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::Nothing) << "it is off";
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None) << "the hold is off";
     hold.hold(run);
     for (int generation = 0; generation < 2; ++generation) {
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::RunOneGeneration);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::Nothing) << "once is enough";
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Ask::RunOneTick);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Ask::Nothing);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, true), Ask::Nothing) << "of that tick";
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Ask::Nothing);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None) << "the command was sent";
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::RunOneTick);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, true), Action::None) << "that tick runs";
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Action::None);
     }
 }
 
-TEST(GenerationHold, APauseInBetweenDoesNotChangeTheGoal) {
+TEST(GenerationHold, APauseInBetweenDoesNotChangeThePlan) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::RunOneGeneration);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Ask::Nothing);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::Nothing);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Ask::RunOneTick);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Action::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::RunOneTick);
 }
 
-TEST(GenerationHold, AWorldThatWaitsToBeginIsLeftAlone) {
+TEST(GenerationHold, SendsNothingToAWorldThatWaitsToBegin) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Ask::Nothing);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
     EXPECT_TRUE(hold.on());
 }
 
-TEST(GenerationHold, EndsWithTheRunThatWasMeant) {
-    // Another world; its own past, whose run has the same id; itself after a reset; nobody knows yet.
+TEST(GenerationHold, EndsWhenAnotherRunIsShown) {
+    // Another world; a replay, whose run has the same id; the world after a reset; a world not yet known.
     const GenerationHold::Run others[] = {{"beside", "b"}, {"default@3", "a"}, {"default", "b"}, {"", ""}};
     for (const GenerationHold::Run& other : others) {
         SCOPED_TRACE(other.world + " " + other.id);
         GenerationHold hold;
         hold.hold(run);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::RunOneGeneration);
-        EXPECT_EQ(hold.update(other, evod::v1::RUN_STATE_RUNNING, false), Ask::Nothing);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
+        EXPECT_EQ(hold.update(other, evod::v1::RUN_STATE_RUNNING, false), Action::None);
         EXPECT_FALSE(hold.on());
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::Nothing) << "nor when it is back";
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None)
+            << "also when the run is shown again";
     }
 }
 
-TEST(GenerationHold, SwitchedOffItAsksForNothing) {
+TEST(GenerationHold, SendsNothingAfterItsRelease) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Ask::RunOneGeneration);
-    hold.let_go();
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Ask::Nothing);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
+    hold.release();
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
 }
 
 } // namespace

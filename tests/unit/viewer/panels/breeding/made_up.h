@@ -1,7 +1,9 @@
-// A breeding such as a server would tell of, small enough to be checked by eye.
+// A breeding as a server would send it, small enough to be checked by eye.
 #pragma once
 
 #include "client/viewer/panels/breeding/breeding_record.h"
+
+#include <cmath>
 
 namespace evod::viewer::made_up {
 
@@ -17,14 +19,14 @@ inline void set_count(evod::v1::Breeding& breeding, const char* name, std::uint3
     parameter.mutable_value()->set_count(count);
 }
 
-/// What is known when the server has told of `breeding`, generation 7 of island 1.
+/// The record after the server has sent `breeding`, generation 7 of island 1.
 inline BreedingRecord record_of(const evod::v1::Breeding& breeding) {
     BreedingRecord record{{.world = "default", .run_id = "a", .island = 1, .generation = 7}};
     record.add(breeding);
     return record;
 }
 
-/// Four organisms of fitness 40, 10, 30, 20 on a wheel; picked were 0, 2, 0, 3.
+/// Four organisms of fitness 40, 10, 30, 20 on a roulette wheel; picks 0, 2, 0, 3.
 inline evod::v1::Breeding wheel() {
     evod::v1::Breeding breeding;
     breeding.set_generation(7);
@@ -45,7 +47,10 @@ inline evod::v1::Breeding wheel() {
         contender.set_rank(rank[i]);
         contender.set_slot_begin(end);
         contender.set_slot_end(end += fitness[i] / 100);
-        contender.set_expected_copies(fitness[i] / 25);
+        const double share = fitness[i] / 100;
+        contender.set_expected_copies(4 * share);
+        contender.set_expected_copies_error(std::sqrt(4 * share * (1 - share)));
+        contender.set_unpicked_chance(std::pow(1 - share, 4));
         contender.set_copies(copies[i]);
     }
     const std::uint32_t picked[] = {0, 2, 0, 3};
@@ -63,7 +68,7 @@ inline evod::v1::Breeding wheel() {
     return breeding;
 }
 
-/// A child of six genes: 1 to 6 of the first parent, 11 to 16 of the second.
+/// A child with six genes: 1 to 6 in the first parent, 11 to 16 in the second.
 inline evod::v1::Descendant child(std::uint32_t from_second) {
     evod::v1::Descendant child;
     child.set_id(30);

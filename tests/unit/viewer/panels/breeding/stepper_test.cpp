@@ -41,14 +41,14 @@ TEST(Stepper, GoesFromStageToStage) {
     EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0}));
     stepper.step();
     stepper.previous_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0})) << "first to the beginning of its own";
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0})) << "first to the start of the current stage";
     stepper.previous_stage();
     stepper.previous_stage();
     stepper.previous_stage();
     EXPECT_TRUE(stepper.at_begin());
 }
 
-TEST(Stepper, PassesOverStagesInWhichNothingHappens) {
+TEST(Stepper, SkipsEmptyStages) {
     Stepper stepper;
     stepper.load(0, 1);
     stepper.next_stage();
@@ -58,7 +58,7 @@ TEST(Stepper, PassesOverStagesInWhichNothingHappens) {
     EXPECT_EQ(stepper.moment().stage, BreedingStage::Done);
 }
 
-TEST(Stepper, PlaysAtItsSpeedHoweverOftenTimePasses) {
+TEST(Stepper, PlaysAtItsSpeedAtAnyFrameRate) {
     for (const int frames : {1, 7, 300}) {
         Stepper stepper;
         stepper.load(100, 100);
@@ -72,7 +72,7 @@ TEST(Stepper, PlaysAtItsSpeedHoweverOftenTimePasses) {
     }
 }
 
-TEST(Stepper, StopsAtTheEndAndPlaysAgainFromTheBeginning) {
+TEST(Stepper, StopsAtTheEndAndThenPlaysFromTheStart) {
     Stepper stepper;
     stepper.load(2, 2);
     stepper.play();
@@ -84,7 +84,7 @@ TEST(Stepper, StopsAtTheEndAndPlaysAgainFromTheBeginning) {
     EXPECT_TRUE(stepper.playing());
 }
 
-TEST(Stepper, AHandOnItStopsIt) {
+TEST(Stepper, AnyMoveByTheUserStopsPlaying) {
     Stepper stepper;
     stepper.load(20, 20);
     for (const auto hand : {&Stepper::step, &Stepper::back, &Stepper::next_stage, &Stepper::previous_stage,
@@ -99,7 +99,7 @@ TEST(Stepper, AHandOnItStopsIt) {
     }
 }
 
-TEST(Stepper, KeepsItsSpeedWithinBounds) {
+TEST(Stepper, ClampsItsSpeed) {
     Stepper stepper;
     stepper.set_speed(1e9);
     EXPECT_EQ(stepper.speed(), Stepper::speed_max);

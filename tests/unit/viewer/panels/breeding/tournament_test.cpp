@@ -20,7 +20,7 @@ void add_pick(evod::v1::Breeding& breeding, std::uint32_t organism, std::uint32_
     }
 }
 
-TEST(Tournament, MarksItsWinnerAlone) {
+TEST(Tournament, MarksOnlyItsWinner) {
     evod::v1::Breeding breeding = made_up::wheel();
     breeding.clear_picks();
     add_pick(breeding, 2, 0, {1, 2, 3});
@@ -33,10 +33,10 @@ TEST(Tournament, MarksItsWinnerAlone) {
     }
 }
 
-TEST(Tournament, OfSeveralWinnersEachIsMarkedAndThePickOfNowApart) {
+TEST(Tournament, MarksAllWinnersAndTheCurrentPick) {
     evod::v1::Breeding breeding = made_up::wheel();
     breeding.clear_picks();
-    add_pick(breeding, 3, 0, {3, 3, 3, 3}); // won before this one: another tournament
+    add_pick(breeding, 3, 0, {3, 3, 3, 3}); // a pick of the tournament before
     add_pick(breeding, 0, 1, {0, 1, 0, 2});
     add_pick(breeding, 0, 1, {0, 1, 0, 2});
     add_pick(breeding, 2, 1, {0, 1, 0, 2});
@@ -51,7 +51,7 @@ TEST(Tournament, OfSeveralWinnersEachIsMarkedAndThePickOfNowApart) {
     EXPECT_FALSE(contestants[3].picked_now);
 }
 
-TEST(Tournament, APickOfAWheelHasNoContestants) {
+TEST(Tournament, AWheelPickHasNoContestants) {
     EXPECT_TRUE(contestants_of(record_of(made_up::wheel()), 0).empty());
     EXPECT_TRUE(contestants_of(record_of(made_up::wheel()), 99).empty());
 }

@@ -7,7 +7,7 @@
 namespace evod::viewer {
 namespace {
 
-/// So many slots, all alike.
+/// `count` slots of equal width.
 evod::v1::Breeding even(int count) {
     evod::v1::Breeding breeding;
     for (int i = 0; i < count; ++i) {
@@ -19,7 +19,7 @@ evod::v1::Breeding even(int count) {
     return breeding;
 }
 
-TEST(WheelArcs, WideSlotsHaveAnArcEach) {
+TEST(WheelArcs, EachWideSlotHasAnArc) {
     const evod::v1::Breeding breeding = made_up::wheel();
     const auto arcs = wheel_arcs(breeding.contenders(), 1000);
     ASSERT_EQ(arcs.size(), 4u);
@@ -32,7 +32,7 @@ TEST(WheelArcs, WideSlotsHaveAnArcEach) {
     }
 }
 
-TEST(WheelArcs, NarrowNeighboursAreOneArcAPixelWideAndNobodyIsLost) {
+TEST(WheelArcs, NarrowNeighboursMergeAndNoSlotIsLost) {
     constexpr double circumference = 100;
     const auto arcs = wheel_arcs(even(10'000).contenders(), circumference);
     EXPECT_LE(arcs.size(), 100u);
@@ -53,7 +53,7 @@ TEST(WheelArcs, NarrowNeighboursAreOneArcAPixelWideAndNobodyIsLost) {
     EXPECT_EQ(end, 1);
 }
 
-TEST(WheelArcs, AWideSlotBesideNarrowOnesStaysAlone) {
+TEST(WheelArcs, AWideSlotBesideNarrowOnesKeepsItsArc) {
     evod::v1::Breeding breeding;
     double end = 0;
     for (const double width : {0.001, 0.5, 0.001, 0.0, 0.001, 0.497}) {
@@ -69,7 +69,7 @@ TEST(WheelArcs, AWideSlotBesideNarrowOnesStaysAlone) {
     EXPECT_EQ(arcs[2].last, 4u);
 }
 
-TEST(SlotAt, FindsTheSlotThatThePointerOfEachPickFellIn) {
+TEST(SlotAt, FindsTheSlotOfEveryPick) {
     const evod::v1::Breeding breeding = made_up::wheel();
     for (const auto& pick : breeding.picks()) {
         EXPECT_EQ(slot_at(breeding.contenders(), pick.turns()),
@@ -79,7 +79,7 @@ TEST(SlotAt, FindsTheSlotThatThePointerOfEachPickFellIn) {
     EXPECT_EQ(slot_at(breeding.contenders(), 1), nullptr);
 }
 
-TEST(RankColour, GoesFromLightToDarkWithoutTurningBack) {
+TEST(RankColour, GetsDarkerWithEveryRank) {
     const auto light = [](Colour colour) { return 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue; };
     constexpr std::uint32_t count = 60;
     for (std::uint32_t rank = 1; rank < count; ++rank) {

@@ -1,6 +1,7 @@
-// Pictures of the next generation, for the glass box.
+// Drawings of the next generation for the glass box: all descendants in a row, and one descendant with its parents.
 //
-// Threads      none; used by the thread that draws.
+// Owner        BreedingPanel.
+// Threads      none; called on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/breeding/breeding_record.h"
@@ -11,10 +12,10 @@
 
 namespace evod::viewer {
 
-/// The next generation as a row of cells: elite, survivors, children; the current one framed.
+/// The next generation as a row of cells: elite, survivors, children. The current cell is framed.
 void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const std::uint32_t* current);
 
-/// Parents, cuts, child, rearrangement and mutations of one descendant, as high as it takes.
+/// Parents, cuts, child, order mutation and mutations of one descendant; takes the height it needs.
 ///
 /// returns  its height in pixels
 float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,

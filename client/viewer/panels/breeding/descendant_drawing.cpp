@@ -1,0 +1,221 @@
+#include "client/viewer/panels/breeding/descendant_drawing.h"
+
+#include "client/viewer/panels/breeding/family.h"
+#include "client/viewer/text/numbers.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+namespace {
+
+Colour parent_colour(bool second) {
+    return second ? palette::second_parent : palette::first_parent;
+}
+
+/// Draws a family from top to bottom: each part begins where the one before ended.
+class FamilyDrawing {
+  public:
+    FamilyDrawing(const Sheet& sheet, const evod::v1::Descendant& descendant, const Family& family)
+        : sheet_{sheet}
+        , descendant_{descendant}
+        , family_{family}
+        , count_{family.genes.size()}
+        , label_width_{std::min(8 * sheet.font.FontSize, sheet.size.x / 4)}
+        , cell_{(sheet.size.x - label_width_) / static_cast<float>(count_)}
+        , line_{sheet.line_height()}
+        , bar_{line_ + 6}
+        , y_{sheet.corner.y} {}
+
+    void draw_gene_names(const std::vector<std::string>& gene_names);
+    void draw_parents();
+    void draw_order_mutation();
+    void draw_mutations();
+    void draw_organism();
+    float height() const { return y_ - sheet_.corner.y; }
+
+  private:
+    float left_of(std::size_t gene) const { return sheet_.corner.x + label_width_ + static_cast<float>(gene) * cell_; }
+    float middle_of(std::size_t gene) const { return left_of(gene) + cell_ / 2; }
+    void draw_label(const std::string& text) const { sheet_.write({sheet_.corner.x, y_ + 3}, palette::text, text); }
+    void draw_gene(std::size_t gene, Colour colour, float value) const;
+    void draw_parent(bool second, const char* role);
+    void draw_change(const GeneChange& change, float top) const;
+
+    const Sheet& sheet_;
+    const evod::v1::Descendant& descendant_;
+    const Family& family_;
+    std::size_t count_;
+    float label_width_, cell_, line_, bar_;
+    float y_; // top of the next part
+};
+
+void FamilyDrawing::draw_gene(std::size_t gene, Colour colour, float value) const {
+    sheet_.list.AddRectFilled({left_of(gene), y_}, {left_of(gene) + cell_ - 2, y_ + bar_}, ink(colour));
+    sheet_.write_centred({middle_of(gene) - 1, y_ + bar_ / 2}, palette::text_on(colour), print("%.4g", double{value}));
+}
+
+void FamilyDrawing::draw_gene_names(const std::vector<std::string>& gene_names) {
+    for (std::size_t gene = 0; gene < count_; ++gene) {
+        const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
+        // The cells are narrow: two words go on two lines.
+        const std::size_t cut = name.find('_');
+        sheet_.write_centred({middle_of(gene), y_ + line_ / 2}, palette::text_quiet, name.substr(0, cut));
+        if (cut != std::string::npos) {
+            sheet_.write_centred({middle_of(gene), y_ + 1.5f * line_}, palette::text_quiet, name.substr(cut + 1));
+        }
+    }
+    y_ += 2 * line_ + 4;
+}
+
+void FamilyDrawing::draw_parent(bool second, const char* role) {
+    const auto& genes = second ? descendant_.second_genes() : descendant_.first_genes();
+    draw_label(print("%s %u", role, second ? descendant_.second_parent() : descendant_.first_parent()));
+    for (std::size_t gene = 0; gene < count_; ++gene) {
+        const bool given = family_.crossed[gene].from_second == second;
+        draw_gene(gene, faint(parent_colour(second), given ? 255 : 110), genes.Get(static_cast<int>(gene)));
+    }
+    y_ += bar_ + 4;
+}
+
+/// The parents, the crossed child and the cuts across all three; of a survivor only itself.
+void FamilyDrawing::draw_parents() {
+    const bool alone = descendant_.second_genes().empty() || descendant_.kind() != evod::v1::DESCENDANT_KIND_CHILD;
+    const float top = y_;
+    draw_parent(false, alone ? "itself" : "parent");
+    if (alone) {
+        return;
+    }
+    draw_parent(true, "parent");
+    y_ += 6;
+    draw_label("crossed");
+    for (std::size_t gene = 0; gene < count_; ++gene) {
+        draw_gene(gene, parent_colour(family_.crossed[gene].from_second), family_.crossed[gene].value);
+    }
+    y_ += bar_;
+    for (const std::uint32_t cut : family_.cuts) {
+        for (float dash = top - 4; dash < y_ + 4; dash += 8) {
+            sheet_.list.AddLine({left_of(cut) - 1, dash}, {left_of(cut) - 1, std::min(dash + 5, y_ + 4)},
+                                ink(palette::glass_current), 2);
+        }
+    }
+    y_ += 4;
+}
+
+void FamilyDrawing::draw_order_mutation() {
+    if (!descendant_.has_order_mutation()) {
+        return;
+    }
+    const float from_y = y_, to_y = y_ + 34;
+    draw_label(descendant_.order_mutation().method());
+    for (const GeneMove& move : family_.moves) {
+        const ImVec2 from{middle_of(move.from), from_y}, to{middle_of(move.to), to_y};
+        sheet_.list.AddBezierCubic(from, {from.x, from.y + 18}, {to.x, to.y - 18}, {to.x, to.y - 5}, ink(palette::text),
+                                   1.5f);
+        sheet_.list.AddTriangleFilled({to.x - 5, to.y - 8}, {to.x + 5, to.y - 8}, to, ink(palette::text));
+    }
+    y_ = to_y + 2;
+    for (std::size_t gene = 0; gene < count_; ++gene) {
+        draw_gene(gene, parent_colour(family_.arranged[gene].from_second), family_.arranged[gene].value);
+    }
+    y_ += bar_ + 4;
+}
+
+void FamilyDrawing::draw_change(const GeneChange& change, float top) const {
+    const bool clamped = change.kind == evod::v1::MUTATION_KIND_CLAMP;
+    const Colour colour = clamped ? palette::stopped : palette::glass_mutated;
+    const float left = left_of(change.gene), middle = middle_of(change.gene);
+    sheet_.write_centred({middle, top + line_ / 2}, colour, shown_delta(change.delta()));
+    sheet_.write_centred({middle, top + 1.5f * line_}, colour, shown_mutation(change.kind));
+    sheet_.write_centred({middle, top + 2.5f * line_}, colour, print("to %.4g", double{change.after}));
+    if (clamped) {
+        sheet_.list.AddRect({left, top - 1}, {left + cell_ - 2, top + 3 * line_}, ink(colour));
+    }
+    if (pointed_at({left, top}, {left + cell_, top + 3 * line_})) {
+        ImGui::SetTooltip("%s: from %.7g to %.7g, %s", shown_mutation(change.kind), double{change.before},
+                          double{change.after}, shown_delta(change.delta()).c_str());
+    }
+}
+
+/// Every gene's changes in the order in which they happened, one below the other.
+void FamilyDrawing::draw_mutations() {
+    if (family_.changes.empty()) {
+        return;
+    }
+    y_ += 4;
+    draw_label("mutations");
+    std::vector<float> next_top(count_, y_ + 3);
+    for (const GeneChange& change : family_.changes) {
+        draw_change(change, next_top[change.gene]);
+        next_top[change.gene] += 3 * line_ + 4;
+    }
+    y_ = *std::ranges::max_element(next_top) + 2;
+}
+
+void FamilyDrawing::draw_organism() {
+    y_ += 4;
+    draw_label(print("organism %u", descendant_.id()));
+    std::vector<bool> changed(count_);
+    for (const GeneChange& change : family_.changes) {
+        changed[change.gene] = true;
+    }
+    for (std::size_t gene = 0; gene < count_; ++gene) {
+        const float value = gene < static_cast<std::size_t>(descendant_.genes_size())
+                                ? descendant_.genes(static_cast<int>(gene))
+                                : family_.genes[gene];
+        draw_gene(gene, parent_colour(family_.arranged[gene].from_second), value);
+        if (changed[gene]) {
+            sheet_.list.AddRect({left_of(gene) - 1, y_ - 1}, {left_of(gene) + cell_ - 1, y_ + bar_ + 1},
+                                ink(palette::glass_mutated), 0, 0, 3);
+        }
+    }
+    y_ += bar_ + 4;
+}
+
+} // namespace
+
+void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const std::uint32_t* current) {
+    const evod::v1::Breeding& breeding = record.breeding();
+    const std::uint32_t count = std::max(record.descendant_count(), 1u);
+    const float cell = sheet.size.x / static_cast<float>(count), gap = cell > 4 ? 1.f : 0.f;
+    const auto cells = [&](std::uint32_t begin, std::uint32_t end, Colour colour) {
+        if (gap == 0) {
+            sheet.list.AddRectFilled({sheet.corner.x + static_cast<float>(begin) * cell, sheet.corner.y},
+                                     {sheet.corner.x + static_cast<float>(end) * cell, sheet.end().y}, ink(colour));
+            return;
+        }
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const float left = sheet.corner.x + static_cast<float>(i) * cell;
+            sheet.list.AddRectFilled({left, sheet.corner.y}, {left + cell - gap, sheet.end().y}, ink(colour));
+        }
+    };
+    const std::uint32_t elite = std::min(breeding.elite_count(), record.descendant_count());
+    const std::uint32_t survivors = std::min(breeding.survivor_count(), record.descendant_count());
+    cells(0, elite, palette::glass_elite);
+    cells(elite, survivors, palette::glass_survivor);
+    cells(survivors, record.descendant_count(), palette::glass_child);
+    if (current != nullptr) {
+        const float left = sheet.corner.x + static_cast<float>(*current) * cell;
+        sheet.list.AddRect({left - 2, sheet.corner.y - 2}, {left + std::max(cell - gap, 2.f) + 2, sheet.end().y + 2},
+                           ink(palette::glass_current), 0, 0, 2);
+    }
+}
+
+float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
+                  const std::vector<std::string>& gene_names) {
+    const Family family = family_of(descendant);
+    if (family.genes.empty()) {
+        return 0;
+    }
+    FamilyDrawing drawing{sheet, descendant, family};
+    drawing.draw_gene_names(gene_names);
+    drawing.draw_parents();
+    drawing.draw_order_mutation();
+    drawing.draw_mutations();
+    drawing.draw_organism();
+    return drawing.height();
+}
+
+} // namespace evod::viewer
