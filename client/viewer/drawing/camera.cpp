@@ -65,7 +65,7 @@ void Camera::zoom_at(Point screen, double factor) {
     fitted_ = false;
 }
 
-void Camera::look_as(const Camera& other) {
+void Camera::follow(const Camera& other) {
     if (other.fitted_) {
         fit();
         return;

@@ -1,9 +1,10 @@
-// Camera: which part of an island is seen, and how large.
+// Camera: maps a part of an island to a part of the window.
 //
-// Two spaces, both with +x right and +y down: the world, in px of the model, and the screen, in pixels of the window.
-// The island is seen in the viewport, the part of the window that no text strip covers.
+// Two coordinate systems, both with +x right and +y down: the world, in px of the model, and the screen, in pixels of
+// the window. The viewport is the part of the window in which the island is drawn; no text strip covers it.
 //
-// Threads      none; used by the thread that draws.
+// Owner        a pane of the stage.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 namespace evod::viewer {
@@ -28,27 +29,27 @@ class Camera {
     static constexpr double wall_pixels = 6;   // thickness of the walls at any zoom
     static constexpr double margin_pixels = 6; // around the walls of a fitted island
 
-    /// Where on the screen the island is seen. A fitted island stays fitted, another keeps its centre and its zoom.
+    /// Sets the viewport. A fitted island stays fitted; otherwise centre and zoom stay.
     void set_viewport(Rectangle screen);
 
-    /// The size of the island, in px of the world. Another size is fitted.
+    /// Sets the size of the island, in px of the world. A new size is fitted.
     void set_island(double width, double height);
 
-    /// Shows the whole island with its walls, as large as it goes.
+    /// Shows the whole island with its walls as large as possible.
     void fit();
     bool fitted() const { return fitted_; }
 
-    /// Moves the picture by so many pixels, as a hand moves paper; the middle of the viewport stays on the island.
+    /// Moves the drawn island by this many pixels. The centre of the viewport stays on the island.
     void pan(Point pixels);
 
-    /// Puts a place of the world, on the island, into the middle of the viewport.
+    /// Centres the viewport on a point of the world, clamped to the island.
     void look_at(Point world);
 
-    /// Enlarges by `factor` around what is seen at `screen`, which stays there; within zoom_min() to zoom_max.
+    /// Zooms by `factor` around the point at `screen`, which stays in place; clamped to zoom_min() to zoom_max.
     void zoom_at(Point screen, double factor);
 
-    /// The same part of the island at the same zoom as `other` shows; if that is fitted, all of it.
-    void look_as(const Camera& other);
+    /// Takes centre and zoom of `other`; if that is fitted, fits.
+    void follow(const Camera& other);
 
     Point to_screen(Point world) const;
     Point to_world(Point screen) const;

@@ -1,6 +1,7 @@
-// Colour scale: numbers → colours of a ramp, and the bar that tells which.
+// Colour scale: maps numbers to colours of a ramp, and draws the ramp as a bar.
 //
-// Threads      none; bars by the thread that draws.
+// Owner        none: a value.
+// Threads      none; bars are drawn on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/palette.h"
@@ -10,17 +11,17 @@ struct ImVec2;
 
 namespace evod::viewer {
 
-/// The ends of the ramp are `low` and `high`, and what is beyond them has their colour.
+/// `low` and `high` have the colours of the ends of the ramp, and so have all numbers beyond them.
 struct ColourScale {
     palette::Ramp ramp = palette::Ramp::Viridis;
     double low = 0, high = 1;
 
-    /// Where low = high everything is in the middle.
+    /// 0.5 for every value if low = high.
     double share(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
     Colour operator()(double value) const { return palette::at(ramp, share(value)); }
 };
 
-/// All colours of a ramp, from its least at the left.
+/// Draws all colours of a ramp from left (lowest) to right.
 void draw_ramp(ImDrawList& list, ImVec2 corner, ImVec2 size, palette::Ramp ramp);
 
 } // namespace evod::viewer

@@ -18,28 +18,28 @@ namespace {
 constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
 
 ImFont* load_font(const char* name, float pixels) {
-    // Latin, and the signs of ours beyond it: ω, …, → and −.
+    // Latin-1, and the further characters evoview uses: ω, …, → and −.
     static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026,
                                          0x2190, 0x2193, 0x2212, 0x2212, 0};
     const std::string path = std::string{font_folder} + name;
     if (!std::filesystem::exists(path)) {
-        throw std::runtime_error{"no font " + path + ": install the package fonts-dejavu-core"};
+        throw std::runtime_error{"font not found: " + path + ": install the package fonts-dejavu-core"};
     }
     ImFont* font = ImGui::GetIO().Fonts->AddFontFromFileTTF(path.c_str(), pixels, nullptr, ranges);
     if (font == nullptr) {
-        throw std::runtime_error{"the font " + path + " cannot be read"};
+        throw std::runtime_error{"could not read the font " + path};
     }
     return font;
 }
 
-/// The index of a mouse button in Dear ImGui; others have none.
+/// The index of a mouse button in Dear ImGui; -1 for buttons it does not know.
 int button_index(sf::Mouse::Button button) {
     return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
 }
 
 using Key = sf::Keyboard;
 
-/// The keys that Dear ImGui asks for by name; letters are for their use with Ctrl.
+/// Keys that Dear ImGui needs by name; letters only together with Ctrl.
 struct NamedKey {
     ImGuiKey name;
     Key::Key key;
@@ -74,7 +74,7 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     style.Colors[ImGuiCol_Border].w = 0.5f;
     style.ScaleAllSizes(scale_);
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr; // nothing is remembered in files
+    io.IniFilename = nullptr; // Dear ImGui writes no file
     io.UserData = spots_.get();
     for (const NamedKey& named : named_keys) {
         io.KeyMap[named.name] = named.key;
@@ -97,7 +97,7 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     }
     if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
         ImGui::DestroyContext();
-        throw std::runtime_error{"Dear ImGui cannot draw here: OpenGL 3.3 is needed"};
+        throw std::runtime_error{"Dear ImGui could not start: OpenGL 3.3 is required"};
     }
 }
 
@@ -110,23 +110,23 @@ void Gui::handle(const sf::Event& event) {
     waiting_.push_back(event);
 }
 
-bool Gui::give_key(const sf::Event& event, Given& given) {
+bool Gui::pass_on_key(const sf::Event& event, Received& received) {
     ImGuiIO& io = ImGui::GetIO();
     const sf::Event::KeyEvent& key = event.key;
     const bool pressed = event.type == sf::Event::KeyPressed;
     if (const NamedKey* named = find_named(key.code)) {
         const bool down = pressed && (!named->with_control || key.control);
         if (bool& known = io.KeysDown[key.code]; known != down) {
-            if (given.key || given.text) {
+            if (received.key || received.text) {
                 return false;
             }
-            given.key = true;
+            received.key = true;
             known = down;
         }
     }
-    // A modifier's own event may tell of the time before it.
-    const auto held = [&](bool said, Key::Key left, Key::Key right) {
-        return is_one_of(key.code, left, right) ? pressed : said;
+    // The event of a modifier key may carry the modifier's state before the event.
+    const auto held = [&](bool reported, Key::Key left, Key::Key right) {
+        return is_one_of(key.code, left, right) ? pressed : reported;
     };
     io.KeyCtrl = held(key.control, Key::LControl, Key::RControl);
     io.KeyShift = held(key.shift, Key::LShift, Key::RShift);
@@ -135,11 +135,11 @@ bool Gui::give_key(const sf::Event& event, Given& given) {
     return true;
 }
 
-bool Gui::give(const sf::Event& event, Given& given) {
+bool Gui::pass_on(const sf::Event& event, Received& received) {
     ImGuiIO& io = ImGui::GetIO();
     switch (event.type) {
     case sf::Event::MouseMoved:
-        if (given.button) { // it was pressed or released where the mouse was
+        if (received.button) { // the press or release belongs to the previous position
             return false;
         }
         io.MousePos = {static_cast<float>(event.mouseMove.x), static_cast<float>(event.mouseMove.y)};
@@ -150,10 +150,10 @@ bool Gui::give(const sf::Event& event, Given& given) {
     case sf::Event::MouseButtonPressed:
     case sf::Event::MouseButtonReleased:
         if (const int index = button_index(event.mouseButton.button); index >= 0) {
-            if (given.button) {
+            if (received.button) {
                 return false;
             }
-            given.button = true;
+            received.button = true;
             io.MouseDown[index] = event.type == sf::Event::MouseButtonPressed;
         }
         break;
@@ -163,13 +163,13 @@ bool Gui::give(const sf::Event& event, Given& given) {
         break;
     case sf::Event::KeyPressed:
     case sf::Event::KeyReleased:
-        return given.button ? false : give_key(event, given);
+        return received.button ? false : pass_on_key(event, received);
     case sf::Event::TextEntered:
-        if (given.key || given.button) {
+        if (received.key || received.button) {
             return false;
         }
-        if (event.text.unicode >= ' ' && event.text.unicode != 127) { // no control characters: those are keys
-            given.text = true;
+        if (event.text.unicode >= ' ' && event.text.unicode != 127) { // control characters arrive as keys
+            received.text = true;
             io.AddInputCharacter(event.text.unicode);
         }
         break;
@@ -190,23 +190,23 @@ Captured Gui::captured() const {
 }
 
 bool Gui::close_popup() {
-    // Dear ImGui itself closes them with Esc only where keys move from widget to widget.
+    // Dear ImGui closes popups with Esc only if keyboard navigation is on.
     const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
-    bool seen = false;
-    while (!open.empty() && !seen) {
+    bool visible = false;
+    while (!open.empty() && !visible) {
         const ImGuiWindow* window = open.back().Window;
-        seen = window == nullptr || window->Active; // or else its panel is hidden
+        visible = window == nullptr || window->Active; // otherwise its panel is hidden
         ImGui::ClosePopupToLevel(open.Size - 1, true);
     }
-    return seen;
+    return visible;
 }
 
 void Gui::begin(unsigned width_pixels, unsigned height_pixels, double seconds) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(width_pixels), static_cast<float>(height_pixels)};
     io.DeltaTime = static_cast<float>(std::max(seconds, 1e-4));
-    Given given;
-    while (!waiting_.empty() && give(waiting_.front(), given)) {
+    Received received;
+    while (!waiting_.empty() && pass_on(waiting_.front(), received)) {
         waiting_.pop_front();
     }
     spots_->begin_frame();

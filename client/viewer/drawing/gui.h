@@ -1,10 +1,11 @@
-// Gui: Dear ImGui in an SFML window. All text of evoview is drawn by it, in the fonts loaded here.
+// Gui: Dear ImGui in an SFML window. It loads the fonts and draws all text of evoview.
 //
-// Events wait here for the next frame. Dear ImGui looks at keys and buttons once a frame, so one that is pressed and
-// released within a frame is given to it in two: however slowly is drawn, nothing typed is lost.
+// Events are queued until the next frame. Dear ImGui reads keys and buttons once per frame, so a press and its release
+// within one frame are passed on in two frames: no input is lost at a low frame rate.
 //
-// Needs        OpenGL 3.3, current on the calling thread for as long as this lives.
-// Threads      none. There is one of it, for Dear ImGui has one context.
+// Owner        the window. One instance per process, because Dear ImGui has one context.
+// Needs        OpenGL 3.3, current on the calling thread for the lifetime of this object.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/widgets.h"
@@ -19,7 +20,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// Events that widgets take for themselves.
+/// The kinds of events that widgets consume at present.
 struct Captured {
     bool keyboard = false, mouse = false;
 };
@@ -28,8 +29,8 @@ class Gui {
   public:
     static constexpr double scale_min = 0.5, scale_max = 4;
 
-    /// scale  of fonts and widgets; 1 is for 96 dots per inch.
-    /// Throws std::runtime_error if a font is missing; it names the package.
+    /// scale  of fonts and widgets; 1 suits 96 dots per inch.
+    /// Throws std::runtime_error if a font is missing; the message names the package to install.
     explicit Gui(double scale = 1);
     ~Gui();
     Gui(const Gui&) = delete;
@@ -37,13 +38,13 @@ class Gui {
 
     void handle(const sf::Event& event);
     Captured captured() const;
-    /// Closes the menu, list or question that is in front, between two frames; false if none is open.
+    /// Closes the topmost menu, list or dialog; called between two frames. Returns false if none is open.
     bool close_popup();
-    /// Whether every event has been given to Dear ImGui.
+    /// Whether Dear ImGui has received every queued event.
     bool settled() const { return waiting_.empty(); }
 
     void begin(unsigned width_pixels, unsigned height_pixels, double seconds);
-    void draw(); // what was built since begin(), on the current framebuffer
+    void draw(); // renders everything built since begin() to the current framebuffer
 
     float scale() const { return scale_; }
     Spots& spots() const { return *spots_; }
@@ -52,13 +53,13 @@ class Gui {
     ImFont& label() const { return *label_; }
 
   private:
-    /// What a frame was given already.
-    struct Given {
+    /// The kinds of events this frame has already received.
+    struct Received {
         bool key = false, text = false, button = false;
     };
-    /// False: it has to wait for the next frame.
-    bool give(const sf::Event& event, Given& given);
-    bool give_key(const sf::Event& event, Given& given);
+    /// Returns false if the event must wait for the next frame.
+    bool pass_on(const sf::Event& event, Received& received);
+    bool pass_on_key(const sf::Event& event, Received& received);
 
     float scale_;
     ImFont* text_ = nullptr;
@@ -66,7 +67,7 @@ class Gui {
     ImFont* label_ = nullptr;
     std::deque<sf::Event> waiting_;
     std::unique_ptr<Spots> spots_ = std::make_unique<Spots>();
-    std::string clipboard_; // what Dear ImGui was given last
+    std::string clipboard_; // the last text read for Dear ImGui
 };
 
 } // namespace evod::viewer

@@ -1,6 +1,7 @@
-// Ink: colours and letters on a draw list of Dear ImGui.
+// Ink: draws text on a draw list of Dear ImGui and converts colours for it.
 //
-// Threads      none; used by the thread that draws.
+// Owner        none: functions.
+// Threads      none; called on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/palette.h"
@@ -20,10 +21,10 @@ constexpr Colour faint(Colour colour, std::uint8_t alpha) {
     return colour;
 }
 
-/// wrap_width  pixels; 0: lines end where the text says
+/// wrap_width  pixels; 0: lines break only at line breaks of the text
 ImVec2 size_of(std::string_view text, const ImFont& font, float wrap_width = 0);
 
-/// Writes with the upper left corner at a whole pixel, which keeps letters sharp; returns where the text ends.
+/// Writes with the upper left corner at a whole pixel, which keeps letters sharp. Returns the x at which the text ends.
 float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, std::string_view text,
             float wrap_width = 0);
 void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text);

@@ -33,7 +33,7 @@ sf::Image draw_off_screen(unsigned width_pixels, unsigned height_pixels, const s
     glDeleteFramebuffers(1, &framebuffer);
     glDeleteRenderbuffers(1, &colours);
     if (!complete) {
-        throw std::runtime_error{"a picture of this size cannot be drawn here"};
+        throw std::runtime_error{"the graphics driver cannot draw an image of this size"};
     }
     for (std::size_t alpha = 3; alpha < pixels.size(); alpha += 4) {
         pixels[alpha] = 255;

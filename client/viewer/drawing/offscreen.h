@@ -1,5 +1,7 @@
-// Off the screen: drawing into a picture, which a covered or small window cannot spoil.
+// Off-screen drawing: renders into an image, independent of the size and visibility of the window.
 //
+// Owner        none: a function.
+// Threads      the thread whose OpenGL context is current.
 // Needs        OpenGL 3.3, current on the calling thread.
 #pragma once
 
@@ -9,8 +11,8 @@
 
 namespace evod::viewer {
 
-/// What `draw` draws on a framebuffer of this size, opaque. The framebuffer before is current again afterwards. Throws
-/// std::runtime_error if a picture of this size cannot be drawn.
+/// Returns what `draw` renders to a framebuffer of this size, opaque. Restores the framebuffer that was bound before.
+/// Throws std::runtime_error if the graphics driver does not support this size.
 sf::Image draw_off_screen(unsigned width_pixels, unsigned height_pixels, const std::function<void()>& draw);
 
 } // namespace evod::viewer

@@ -1,11 +1,12 @@
-// Widgets: what panels share, and how a script finds what is on the screen.
+// Widgets: helpers that all panels use, and the register by which a script finds widgets on the screen.
 //
-// A widget that mark() was called for can be found by its name in the next frame, for as long as it is drawn. Names are
-// those that a person reads; where two panels have the same, "Panel/name" tells them apart. What an open drop-down
-// offers has the name "drop-down: choice".
+// mark() registers a widget by name; find() returns it in the next frame, as long as the widget is drawn. Names are the
+// labels that users read. "Panel/name" is unique where two panels have the same label. A choice of an open drop-down has
+// the name "drop-down: choice".
 //
-// Needs        the Gui, whose frame it is.
-// Threads      none.
+// Owner        Spots belongs to the Gui; the rest are functions.
+// Needs        called between Gui::begin() and Gui::draw().
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/camera.h"
@@ -19,31 +20,31 @@
 
 namespace evod::viewer {
 
-/// Where the widgets of the last whole frame are, and on which the mouse rests.
+/// The positions of the widgets of the last complete frame, and the widget on which the mouse rests.
 class Spots {
   public:
     void begin_frame();
-    /// What is marked from here on stands in the panel of this title; empty: in none.
+    /// Widgets registered from here on belong to the panel of this title; empty: to none.
     void begin_panel(std::string_view title) { panel_ = title; }
     void add(std::string_view name, Point centre);
     void add_drop_down(std::string_view name, Point centre);
-    /// Of a drop-down that is open, where it can be seen.
+    /// A visible choice of an open drop-down.
     void add_choice(std::string_view drop_down, std::string_view choice, Point centre);
 
     /// name  "Apply", or "Parameters/Apply"
     std::optional<Point> find(const std::string& name) const;
-    /// What a drop-down of this name offers where that can be seen, so nothing while it is closed; null if there is no
-    /// such drop-down.
+    /// The visible choices of the drop-down of this name, empty while it is closed; null if there is no such drop-down.
     const std::vector<std::string>* choices(const std::string& name) const;
 
-    /// Whether the mouse has been on the widget with this corner for a while, as it is again now. Who clicks on it
-    /// knows it, and wants to see what comes of that: then it does not, until the mouse has been elsewhere.
+    /// Whether the mouse has rested long enough on the widget with this corner to show its note. Called in every frame
+    /// in which the mouse is on it. After a click the answer is no until the mouse has left the widget, so that the
+    /// note does not cover the effect of the click.
     bool lingers(Point corner, double now_s, bool clicked);
 
   private:
     struct Spot {
         Point centre;
-        std::optional<std::vector<std::string>> choices; // nullopt: it is no drop-down
+        std::optional<std::vector<std::string>> choices; // nullopt: not a drop-down
     };
     template <class Do>
     void each_name(std::string_view name, Do act);
@@ -52,12 +53,12 @@ class Spots {
     std::map<std::string, Spot> shown_, building_;
     Point hovered_;
     double hovered_since_s_ = 0, hovered_last_s_ = -1;
-    bool clicked_ = false; // since then
+    bool clicked_ = false; // since hovered_since_s_
 };
 
 namespace widgets {
 
-/// The widget made last has this name; nothing if it is clipped away.
+/// Registers the last widget under this name; does nothing if the widget is clipped.
 void mark(std::string_view name);
 
 /// ImGui::Button(), marked.
@@ -66,24 +67,24 @@ bool button(const char* label);
 /// ImGui::Checkbox(), marked.
 bool checkbox(const char* label, bool& on);
 
-/// ImGui::BeginCombo(), marked as a drop-down. What is offered between it and ImGui::EndCombo() is each a choice().
+/// ImGui::BeginCombo(), marked as a drop-down. Call choice() for each entry between it and ImGui::EndCombo().
 ///
-/// name  what stands beside it, where the label does not
+/// name  to register if it differs from the label
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name = {});
-/// ImGui::Selectable(), marked as what the drop-down of this name offers.
+/// ImGui::Selectable(), marked as a choice of the drop-down of this name.
 bool choice(std::string_view drop_down, const std::string& name, bool chosen);
 
-/// Whether a button of the mouse goes down in this frame on the window that is being made, or on what is in it.
+/// Whether a mouse button is pressed in this frame on the current window or on a widget in it.
 bool window_pressed();
 
-/// Small text in a quiet colour, or in the given one; wrapped at the edge of the panel.
+/// Small text in a muted colour, or in the given one, wrapped at the edge of the panel.
 void say(std::string_view text, Colour colour = palette::text_quiet);
 
-/// Whether the mouse rests on the widget made last, so that a note is wanted.
+/// Whether the mouse rests on the last widget, so that its note is due.
 bool wants_note();
-/// A note at the mouse, in lines of a readable length.
+/// Shows a note at the mouse, in lines of a readable length.
 void note(std::string_view text);
-/// The note, if it is wanted.
+/// Shows the note if wants_note().
 void explain(std::string_view text);
 
 } // namespace widgets

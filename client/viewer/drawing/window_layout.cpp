@@ -8,7 +8,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The size of one of `count` in a row or column `whole` long.
+/// The size of one of `count` equal parts, with gaps between them, of `whole` pixels.
 double share(double whole, std::size_t count) {
     return std::max(std::floor((whole - gap_pixels * static_cast<double>(count - 1)) / static_cast<double>(count)),
                     1.0);

@@ -14,7 +14,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// A gene between the least and the greatest of the population; a line across the bar is the mean.
+/// A gene as a bar between the least and the greatest value of the generation; a line across the bar marks the mean.
 void build_gene(const std::string& name, float value, const Population::Range& range, float pixel) {
     const float height = 12 * pixel;
     ImGui::TextUnformatted(name.c_str());
@@ -33,7 +33,7 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     list.AddLine({across(range.mean), corner.y - 2 * pixel}, {across(range.mean), corner.y + height + 2 * pixel},
                  ink(palette::wall), 2 * pixel);
     ImGui::Dummy({width, height});
-    widgets::explain(print("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+    widgets::explain(print("range in this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
                            double{range.mean}));
 }
 
@@ -51,12 +51,12 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
     curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
                                   ? ("health over " + core::duration(points.back().s - points.front().s)).c_str()
-                                  : "health, from now on");
+                                  : "health since the selection");
 }
 
 } // namespace
 
-std::string told_parents(const evod::v1::OrganismInfo& info) {
+std::string shown_parents(const evod::v1::OrganismInfo& info) {
     if (info.parents().empty()) {
         return "No parents: founder of generation 1, or loaded from a file";
     }
@@ -73,10 +73,10 @@ std::string shown_fate(const OrganismHistory& story) {
     }
     const evod::v1::OrganismInfo& info = *story.info();
     if (!info.alive()) {
-        return print("dead of %s after %.1f s",
+        return print("died of %s after %.1f s",
                      info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
     }
-    return story.ended() ? print("last seen alive, after %.1f s; its generation is over", info.lived_s())
+    return story.ended() ? print("alive when last seen after %.1f s; its generation has ended", info.lived_s())
                          : print("alive for %.1f s, health %.1f", info.lived_s(), info.health());
 }
 
@@ -101,19 +101,19 @@ std::string shown_children(const std::vector<OrganismHistory::Child>& children) 
         const OrganismHistory::Child& child = children[i];
         text += (i == 0 ? "" : ", ") + std::to_string(child.id) +
                 (child.other_parent ? " (with " + std::to_string(*child.other_parent) + ")"
-                 : child.same_genes ? " (as it was)"
-                                    : " (alone)");
+                 : child.same_genes ? " (unchanged)"
+                                    : " (single parent)");
     }
     if (children.size() > shown_max) {
         text += " and " + with_separators(children.size() - shown_max) + " more";
     }
-    return text.empty() ? "nobody" : text;
+    return text.empty() ? "none" : text;
 }
 
 void OrganismPanel::build(Context& context) {
     const OrganismHistory* story = context.island_view.organism_history();
     if (story == nullptr) {
-        widgets::say("A click on an organism selects it.", palette::text);
+        widgets::say("Click an organism to select it.", palette::text);
         return;
     }
     ImGui::Text("Organism %u of generation %s", story->id(), with_separators(story->generation()).c_str());
@@ -126,7 +126,7 @@ void OrganismPanel::build(Context& context) {
     if (!story->dead() && !story->ended()) {
         widgets::say(shown_choice(info), palette::text);
         bool following = context.island_view.following();
-        if (widgets::checkbox("keep it in the middle (L)", following)) {
+        if (widgets::checkbox("keep it centred (L)", following)) {
             context.island_view.toggle_following(context.world);
         }
     }
@@ -148,7 +148,7 @@ void OrganismPanel::build(Context& context) {
         widgets::say(context.island_view.problem() + ".", palette::text);
     }
     ImGui::Separator();
-    widgets::say(told_parents(info), palette::text);
+    widgets::say(shown_parents(info), palette::text);
     if (story->children()) {
         widgets::say(print("Offspring in generation %s: %s", with_separators(story->generation() + 1).c_str(),
                            shown_children(*story->children()).c_str()),
@@ -156,7 +156,7 @@ void OrganismPanel::build(Context& context) {
     } else if (!story->ended()) {
         ImGui::TextDisabled("Offspring appear when the next generation starts");
     } else if (!story->waits_for_children()) {
-        ImGui::TextDisabled("Offspring not recorded: the world ran too fast");
+        ImGui::TextDisabled("Offspring unknown: the world ran too fast to be observed");
     }
 }
 

@@ -1,7 +1,8 @@
-// Panel: a window of widgets over the island, which can be hidden. It asks and commands through the ViewedWorld alone, so
-// everything it does goes over the public protocol.
+// Panel: a window of widgets over the island that the user can show and hide. It queries and commands the server only
+// through the ViewedWorld, so everything it does uses the public protocol.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/drawing/gui.h"
@@ -22,34 +23,34 @@ class Panel {
         const Gui& gui;
         core::WorldView::Clock::time_point now;
         IslandView& island_view;
-        /// The first time since it was hidden: the events of meanwhile were not heard.
-        bool shown_anew = false;
+        /// First frame since the panel was hidden: it has missed the events in between.
+        bool just_shown = false;
     };
     struct Size {
         float width, height; // in pixels at scale 1
     };
 
-    /// A key that the panel takes while it has the keyboard, and what the help says of it.
+    /// A key that the panel handles while it has the keyboard focus, and its text in the help.
     struct Key {
         sf::Keyboard::Key key;
-        std::string_view help; // empty: what the one before does
+        std::string_view help; // empty: the same as the key before
         bool control = false, shift = false;
     };
 
     virtual ~Panel() = default;
 
-    /// Also of the window, and of its line in the help: "Parameters".
+    /// The title of the window and of its section in the help: "Parameters".
     virtual std::string_view title() const = 0;
 
-    /// Until a person makes it another.
+    /// The size until the user changes it.
     virtual Size first_size() const { return {380, 480}; }
 
-    /// All other keys are the window's, whatever panel is in front.
+    /// All other keys go to the main window, also while this panel has the focus.
     virtual std::span<const Key> keys() const { return {}; }
-    /// Whether there is something now that they act upon.
+    /// Whether the keys have something to act on now.
     virtual bool takes_keys() const { return true; }
 
-    /// The widgets, between ImGui::Begin() and ImGui::End(); called only while it is shown.
+    /// Builds the widgets; called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
     virtual void build(Context& context) = 0;
 };
 

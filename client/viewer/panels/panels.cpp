@@ -66,10 +66,10 @@ bool Panels::close_front() {
     return true;
 }
 
-bool Panels::take(const sf::Event::KeyEvent& key) const {
+bool Panels::handles(const sf::Event::KeyEvent& key) const {
     return keyboard_ && shown(*keyboard_) && places_[*keyboard_].panel->takes_keys() && !key.alt && !key.system &&
-           std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& its) {
-               return its.key == key.code && its.control == key.control && its.shift == key.shift;
+           std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& handled) {
+               return handled.key == key.code && handled.control == key.control && handled.shift == key.shift;
            });
 }
 
@@ -108,7 +108,7 @@ void Panels::build_strip(const Gui& gui) {
         width += ImGui::CalcTextSize(name_of(i).c_str()).x + 16 * scale;
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        // Where not all names fit, the keys do, and the names come up at the mouse.
+        // If the names do not fit, show the keys only, and each name as a note at the mouse.
         const std::string name = width <= window.x || panel_key(i).empty() ? name_of(i) : panel_key(i);
         ImGui::PushStyleColor(ImGuiCol_Button,
                               places_[i].shown ? ImGui::GetStyleColorVec4(ImGuiCol_ButtonHovered) : ImVec4{0, 0, 0, 0});
@@ -142,7 +142,7 @@ Rectangle Panels::place_for(std::size_t index, float scale) const {
     if (const auto free = free_place(wanted, room_, taken, margin)) {
         return *free;
     }
-    // Each pair a little lower and further in: every title can be seen.
+    // Cascade: each pair is a little lower and further inside, so that every title bar stays visible.
     const double step = margin + 26 * scale * static_cast<double>(index / 2 % 6);
     const double right = room_.left + room_.width - wanted.width, bottom = room_.top + room_.height - wanted.height;
     return {wanted.at_right ? std::max(right - step, room_.left) : std::min(room_.left + step, right),
@@ -155,7 +155,7 @@ void Panels::build(Panel::Context context, Rectangle room) {
     if (room != room_) {
         room_ = room;
         for (Place& place : places_) {
-            if (place.at == place.put_at) { // or else a person wants it there
+            if (place.at == place.put_at) { // otherwise the user has moved it
                 place.at = {};
             }
         }
@@ -174,7 +174,7 @@ void Panels::build(Panel::Context context, Rectangle room) {
             ImGui::SetNextWindowSize({static_cast<float>(to.width), static_cast<float>(to.height)});
         }
         if (ImGui::Begin(title.c_str(), &place.shown, ImGuiWindowFlags_NoCollapse)) {
-            context.shown_anew = !was_shown;
+            context.just_shown = !was_shown;
             context.gui.spots().begin_panel(title);
             place.panel->build(context);
             context.gui.spots().begin_panel({});

@@ -22,17 +22,17 @@ struct EffectWords {
 EffectWords words_of(evod::v1::ParameterEffect effect) {
     switch (effect) {
     case evod::v1::PARAMETER_EFFECT_NEXT_TICK:
-        return {"now", "Holds at once; for breeding, the next time it happens."};
+        return {"now", "Takes effect at once; for breeding, the next time it happens."};
     case evod::v1::PARAMETER_EFFECT_NEXT_GENERATION:
-        return {"generation", "Holds from the next generation on."};
+        return {"generation", "Takes effect with the next generation."};
     case evod::v1::PARAMETER_EFFECT_RESET:
-        return {"reset", "Holds when the world is reset."};
+        return {"reset", "Takes effect when the world is reset."};
     default:
         return {"", ""};
     }
 }
 
-/// With every % doubled, as formats want it.
+/// Doubles every %, for use in a format.
 std::string as_format(const std::string& text) {
     std::string escaped;
     for (const char sign : text) {
@@ -41,7 +41,7 @@ std::string as_format(const std::string& text) {
     return escaped;
 }
 
-/// Of the widget made last, which is of this parameter.
+/// Shows the note of a parameter if the mouse rests on the last widget.
 void explain(const ParameterDescription& about, const ParameterEdits& edits, std::size_t i,
              std::string_view more = "") {
     if (!widgets::wants_note()) {
@@ -60,8 +60,8 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
 
 std::span<const Panel::Key> ParametersPanel::keys() const {
     static constexpr Key keys[] = {
-        {.key = sf::Keyboard::Z, .help = "take back one's own last change", .control = true},
-        {.key = sf::Keyboard::Y, .help = "make it again", .control = true},
+        {.key = sf::Keyboard::Z, .help = "undo your last change", .control = true},
+        {.key = sf::Keyboard::Y, .help = "redo it", .control = true},
         {.key = sf::Keyboard::Z, .help = "", .control = true, .shift = true},
     };
     return keys;
@@ -72,7 +72,7 @@ void ParametersPanel::build(Context& context) {
     follow(context);
     std::string_view why = world.commands.read_only_reason();
     if (world.replay.info() != nullptr) {
-        why = "This world shows the past, which stays as it was.";
+        why = "This world is a replay and cannot be changed.";
     }
     const bool may = why.empty();
     for (const Poll* poll : {&registry_poll_, &values_poll_}) {
@@ -81,7 +81,7 @@ void ParametersPanel::build(Context& context) {
         }
     }
     if (!edits_.known()) {
-        widgets::say("Asking the server for its parameters …");
+        widgets::say("Loading the parameters …");
         return;
     }
     const float scale = context.gui.scale();
@@ -92,7 +92,7 @@ void ParametersPanel::build(Context& context) {
     build_head(context, may);
     ImGui::EndDisabled();
     ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##search", "search: name, unit or meaning", search_.data(), search_.size());
+    ImGui::InputTextWithHint("##search", "search in names, units and descriptions", search_.data(), search_.size());
     widgets::mark("Search");
     ImGui::BeginChild("rows");
     ImGui::BeginDisabled(!may);
@@ -100,7 +100,7 @@ void ParametersPanel::build(Context& context) {
     ImGui::EndDisabled();
     ImGui::EndChild();
     apply_ = apply_ && may;
-    if (apply_ && !edits_.busy()) { // in the frame in which it was let go
+    if (apply_ && !edits_.busy()) { // in the frame in which the user released the slider
         apply_ = false;
         send(context, edits_.apply(world.feed.name()));
     }
@@ -121,8 +121,8 @@ void ParametersPanel::follow(const Context& context) {
         stale_ = true;
     }
     const std::uint64_t connected_count = world.server.status().connected_count;
-    // What has changed meanwhile nobody has told.
-    stale_ = stale_ || context.shown_anew || world.feed.place_number() != place_number_ ||
+    // The panel may have missed events.
+    stale_ = stale_ || context.just_shown || world.feed.place_number() != place_number_ ||
              connected_count != connected_count_;
     place_number_ = world.feed.place_number();
     connected_count_ = connected_count;
@@ -134,17 +134,17 @@ void ParametersPanel::follow(const Context& context) {
         } else if (event.kind_case() == Kind::kParametersChanged && edits_.known()) {
             stale_ = !edits_.update(event.parameters_changed()) || stale_;
         } else if (event.kind_case() == Kind::kGenerationFinished) {
-            stale_ = stale_ || edits_.has_pending(); // it holds now
+            stale_ = stale_ || edits_.has_pending(); // the pending values have taken effect
         }
     }
-    if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // no answer will come any more
+    if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // give up waiting for the answer
         ++transaction_;
         stale_ = edits_.answered(nullptr);
     }
-    ask(context);
+    poll(context);
 }
 
-void ParametersPanel::ask(const Context& context) {
+void ParametersPanel::poll(const Context& context) {
     if (registry_poll_.due(context.world, context.now) && edits_.registry().empty()) {
         evod::v1::Request request;
         request.mutable_describe();
@@ -157,7 +157,7 @@ void ParametersPanel::ask(const Context& context) {
             }
         });
     }
-    const bool wanted = stale_ || values_poll_.pending(); // for too long, if it is due
+    const bool wanted = stale_ || values_poll_.pending(); // if it is due, the last request has timed out
     if (values_poll_.due(context.world, context.now) && wanted && !edits_.registry().empty()) {
         stale_ = false;
         evod::v1::Request request;
@@ -183,7 +183,7 @@ void ParametersPanel::send(const Context& context, std::optional<evod::v1::Reque
     }
 }
 
-// ---- what is drawn ---------------------------------------------------------------------------------------------
+// ---- widgets ---------------------------------------------------------------------------------------------------
 
 void ParametersPanel::build_head(const Context& context, bool may) {
     const ViewedWorld& world = context.world;
@@ -199,7 +199,7 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Apply")) {
         apply_ = true;
     }
-    widgets::explain("Sends every edit as one change, which holds whole or not at all.");
+    widgets::explain("Sends all edits as one change: the server accepts all of them or none.");
     ImGui::SameLine();
     if (widgets::button("Discard")) {
         edits_.revert_all();
@@ -210,7 +210,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Undo") || (undo_key && edits_.can_undo())) {
         send(context, edits_.undo(world.feed.name()));
     }
-    widgets::explain("Ctrl+Z: the values before your last change, but for what others have changed since.");
+    widgets::explain(
+        "Ctrl+Z: restores the values before your last change, except values that others have changed since.");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!edits_.can_redo());
@@ -222,7 +223,7 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     ImGui::SameLine(0, 20 * scale);
     ImGui::Checkbox("apply on release", &apply_on_release_);
     widgets::mark("apply on release");
-    widgets::explain("A value is sent as soon as the mouse lets it go.");
+    widgets::explain("Sends a value as soon as you release the mouse button.");
     if (!edits_.problem().empty()) {
         widgets::say(edits_.problem(), palette::warning);
         widgets::mark("problem");
@@ -230,9 +231,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     }
     const std::string revision = "Revision " + std::to_string(edits_.revision());
     widgets::say(edits_.busy() ? "Sending …"
-                 : count == 0  ? revision + "; nothing is edited"
-                               : std::to_string(count) + (count == 1 ? " value is" : " values are") +
-                                    " edited and not applied yet");
+                 : count == 0  ? revision + "; no edits"
+                               : std::to_string(count) + (count == 1 ? " edit" : " edits") + " not applied yet");
     if (!edits_.busy()) {
         widgets::mark(count == 0 ? revision : std::to_string(count) + " edited");
     }
@@ -242,20 +242,20 @@ void ParametersPanel::build_rows(float scale) {
     const bool searching = search_[0] != '\0';
     bool any = false;
     for (const ParameterGroup& part : groups_) {
-        const auto hit = [&](std::size_t i) { // what was refused is seen whatever is searched for
+        const auto hit = [&](std::size_t i) { // rejected values are shown whatever the search
             return edits_.violation(i) != nullptr || matches(edits_.registry()[i], search_.data());
         };
-        bool hits = false, of_note = false;
+        bool hits = false, needs_attention = false;
         for (std::size_t i = part.first; i < part.end; ++i) {
             hits = hits || hit(i);
-            of_note = of_note || edits_.is_edited(i) || edits_.violation(i) != nullptr;
+            needs_attention = needs_attention || edits_.is_edited(i) || edits_.violation(i) != nullptr;
         }
         if (!hits) {
             continue;
         }
         any = true;
         const std::string title{part.title};
-        if (searching || of_note) { // nothing that is looked for, or waits to be applied, is folded away
+        if (searching || needs_attention) { // open groups with hits, edits or rejected values
             ImGui::SetNextItemOpen(true);
         }
         if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -266,7 +266,7 @@ void ParametersPanel::build_rows(float scale) {
         }
         ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 4);
         ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 5);
-        ImGui::TableSetupColumn("holds from", ImGuiTableColumnFlags_WidthFixed, 76 * scale);
+        ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 76 * scale);
         for (std::size_t i = part.first; i < part.end; ++i) {
             if (hit(i)) {
                 ImGui::PushID(static_cast<int>(i));
@@ -277,7 +277,7 @@ void ParametersPanel::build_rows(float scale) {
         ImGui::EndTable();
     }
     if (!any) {
-        widgets::say("No parameter is like that.");
+        widgets::say("No parameter matches.");
     }
 }
 
@@ -350,7 +350,7 @@ bool ParametersPanel::build_number(std::size_t i) {
     widgets::mark(about.name());
     const bool released = ImGui::IsItemDeactivatedAfterEdit();
     if (!ImGui::IsItemActive()) {
-        explain(about, edits_, i, "\n\nDrag it; Ctrl and click to type.");
+        explain(about, edits_, i, "\n\nDrag, or Ctrl+click to type.");
     }
     return released;
 }
@@ -379,7 +379,7 @@ void ParametersPanel::build_menu(std::size_t i) {
     if (!ImGui::BeginPopupContextItem("menu")) {
         return;
     }
-    if (ImGui::MenuItem("Take the edit back", nullptr, false, edits_.is_edited(i))) {
+    if (ImGui::MenuItem("Discard the edit", nullptr, false, edits_.is_edited(i))) {
         edits_.revert(i);
     }
     if (ImGui::MenuItem(("Default: " + to_text(about.default_value())).c_str())) {
@@ -391,8 +391,8 @@ void ParametersPanel::build_menu(std::size_t i) {
 
 void ParametersPanel::build_remarks(std::size_t i) {
     if (const evod::v1::Violation* violation = edits_.violation(i)) {
-        widgets::say((violation->got().empty() ? "" : violation->got() + " is refused; ") +
-                         "allowed: " + violation->allowed(),
+        widgets::say((violation->got().empty() ? "" : "got " + violation->got() + ", ") + "allowed " +
+                         violation->allowed(),
                      palette::warning);
         widgets::mark(edits_.registry()[i].name() + " is refused");
     }

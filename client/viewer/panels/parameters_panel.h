@@ -1,9 +1,10 @@
-// ParametersPanel: every parameter of the world that is looked at, as the server's registry describes it, to be
-// searched, changed, applied and undone.
+// ParametersPanel: searches, edits, applies and undoes the parameters of the world shown, as the server's registry
+// describes them.
 //
-// What is being changed and what comes of it is ParameterEdits' affair; this draws it, and carries its requests.
+// ParameterEdits holds the edits and the server's answers; this class draws them and sends the requests.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
@@ -25,7 +26,7 @@ class ParametersPanel : public Panel {
 
   private:
     void follow(const Context& context);
-    void ask(const Context& context);
+    void poll(const Context& context);
     void send(const Context& context, std::optional<evod::v1::Request> request);
 
     void build_head(const Context& context, bool may);
@@ -39,17 +40,17 @@ class ParametersPanel : public Panel {
 
     ParameterEdits edits_;
     std::vector<ParameterGroup> groups_;
-    std::string world_;  // by the name that was asked for
-    std::string run_id_; // that the undo stack is of
+    std::string world_;  // the name that the user opened
+    std::string run_id_; // the run that edits_ belongs to
     std::uint64_t place_number_ = 0, connected_count_ = 0;
-    Poll registry_poll_;                        // until it is known
-    Poll values_poll_;                          // when they may have changed
-    bool stale_ = true;                         // the values
-    std::uint64_t transaction_ = 0;             // number of the last: an answer to another is late
-    core::WorldView::Clock::time_point sent_{}; // the last; it is never sent twice
+    Poll registry_poll_;                        // until the registry has arrived
+    Poll values_poll_;                          // when the values may have changed
+    bool stale_ = true;                         // the values may have changed
+    std::uint64_t transaction_ = 0;             // number of the last one; answers to earlier ones are ignored
+    core::WorldView::Clock::time_point sent_{}; // time of the last transaction; it is never sent again
     std::array<char, 64> search_{};
     bool apply_on_release_ = false;
-    bool apply_ = false; // as soon as no transaction is under way
+    bool apply_ = false; // when no transaction is pending
 };
 
 } // namespace evod::viewer

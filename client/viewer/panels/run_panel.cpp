@@ -16,37 +16,21 @@ namespace {
 const char* outcome_words(evod::v1::Outcome outcome) {
     switch (outcome) {
     case evod::v1::OUTCOME_GENERATION_LIMIT:
-        return "the generation limit is reached";
+        return "generation limit reached";
     case evod::v1::OUTCOME_TARGET_FITNESS:
-        return "the target fitness is reached";
+        return "target fitness reached";
     case evod::v1::OUTCOME_STAGNATION:
-        return "nothing better came for too long";
+        return "fitness has stagnated";
     case evod::v1::OUTCOME_EXTINCTION:
-        return "everyone has died";
+        return "all organisms have died";
     default:
-        return "a criterion holds";
+        return "a termination criterion is met";
     }
 }
 
-constexpr std::uint64_t count_max = 1'000'000'000'000; // of ticks or generations at a time
+constexpr std::uint64_t count_max = 1'000'000'000'000; // ticks or generations per command
 
-struct Allowed {
-    std::uint64_t least, most;
-};
-/// What a field says, if it is allowed; `problem` then becomes empty, or else says what is.
-std::optional<std::uint64_t> number_in(std::string_view field, std::string_view text, Allowed allowed,
-                                       std::string& problem) {
-    const auto number = whole_number(text);
-    if (number && *number >= allowed.least && *number <= allowed.most) {
-        problem.clear();
-        return number;
-    }
-    problem = std::string{field} + ": \"" + std::string{text} + "\" is no whole number from " +
-              with_separators(allowed.least) + " to " + with_separators(allowed.most);
-    return std::nullopt;
-}
-
-/// A field for a number, which is looked at when it is used.
+/// A field for a number; number_in() checks it when the user presses the button beside it.
 template <std::size_t size>
 void number_field(const char* name, std::array<char, size>& field, float width, const char* hint = "") {
     ImGui::SetNextItemWidth(width);
@@ -56,8 +40,8 @@ void number_field(const char* name, std::array<char, size>& field, float width, 
     ImGui::SameLine();
 }
 
-/// What is wrong, below the fields that it may be about.
-void tell(const std::string& problem, std::initializer_list<std::string_view> fields) {
+/// Shows `problem` if it names one of `fields`.
+void show_problem(const std::string& problem, std::initializer_list<std::string_view> fields) {
     const std::string_view field = std::string_view{problem}.substr(0, problem.find(':'));
     if (!problem.empty() && std::ranges::find(fields, field) != fields.end()) {
         widgets::say(problem, palette::warning);
@@ -71,7 +55,7 @@ void RunPanel::build(Context& context) {
     ViewedWorld& world = context.world;
     const RunControl& control = world.feed.control();
     if (!control.known()) {
-        widgets::say("No world is shown yet.");
+        widgets::say("No world is open yet.");
         return;
     }
     const float scale = context.gui.scale();
@@ -92,20 +76,20 @@ void RunPanel::build(Context& context) {
 
 void RunPanel::build_state(const ViewedWorld& world) {
     const RunControl& control = world.feed.control();
-    const evod::v1::WorldInfo& told = control.info();
+    const evod::v1::WorldInfo& info = control.info();
     std::string state = world.replay.at_end() ? world.state_text() : state_word(control.state(), world.feed.storage());
     if (control.state() == evod::v1::RUN_STATE_TERMINATED) {
         state += std::string{": "} + outcome_words(control.outcome());
-    } else if (told.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
-        state += " until generation " + with_separators(told.run_until_generation());
+    } else if (info.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
+        state += " until generation " + with_separators(info.run_until_generation());
     }
     widgets::say(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
-    if (const codec::DecodedSnapshot* picture = world.feed.snapshot()) {
-        where = "generation " + with_separators(picture->about.generation()) + ", " + where;
+    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+        where = "generation " + with_separators(snapshot->about.generation()) + ", " + where;
     }
-    const std::string seed = "seed " + std::to_string(told.seed());
-    widgets::say(where + (told.name().empty() ? "" : ", " + seed));
+    const std::string seed = "seed " + std::to_string(info.seed());
+    widgets::say(where + (info.name().empty() ? "" : ", " + seed));
     widgets::mark(seed);
 }
 
@@ -114,7 +98,7 @@ void RunPanel::build_run(ViewedWorld& world, float scale) {
     const bool over = state == evod::v1::RUN_STATE_TERMINATED || world.replay.at_end();
     ImGui::BeginDisabled(over);
     const char* label = state == evod::v1::RUN_STATE_RUNNING  ? "Pause"
-                        : state == evod::v1::RUN_STATE_PAUSED ? "Go on"
+                        : state == evod::v1::RUN_STATE_PAUSED ? "Resume"
                                                               : "Run";
     if (ImGui::Button(label, {90 * scale, 0})) {
         world.commands.pause_or_resume();
@@ -127,29 +111,29 @@ void RunPanel::build_run(ViewedWorld& world, float scale) {
     const float field = 110 * scale;
     number_field("ticks", ticks_, field);
     if (widgets::button("Step ticks")) {
-        if (const auto ticks = number_in("ticks", ticks_.data(), {1, count_max}, problem_)) {
+        if (const auto ticks = number_in("ticks", ticks_.data(), 1, count_max, problem_)) {
             world.commands.step(*ticks);
         }
     }
-    widgets::explain("So many ticks, then it pauses.");
+    widgets::explain("Runs this many ticks, then pauses.");
     number_field("generations", generations_, field);
     if (widgets::button("Run generations")) {
-        if (const auto generations = number_in("generations", generations_.data(), {1, count_max}, problem_)) {
+        if (const auto generations = number_in("generations", generations_.data(), 1, count_max, problem_)) {
             world.commands.run_generations(*generations);
         }
     }
-    widgets::explain("So many generations to their end, then it waits.");
+    widgets::explain("Runs this many generations to their end, then waits.");
     ImGui::EndDisabled();
-    tell(problem_, {"ticks", "generations"});
+    show_problem(problem_, {"ticks", "generations"});
 }
 
 void RunPanel::build_speed(ViewedWorld& world) {
     const evod::v1::Speed& speed = world.feed.control().speed();
     bool max = speed.max();
-    if (ImGui::Checkbox("as fast as the server can", &max)) {
+    if (ImGui::Checkbox("as fast as possible", &max)) {
         world.commands.max_speed();
     }
-    widgets::mark("as fast as the server can");
+    widgets::mark("as fast as possible");
     ImGui::BeginDisabled(speed.max());
     double factor = factor_.value_or(speed.max() ? 1 : speed.real_time_factor());
     const double least = RunControl::factor_min, most = RunControl::factor_max;
@@ -160,9 +144,9 @@ void RunPanel::build_speed(ViewedWorld& world) {
     }
     widgets::mark("speed");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
-        const bool allowed = *factor_ >= least && *factor_ <= most; // a typed one may be anything
+        const bool allowed = *factor_ >= least && *factor_ <= most; // a typed value is not limited by the slider
         problem_ = allowed ? ""
-                           : "speed: " + shown_number(*factor_) + " is not from " + shown_number(least) + " to " +
+                           : "speed: got " + shown_number(*factor_) + ", allowed " + shown_number(least) + " to " +
                                  shown_number(most) + " times real time";
         if (allowed) {
             world.commands.at_factor(*factor_);
@@ -176,41 +160,41 @@ void RunPanel::build_speed(ViewedWorld& world) {
     if (widgets::button("Real time")) {
         world.commands.real_time();
     }
-    tell(problem_, {"speed"});
+    show_problem(problem_, {"speed"});
     if (world.feed.control().info().slowed()) {
-        widgets::say("The server's machine cannot keep up: the clock goes slower, no tick is left out.");
+        widgets::say("The server cannot keep up: simulated time runs slower, no tick is skipped.");
     }
 }
 
 void RunPanel::build_reset(ViewedWorld& world, float scale) {
     if (world.replay.info() != nullptr) {
-        widgets::say("This world shows the past, which stays as it was.");
+        widgets::say("This world is a replay and cannot be changed.");
         return;
     }
-    number_field("seed", seed_, 200 * scale, "the same seed again");
+    number_field("seed", seed_, 200 * scale, "empty: the same seed");
     if (widgets::button("Reset …")) {
         ImGui::OpenPopup("reset");
     }
-    widgets::explain("Begins the run again at generation 1, with the parameters last set.");
-    tell(problem_, {"seed"});
+    widgets::explain("Starts a new run at generation 1 with the current parameter settings.");
+    show_problem(problem_, {"seed"});
     if (!ImGui::BeginPopup("reset")) {
         return;
     }
     const std::string seed = seed_.data();
-    ImGui::Text("Begin %s again at generation 1, %s?", world.feed.control().world().c_str(),
-                seed.empty() ? "with the same seed" : ("with the seed " + seed).c_str());
+    ImGui::Text("Restart %s at generation 1 %s?", world.feed.control().world().c_str(),
+                seed.empty() ? "with the same seed" : ("with seed " + seed).c_str());
     if (widgets::button("Reset the world")) {
-        constexpr Allowed any{0, std::numeric_limits<std::uint64_t>::max()};
+        constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
         if (seed.empty()) {
             problem_.clear();
             world.commands.reset(std::nullopt);
-        } else if (const auto number = number_in("seed", seed, any, problem_)) {
+        } else if (const auto number = number_in("seed", seed, 0, most, problem_)) {
             world.commands.reset(*number);
         }
         ImGui::CloseCurrentPopup();
     }
     ImGui::SameLine();
-    if (widgets::button("Keep it")) {
+    if (widgets::button("Cancel")) {
         ImGui::CloseCurrentPopup();
     }
     ImGui::EndPopup();

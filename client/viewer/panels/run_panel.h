@@ -1,6 +1,7 @@
-// RunPanel: runs, pauses, steps and resets the world that is looked at, and says how fast it goes.
+// RunPanel: runs, pauses, steps and resets the world shown, and sets its speed.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
@@ -26,9 +27,9 @@ class RunPanel : public Panel {
 
     using Field = std::array<char, 24>;
     Field ticks_{"60"}, generations_{"10"};
-    Field seed_{};                 // empty: the same again
-    std::optional<double> factor_; // while the slider is held
-    std::string problem_;          // of what was wanted last: "ticks: …"
+    Field seed_{};                 // empty: the same seed
+    std::optional<double> factor_; // while the user drags the slider
+    std::string problem_;          // with the last input: "ticks: …"
 };
 
 } // namespace evod::viewer

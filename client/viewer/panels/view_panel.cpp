@@ -21,7 +21,7 @@ void build_colouring(IslandView& island_view) {
         case ColourBy::Health:
             return "health";
         case ColourBy::Lineage:
-            return "lineage (who of the first generation they come of)";
+            return "lineage (founder in the first generation)";
         default:
             return "nothing";
         }
@@ -60,19 +60,19 @@ void ViewPanel::build(Context& context) {
     build_colouring(island_view);
     ImGui::Separator();
     widgets::checkbox("perception radii of food and poison (V)", island_view.options.radii);
-    widgets::checkbox("forces, and what they act on (G)", island_view.options.forces);
+    widgets::checkbox("forces and their targets (G)", island_view.options.forces);
     widgets::checkbox("trails of the last 3 simulated seconds (T)", island_view.options.trails);
     ImGui::Separator();
-    widgets::checkbox("densities where organisms are too small", island_view.options.density);
-    widgets::checkbox("minimap where not all is seen", island_view.options.minimap);
+    widgets::checkbox("density map where organisms are too small", island_view.options.density);
+    widgets::checkbox("minimap while zoomed in", island_view.options.minimap);
     ImGui::Separator();
     bool following = island_view.following();
     if (context.world.feed.selected() || following) {
-        if (widgets::checkbox("keep the selected organism in the middle (L)", following)) {
+        if (widgets::checkbox("keep the selected organism centred (L)", following)) {
             island_view.toggle_following(context.world);
         }
     } else {
-        widgets::say("A click on an organism selects it.", palette::text);
+        widgets::say("Click an organism to select it.", palette::text);
     }
     if (!island_view.problem().empty()) {
         ImGui::Separator();

@@ -1,4 +1,7 @@
-// ViewPanel: the switches of what of an island is shown, and how.
+// ViewPanel: switches for what the window shows of an island, and how.
+//
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"

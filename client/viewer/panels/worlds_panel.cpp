@@ -16,7 +16,7 @@ void cell(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// Null: there are none of this island.
+/// The statistics of this island; null if there are none.
 template <class Statistics>
 const Statistics* of_island(const google::protobuf::RepeatedPtrField<Statistics>& all, std::uint32_t island) {
     const auto found = std::ranges::find(all, island, &Statistics::island);
@@ -31,11 +31,11 @@ void WorldsPanel::build(Context& context) {
         place_number_ = world.feed.place_number();
         statistics_.Clear();
     }
-    if (context.shown_anew) {
-        poll_interval();
+    if (context.just_shown) {
+        refresh();
     }
-    hear(world);
-    ask(world, context.now);
+    process_events(world);
+    poll(world, context.now);
     if (!list_poll_.problem().empty()) {
         widgets::say(list_poll_.problem(), palette::warning);
     }
@@ -43,12 +43,12 @@ void WorldsPanel::build(Context& context) {
     build_islands(world);
 }
 
-void WorldsPanel::poll_interval() {
+void WorldsPanel::refresh() {
     list_poll_.hurry();
     statistics_poll_.hurry();
 }
 
-void WorldsPanel::ask(ViewedWorld& world, Clock::time_point now) {
+void WorldsPanel::poll(ViewedWorld& world, Clock::time_point now) {
     if (list_poll_.due(world, now)) {
         evod::v1::Request request;
         request.mutable_list_worlds();
@@ -64,12 +64,12 @@ void WorldsPanel::ask(ViewedWorld& world, Clock::time_point now) {
         statistics_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 statistics_ = response->statistics();
-            } // a world that is not there has no islands; that it is not, the list tells
+            } // on an error keep the last; the list shows whether the world exists
         });
     }
 }
 
-void WorldsPanel::hear(const ViewedWorld& world) {
+void WorldsPanel::process_events(const ViewedWorld& world) {
     using Kind = evod::v1::Event::KindCase;
     for (const evod::v1::Event& event : world.feed.events()) {
         switch (event.kind_case()) {
@@ -79,9 +79,9 @@ void WorldsPanel::hear(const ViewedWorld& world) {
         case Kind::kWorldReset:
         case Kind::kWorldDeleted:
         case Kind::kEventsDropped:
-            poll_interval();
+            refresh();
             break;
-        default: // a world that runs is looked at anew all the time
+        default: // the poll covers the progress of running worlds
             break;
         }
     }
@@ -150,7 +150,7 @@ void WorldsPanel::build_islands(ViewedWorld& world) {
                 chosen = static_cast<std::uint32_t>(i);
             }
             widgets::mark(name);
-            // Absent where the fitness is a function of the chromosome alone, and in the first generation.
+            // The live numbers are absent if fitness depends on the chromosome alone, the last ones in generation 1.
             const auto island = static_cast<std::uint32_t>(i);
             if (const auto* live = of_island(statistics_.live(), island)) {
                 cell(with_separators(live->alive_count()) + " of " + with_separators(live->organism_count()));

@@ -1,6 +1,7 @@
-// WorldsPanel: the worlds of the server and how each is doing; a click looks at one, or at another of its islands.
+// WorldsPanel: the worlds of the server with their state. A click shows a world, or another island of it.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
@@ -21,20 +22,20 @@ class WorldsPanel : public Panel {
   private:
     using Clock = core::WorldView::Clock;
 
-    // Ticks rise all the time; nobody reads them faster.
-    static constexpr std::chrono::seconds ask_again{1};
+    // Fast enough for a user to read the rising ticks.
+    static constexpr std::chrono::seconds poll_interval{1};
 
-    void ask(ViewedWorld& world, Clock::time_point now);
-    void hear(const ViewedWorld& world);
-    void poll_interval();
+    void poll(ViewedWorld& world, Clock::time_point now);
+    void process_events(const ViewedWorld& world);
+    void refresh();
     void build_worlds(ViewedWorld& world);
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
-    evod::v1::Statistics statistics_; // of the place that is looked at
-    std::uint64_t place_number_ = 0;  // that they are of
-    Poll list_poll_{ask_again};
-    Poll statistics_poll_{ask_again};
+    evod::v1::Statistics statistics_; // of the world and island shown
+    std::uint64_t place_number_ = 0;  // of the place that statistics_ describes
+    Poll list_poll_{poll_interval};
+    Poll statistics_poll_{poll_interval};
 };
 
 } // namespace evod::viewer

@@ -138,7 +138,7 @@ void Panes::link_cameras(const Camera& leader) {
     for (const auto& pane : panes_) {
         for (const Tile& tile : pane->tiles()) {
             if (&tile.camera != &leader) {
-                tile.camera.look_as(leader);
+                tile.camera.follow(leader);
             }
         }
     }

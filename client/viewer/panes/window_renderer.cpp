@@ -53,7 +53,7 @@ void WindowRenderer::select_at(Pane& pane, Point screen) {
 
 Captured WindowRenderer::captured(const sf::Event& event) const {
     Captured captured = gui_.captured();
-    captured.keyboard |= event.type == sf::Event::KeyPressed && panels_.take(event.key);
+    captured.keyboard |= event.type == sf::Event::KeyPressed && panels_.handles(event.key);
     return captured;
 }
 

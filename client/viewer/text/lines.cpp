@@ -7,8 +7,8 @@ namespace evod::viewer {
 
 namespace {
 
-/// Where the sign ends that begins at `at`, in UTF-8.
-std::size_t end_of_sign(std::string_view text, std::size_t at) {
+/// The end of the UTF-8 character that begins at `at`.
+std::size_t end_of_character(std::string_view text, std::size_t at) {
     for (++at; at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; ++at) {
     }
     return at;
@@ -37,9 +37,9 @@ std::string in_lines(std::string_view text, float width_max, const std::function
                 begin_line();
             }
             while (!word.empty() && !fits(word)) {
-                std::size_t part = end_of_sign(word, 0);
-                while (part < word.size() && fits(word.substr(0, end_of_sign(word, part)))) {
-                    part = end_of_sign(word, part);
+                std::size_t part = end_of_character(word, 0);
+                while (part < word.size() && fits(word.substr(0, end_of_character(word, part)))) {
+                    part = end_of_character(word, part);
                 }
                 lines.append(word.substr(0, part));
                 word.remove_prefix(part);

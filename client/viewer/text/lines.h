@@ -1,6 +1,7 @@
-// Lines: a text broken so that it fits.
+// Lines: breaks a text into lines of a given width.
 //
-// Threads      none.
+// Owner        none: a function.
+// Threads      any.
 #pragma once
 
 #include <functional>
@@ -9,10 +10,10 @@
 
 namespace evod::viewer {
 
-/// The text with line breaks in place of spaces, so that no line is wider than `width_max`. A word that is wider is
-/// broken between its signs; nothing else is, numbers with commas and points least of all.
+/// Replaces spaces by line breaks so that no line is wider than `width_max`. Breaks a word only if it is wider than a
+/// line; numbers with commas and points stay whole.
 ///
-/// width_of  of a text in one line
+/// width_of  returns the width of a text in one line
 std::string in_lines(std::string_view text, float width_max, const std::function<float(std::string_view)>& width_of);
 
 } // namespace evod::viewer

@@ -66,6 +66,18 @@ std::optional<std::uint64_t> whole_number(std::string_view text) {
     return error == std::errc{} && end == text.data() + text.size() ? std::optional{number} : std::nullopt;
 }
 
+std::optional<std::uint64_t> number_in(std::string_view field, std::string_view text, std::uint64_t least,
+                                       std::uint64_t most, std::string& problem) {
+    const auto number = whole_number(text);
+    if (number && *number >= least && *number <= most) {
+        problem.clear();
+        return number;
+    }
+    problem = std::string{field} + ": got \"" + std::string{text} + "\", allowed whole numbers from " +
+              with_separators(least) + " to " + with_separators(most);
+    return std::nullopt;
+}
+
 double nice_step(double least) {
     if (!(least > 0)) {
         return 1;

@@ -1,5 +1,4 @@
-// The start screen and the panels of evoview, moved by scripts, against evod: what is done there is what the server
-// has.
+// The start screen and the panels of evoview, driven by scripts, against evod: the server has what the script did.
 //
 // Runs under Xvfb.
 #include "tests/support/waiting.h"
@@ -61,7 +60,7 @@ double chance_of(const evod::v1::ParameterSet& set) {
     return 0;
 }
 
-TEST_F(PanelsTest, WhatIsAppliedTheServerHasAndWhatIsUndoneItHasNoMore) {
+TEST_F(PanelsTest, ApplyUndoAndRedoReachTheServer) {
     RealServer server{{"--seed", "7"}};
     const Ran applied = play(server.address(), R"(
 wait connected
@@ -109,7 +108,7 @@ std::string selection_of(const evod::v1::ParameterSet& set) {
     return "";
 }
 
-TEST_F(PanelsTest, ADropDownIsSetToWhatItOffersOrTheScriptEnds) {
+TEST_F(PanelsTest, ADropDownTakesOnlyItsChoices) {
     RealServer server{{"--seed", "7"}};
     const Ran chosen = play(server.address(), R"script(
 wait snapshot
@@ -140,7 +139,7 @@ set selection turnament
     EXPECT_THAT(unknown.output, HasSubstr("tournament, "));
 }
 
-TEST_F(PanelsTest, WhatIsRefusedIsMarkedAndNothingIsChanged) {
+TEST_F(PanelsTest, ARejectedValueIsMarkedAndChangesNothing) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
@@ -159,7 +158,7 @@ quit
     EXPECT_EQ(server.parameters().revision(), 1u);
 }
 
-TEST_F(PanelsTest, KeysThatAreTypedIntoAFieldCommandNothing) {
+TEST_F(PanelsTest, KeysTypedIntoAFieldCommandNothing) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
@@ -187,15 +186,15 @@ TEST_F(PanelsTest, RunsGenerationsAndResetsWithASeed) {
     const Ran ran = play(server.address(), R"(
 wait snapshot
 key F3
-click "as fast as the server can"
+click "as fast as possible"
 set generations 2
 click "Run generations"
 wait generation 2
 wait state waiting
 set seed 12345
 click "Reset …"
-click "Keep it"
-wait gone "Keep it"
+click "Cancel"
+wait gone "Cancel"
 click "Reset …"
 click "Reset the world"
 wait widget "seed 12345"
@@ -210,7 +209,7 @@ quit
     EXPECT_TRUE(world.speed().max());
 }
 
-TEST_F(PanelsTest, NumbersThatAreNotAllowedAreRefusedWithWhatIs) {
+TEST_F(PanelsTest, InvalidNumbersAreRejected) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
@@ -236,16 +235,16 @@ quit
     EXPECT_EQ(world.speed().real_time_factor(), 1);
 }
 
-TEST_F(PanelsTest, EscClosesAQuestionThenThePanelUsedLast) {
+TEST_F(PanelsTest, EscClosesADialogThenThePanelUsedLast) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
 key F2
 key F3
 click "Reset …"
-wait widget "Keep it"
+wait widget "Cancel"
 key Escape
-wait gone "Keep it"
+wait gone "Cancel"
 wait widget "Reset …"
 key Escape
 wait gone "Reset …"
@@ -257,7 +256,7 @@ quit
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
-TEST_F(PanelsTest, EscOnTheBareIslandAsksBeforeItQuits) {
+TEST_F(PanelsTest, EscQuitsOnlyAtTheSecondPress) {
     RealServer server{{"--seed", "7"}};
     const std::string path = folder.file("still_there.png");
     const Ran ran = play(server.address(), R"(
@@ -272,10 +271,10 @@ key Escape
 wait widget "nothing: the window is gone"
 )");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_TRUE(std::filesystem::exists(path)) << "the first one closed it";
+    EXPECT_TRUE(std::filesystem::exists(path)) << "the first press closed the window";
 }
 
-TEST_F(PanelsTest, TheGlassBoxTakesItsKeysAndNoOthers) {
+TEST_F(PanelsTest, TheGlassBoxHandlesOnlyItsKeys) {
     RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("data")}};
     evod::v1::Request run;
     run.mutable_run()->set_generations(2);
@@ -304,7 +303,7 @@ quit
     EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_RUNNING);
 }
 
-TEST_F(PanelsTest, AWorldWantedAtTheCommandLineIsShownOnceThereIsAConnection) {
+TEST_F(PanelsTest, ShowsTheWorldOfTheCommandLineOnceConnected) {
     RealServer server{{"--seed", "7"}};
     evod::v1::Request create, statistics;
     create.mutable_create_world()->set_name("mars");
@@ -317,7 +316,7 @@ TEST_F(PanelsTest, AWorldWantedAtTheCommandLineIsShownOnceThereIsAConnection) {
     EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_RUNNING);
 }
 
-TEST_F(PanelsTest, AClickOnATimeLineGivesItsHalfTheFocus) {
+TEST_F(PanelsTest, AClickOnATimeLineMovesTheFocus) {
     RealServer server{{"--seed", "7", "--data", folder.file("data")}};
     evod::v1::Request create, run;
     create.mutable_create_world()->set_name("mars");
@@ -343,7 +342,8 @@ TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
     run.mutable_run_until_tick()->set_world("default");
     run.mutable_run_until_tick()->set_tick(30);
     server.ask(run);
-    ASSERT_TRUE(wait_until([&] { return server.state().tick() == 30; })); // else the line's middle is an earlier tick
+    ASSERT_TRUE(
+        wait_until([&] { return server.state().tick() == 30; })); // otherwise the middle of the line is an earlier tick
     for (const char* when : {"wait widget left/Present\nkey F8\n", "key F8\nwait widget left/Present\n"}) {
         const Ran ran = play(server.address() + " --past 1 --size 1280x720",
                              std::string{"wait snapshot\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");
@@ -351,7 +351,7 @@ TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
     }
 }
 
-TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
+TEST_F(PanelsTest, AClickOnAWorldShowsIt) {
     RealServer server{{"--seed", "7"}};
     server.make_world({.name = "mars", .parameters = {{"island_count", count(3)}}});
     const Ran ran = play(server.address(), R"(
@@ -368,7 +368,7 @@ quit
     EXPECT_EQ(server.state("default").state(), evod::v1::RUN_STATE_WAITING);
 }
 
-TEST_F(PanelsTest, AViewerComesInThroughTheStartScreenAndChangesNothing) {
+TEST_F(PanelsTest, AViewerConnectsAndChangesNothing) {
     const std::string admin = token("admin"), secret = token("viewer");
     RealServer server{{"--seed", "7", "--require-token", "--data", folder.file("data"), "--log-level", "debug"}};
     const Ran ran = play("--start", "set Server " + server.address() + "\nwait widget error\nset Token " + secret + R"(
@@ -380,7 +380,7 @@ set mutation_chance 0.9
 click Apply
 key F4
 key F3
-click "as fast as the server can"
+click "as fast as possible"
 click Run/Run
 click "Run generations"
 click "Reset …"
@@ -397,7 +397,7 @@ screenshot )" + folder.file("viewer.png") +
     EXPECT_EQ(chance_of(server.parameters()), 0.15);
     EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_WAITING);
     EXPECT_FALSE(server.state().speed().max());
-    EXPECT_THAT(server.end(), Not(HasSubstr("needs the role"))) << "it did not even ask for it";
+    EXPECT_THAT(server.end(), Not(HasSubstr("needs the role"))) << "the viewer sent no command";
 
     const std::string recent = folder.file("state/evod/recent_servers");
     EXPECT_EQ(read_file(recent), server.address() + "\n");
@@ -406,7 +406,7 @@ screenshot )" + folder.file("viewer.png") +
     EXPECT_EQ(about.st_mode & 0777, 0600u);
 }
 
-TEST_F(PanelsTest, TheStartScreenSaysWhyThereIsNoConnectionAndIsComeBackTo) {
+TEST_F(PanelsTest, TheStartScreenExplainsAFailureAndReturns) {
     RealServer server{{"--seed", "7"}};
     const std::string address = "\"" + server.address() + "\"\n";
     const Ran ran =
@@ -416,7 +416,7 @@ TEST_F(PanelsTest, TheStartScreenSaysWhyThereIsNoConnectionAndIsComeBackTo) {
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
-TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
+TEST_F(PanelsTest, AFailingLineEndsEvoviewAndIsPrinted) {
     const Ran wrong = play("--start", "wait widget Connect\nclik Connect\n");
     EXPECT_EQ(wrong.status, 2);
     EXPECT_THAT(wrong.output, HasSubstr("script:2: word 1: got \"clik\""));
@@ -425,10 +425,10 @@ TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
     EXPECT_THAT(late.output, HasSubstr("script:3: click Disconnect: "));
 }
 
-TEST_F(PanelsTest, AScreenThatEndsWithItsLastClientIsDrawnOn) {
+TEST_F(PanelsTest, DrawsOnAScreenThatEndsWithItsLastClient) {
     Process screen{"/usr/bin/env", {"Xvfb", "-displayfd", "1", "-terminate", "-nolisten", "tcp"}};
     std::string number;
-    do { // beside it stands what the server says to the error output
+    do { // the output also has messages of the X server
         number = screen.read_line();
     } while (!number.empty() && number.find_first_not_of("0123456789\n") != std::string::npos);
     ASSERT_FALSE(number.empty()) << "Xvfb did not start";
@@ -439,7 +439,7 @@ TEST_F(PanelsTest, AScreenThatEndsWithItsLastClientIsDrawnOn) {
 }
 
 #ifdef ENDLESS_LOOK_UP_LIBRARY
-TEST_F(PanelsTest, ALookUpThatNeverEndsHoldsUpNoWindow) {
+TEST_F(PanelsTest, AnEndlessLookUpDoesNotBlockTheWindow) {
     Process evoview{"/usr/bin/env",
                     {std::string{"LD_PRELOAD="} + ENDLESS_LOOK_UP_LIBRARY, EVOVIEW, "lab.example", "--script",
                      write("key F5\nwait widget palette\nquit\n")}};
@@ -447,12 +447,12 @@ TEST_F(PanelsTest, ALookUpThatNeverEndsHoldsUpNoWindow) {
 }
 #endif
 
-TEST_F(PanelsTest, ATickOfAnyLengthCanBeTypedAndIsBroughtWithinItsRange) {
+TEST_F(PanelsTest, ATypedTickLengthIsClamped) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
 key F9
-click "The bodies of this island"
+click "Bodies of this island"
 set "tick, ms" 0
 wait widget "10,000 steps"
 set "tick, ms" -7
@@ -464,14 +464,14 @@ quit
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
-TEST_F(PanelsTest, TextAndWidgetsAreAsLargeAsTheScale) {
+TEST_F(PanelsTest, TextAndWidgetsFollowTheScale) {
     const auto size_of_page = [&](const std::string& scale) {
         const Ran ran = play("--start --size 1280x720 --scale " + scale,
                              "wait widget Connect\nscreenshot " + folder.file("start.png") + "\nquit\n");
         EXPECT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         EXPECT_TRUE(image.loadFromFile(folder.file("start.png")));
-        // The sheet in the middle of the window: from where the background ends to where it begins again.
+        // The width of the page in the middle of the window: the pixels that are not background.
         const sf::Color background = image.getPixel(0, 0);
         unsigned width = 0;
         for (unsigned x = 0; x < image.getSize().x; ++x) {

@@ -1,4 +1,4 @@
-// The panel of plots against evod: what it saves is what the server says.
+// The panel Plots against evod: it saves the numbers of the server.
 //
 // Runs under Xvfb.
 #include "client/viewer/panels/plots/plots_panel.h"
@@ -19,15 +19,15 @@ namespace {
 
 constexpr unsigned width = 700, height = 620;
 
-/// The panel alone, and a mouse.
+/// The panel alone, with a mouse.
 class Plots {
   public:
     explicit Plots(const std::string& server)
         : world_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = "lab"}} {}
 
-    /// Clicks at this x all the way up from the bottom until there is the file.
+    /// Clicks at this x from the bottom upwards until the file exists.
     bool clicks_until_saved(int x, const std::string& path) {
-        host_.draw(); // asks for the names of the genes, which are in the file
+        host_.draw(); // requests the names of the genes, which the file contains
         EXPECT_TRUE(wait_until([&] { return world_.all_answered(); }, [&] { host_.draw(); }));
         return wait_until([&] { return std::filesystem::exists(path); },
                           [&] {
@@ -77,7 +77,7 @@ struct PlotsTest : testing::Test {
         return folder.file("evoview-lab-" + world().run_id().substr(0, 8) + "-" + what + "-generation-" +
                            std::to_string(generation));
     }
-    /// Every number in the file is the server's.
+    /// Checks that every number in the file equals the server's.
     void expect_the_servers_numbers(const std::string& path, int generations) {
         std::stringstream text;
         text << std::ifstream{path}.rdbuf();
@@ -91,17 +91,17 @@ struct PlotsTest : testing::Test {
         ASSERT_EQ(history.generations_size(), 2 * generations);
         ASSERT_EQ(read->rows.size(), static_cast<std::size_t>(2 * generations));
         for (int i = 0; i < history.generations_size(); ++i) {
-            const auto& told = history.generations(i);
+            const auto& statistics = history.generations(i);
             const auto& row = read->rows[static_cast<std::size_t>(i)];
-            const auto numbers = core::history_numbers(told);
+            const auto numbers = core::history_numbers(statistics);
             ASSERT_EQ(row.size(), numbers.size());
             for (std::size_t column = 0; column < row.size(); ++column) {
-                // What there is no account of is no number.
+                // A missing account is NaN in both.
                 EXPECT_TRUE(row[column] == numbers[column] || (std::isnan(row[column]) && std::isnan(numbers[column])))
                     << "column " << column << ": " << row[column] << ", not " << numbers[column];
             }
-            EXPECT_EQ(row[5], told.fitness_best());
-            EXPECT_EQ(row[11], told.alive_count());
+            EXPECT_EQ(row[5], statistics.fitness_best());
+            EXPECT_EQ(row[11], statistics.alive_count());
         }
     }
 
@@ -111,13 +111,13 @@ struct PlotsTest : testing::Test {
 
 constexpr int csv_button_x = 40, png_button_x = 130;
 
-TEST_F(PlotsTest, WhatIsSavedIsWhatTheServerSays) {
+TEST_F(PlotsTest, SavesTheNumbersOfTheServer) {
     make_world();
     run(12);
     Plots plots{server.address()};
     ASSERT_TRUE(plots.clicks_until_saved(csv_button_x, path_of("history", 12) + ".csv"));
     expect_the_servers_numbers(path_of("history", 12) + ".csv", 12);
-    run(3); // heard of as it happens
+    run(3); // arrives by events
     ASSERT_TRUE(plots.clicks_until_saved(csv_button_x, path_of("history", 15) + ".csv"));
     expect_the_servers_numbers(path_of("history", 15) + ".csv", 15);
 
@@ -129,7 +129,7 @@ TEST_F(PlotsTest, WhatIsSavedIsWhatTheServerSays) {
     expect_the_servers_numbers(path_of("history", 2) + ".csv", 2);
 }
 
-TEST_F(PlotsTest, APictureOfThePlotIsSaved) {
+TEST_F(PlotsTest, SavesAnImageOfThePlot) {
     make_world();
     run(8);
     Plots plots{server.address()};
@@ -143,16 +143,16 @@ TEST_F(PlotsTest, APictureOfThePlotIsSaved) {
     EXPECT_GT(count(image, palette::series_blue), 200u) << "the line of the mean";
 }
 
-TEST_F(PlotsTest, ThePicturesSizeIsTypedAndBroughtWithinItsRange) {
+TEST_F(PlotsTest, ATypedImageSizeIsClamped) {
     make_world();
     run(3);
     std::ofstream{folder.file("script")} << R"(wait snapshot
 key F7
 wait widget "3 generations, up to 3"
-click "picture's width"
+click "image width"
 key Q
-set "picture's width" 5
-set "picture's height" 300
+set "image width" 5
+set "image height" 300
 click "Save PNG"
 quit
 )";
@@ -163,7 +163,7 @@ quit
     EXPECT_EQ(image.getSize(), (sf::Vector2u{200, 300}));
 }
 
-TEST_F(PlotsTest, ATabIsFoundByItsNameAndWhatItShowsIsSaved) {
+TEST_F(PlotsTest, SavesTheTabThatAScriptClicked) {
     make_world();
     run(3);
     std::ofstream{folder.file("script")} << R"(wait snapshot
@@ -189,14 +189,14 @@ wait widget "3 generations, up to 3"
 set compare "world other"
 click Genes
 set gene body_size
-click "only the living"
+click "living only"
 quit
 )";
     const Ran ran = run_evoview(server.address() + " --world lab --script " + folder.file("script"));
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
-/// A plot that fills the window, and a mouse.
+/// A plot that fills the window, with a mouse.
 struct PlotUnderTheMouse {
     Plot plot;
     PlotView view;
@@ -214,7 +214,7 @@ struct PlotUnderTheMouse {
     void move(int x) { host.move(x, height / 2); }
 };
 
-TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
+TEST(PlotWidget, ZoomsMovesAndFitsWithTheMouse) {
     std::vector<double> x, y;
     for (int i = 1; i <= 1000; ++i) {
         x.push_back(i);
@@ -236,9 +236,9 @@ TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
     on.host.button(sf::Event::MouseButtonReleased);
     ASSERT_TRUE(on.view.x);
     EXPECT_NEAR(on.view.x->width(), zoomed.width(), 1e-9);
-    EXPECT_GT(on.view.x->min, zoomed.min + 0.1 * zoomed.width()) << "dragged to the left: later ones come in";
+    EXPECT_GT(on.view.x->min, zoomed.min + 0.1 * zoomed.width()) << "dragging to the left shows later ones";
     on.move(width / 2);
-    EXPECT_GT(on.view.x->min, zoomed.min) << "the button is up";
+    EXPECT_GT(on.view.x->min, zoomed.min) << "the button is released";
 
     for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased,
                             sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
@@ -246,9 +246,9 @@ TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
     }
     EXPECT_EQ(on.view.x, std::nullopt);
     on.host.turn_wheel(-3);
-    EXPECT_EQ(on.view.x, std::nullopt) << "there is no more than everything";
+    EXPECT_EQ(on.view.x, std::nullopt) << "the whole range is the limit";
     on.host.draw();
-    EXPECT_EQ(on.scrolled, 0) << "the window stays where it is";
+    EXPECT_EQ(on.scrolled, 0) << "the window does not scroll";
 }
 
 } // namespace

@@ -5,15 +5,15 @@
 namespace evod::viewer {
 namespace {
 
-// Of its radius, what a body may move in a tick before that is worth a word, and what it moves with advice followed.
-// Two bodies that approach each other move at most twice that towards each other. Bodies pass through each other
-// unnoticed from a whole radius each, and a world with the parameters of the start comes to 0.6.
+// Movement per tick as a share of the body's radius: above close_share the panel warns, and its advice brings the
+// movement down to advised_share. Two approaching bodies may pass through each other undetected if each moves a whole
+// radius per tick. A world with default parameters reaches 0.6.
 constexpr double close_share = 0.75, advised_share = 0.5;
 
-/// What would bring the fastest body down to so much of its radius a tick.
+/// Parameter values that bring the fastest body down to advised_share of its radius per tick.
 std::string advice(const evod::v1::Motion& motion) {
     const double share = motion.fastest_step_share();
-    if (share <= advised_share) { // it is over for now
+    if (share <= advised_share) { // the current speed is fine; an earlier one was not
         return "Halve tick_s, to " + print("%.3g", motion.tick_s() / 2) + ", or lower max_speed_px_s.";
     }
     return "Set tick_s to " + print("%.3g", motion.tick_s() * advised_share / share) +
@@ -38,16 +38,16 @@ void MotionHistory::add(const evod::v1::Motion& motion) {
 
 TickVerdict judge_tick(const evod::v1::Motion& motion) {
     const std::string fastest =
-        "the fastest body moves " + print("%.2g", motion.fastest_step_share()) + " of its radius in a tick";
+        "the fastest body moves " + print("%.2g", motion.fastest_step_share()) + " of its radius per tick";
     if (motion.fastest_step_share() >= 1 || motion.too_fast_count() > 0) {
         std::string sentence = "The tick is too long: " + fastest;
         if (motion.too_fast_count() > 0) {
             sentence += ", and " + with_separators(motion.too_fast_count()) +
                         (motion.too_fast_count() == 1 ? " move" : " moves") +
-                        " of this generation went further than the body's own radius";
+                        " in this generation exceeded the radius of the body";
         }
         return {TickVerdict::Level::TooLong,
-                sentence + ". Bodies may pass through each other unnoticed. " + advice(motion)};
+                sentence + ". Bodies may pass through each other undetected. " + advice(motion)};
     }
     if (motion.fastest_step_share() >= close_share) {
         return {TickVerdict::Level::Close, "The tick is nearly too long: " + fastest + ". " + advice(motion)};

@@ -1,5 +1,6 @@
-// Motion history: what GetMotion told of an island, newest last, and what it means for the length of a tick.
+// Motion history: the answers to GetMotion for one island, newest last, and whether the tick is short enough.
 //
+// Owner        PhysicsPanel.
 // Threads      none.
 #pragma once
 
@@ -16,14 +17,14 @@ class MotionHistory {
   public:
     static constexpr std::size_t kept = 300;
 
-    /// The same tick again is not kept twice; one before the last begins everything anew.
+    /// Replaces the last entry if it has the same tick. A tick before the last one clears the history first.
     void add(const evod::v1::Motion& motion);
     void clear() { motions_.clear(); }
 
     bool empty() const { return motions_.empty(); }
     std::size_t size() const { return motions_.size(); }
     const evod::v1::Motion& last() const { return motions_.back(); }
-    /// One number of each, oldest first.
+    /// `of` applied to every entry, oldest first.
     template <class Of>
     std::vector<double> curve(Of&& of) const {
         std::vector<double> curve;
@@ -37,7 +38,7 @@ class MotionHistory {
     std::deque<evod::v1::Motion> motions_;
 };
 
-/// Whether a tick is short enough for the speeds there are, and what to do if not.
+/// Whether a tick is short enough for the current speeds, and what to change if not.
 struct TickVerdict {
     enum class Level { Good, Close, TooLong };
     Level level = Level::Good;

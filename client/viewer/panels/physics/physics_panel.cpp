@@ -13,11 +13,11 @@
 namespace evod::viewer {
 namespace {
 
-constexpr double demo_s = 10; // of the motion that is shown
+constexpr double demo_s = 10; // of simulated motion shown
 constexpr float tick_ms_min = 1, tick_ms_max = 1000;
 constexpr std::size_t table_rows = 8;
 
-/// A measure over time, from 0 up, with its newest value in `title`.
+/// Plots a measure over time, from 0; the title contains its newest value.
 template <class Of>
 void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     const std::vector<double> tick =
@@ -28,7 +28,7 @@ void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
 }
 
-/// A header over what can be folded away.
+/// A collapsible header; returns whether it is open.
 bool opened(const char* title) {
     const bool open = ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
     widgets::mark(title);
@@ -38,16 +38,16 @@ bool opened(const char* title) {
 } // namespace
 
 void PhysicsPanel::build(Context& context) {
-    ask(context);
-    if (opened("The bodies of this island")) {
+    poll(context);
+    if (opened("Bodies of this island")) {
         build_motion();
     }
-    if (opened("What the length of a tick does")) {
+    if (opened("Effect of the tick length")) {
         build_demo();
     }
 }
 
-void PhysicsPanel::ask(Context& context) {
+void PhysicsPanel::poll(Context& context) {
     ViewedWorld& world = context.world;
     if (world.feed.place_number() != place_number_) {
         place_number_ = world.feed.place_number();
@@ -91,18 +91,19 @@ void PhysicsPanel::build_motion() {
                  [](const Motion& m) { return m.deepest_overlap_px(); });
     draw_measure("fastest body " + with_unit(now.fastest_px_s(), "px/s"), history_,
                  [](const Motion& m) { return m.fastest_px_s(); });
-    draw_measure("its step in a tick, of its radius: " + shown_number(now.fastest_step_share()), history_,
+    draw_measure("its movement per tick, in radii: " + shown_number(now.fastest_step_share()), history_,
                  [](const Motion& m) { return m.fastest_step_share(); });
     const double step_px = now.fastest_px_s() * now.tick_s();
-    widgets::say(print("The fastest moves %.3g px in a tick; contacts are looked for in strips of %.4g px. The deepest "
-                       "overlap is %.2g of the smaller body's radius. In this generation %s moves were longer than the "
-                       "body's radius, and max_speed_px_s held bodies back %s times.",
-                       step_px, now.cell_px(), now.deepest_overlap_share(),
-                       with_separators(now.too_fast_count()).c_str(), with_separators(now.speed_limit_count()).c_str()),
-                 palette::text);
+    widgets::say(
+        print("The fastest body moves %.3g px per tick; the contact search uses strips of %.4g px. The deepest "
+              "overlap is %.2g of the smaller body's radius. In this generation %s moves were longer than the "
+              "body's radius, and max_speed_px_s limited a body %s times.",
+              step_px, now.cell_px(), now.deepest_overlap_share(), with_separators(now.too_fast_count()).c_str(),
+              with_separators(now.speed_limit_count()).c_str()),
+        palette::text);
 }
 
-void PhysicsPanel::take_curves(const TimeStepDemo& demo) {
+void PhysicsPanel::set_curves(const TimeStepDemo& demo) {
     using Row = TimeStepDemo::Row;
     const auto curve = [&](const char* name, Colour colour, TimeStepDemo::State Row::*state) {
         Curve made{name, colour, {}, {}};
@@ -136,12 +137,12 @@ void PhysicsPanel::build_demo() {
     widgets::mark("damped motion");
     const char* rate_label = spring_ ? "ω, 1/s" : "damping, 1/s";
     changed |= ImGui::SliderFloat(rate_label, &rate_per_s_, 0.5f, 10, "%.1f",
-                                  ImGuiSliderFlags_AlwaysClamp); // it is divided by
+                                  ImGuiSliderFlags_AlwaysClamp); // a rate of 0 would divide by zero
     widgets::mark(rate_label);
     changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
                                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     widgets::mark("tick, ms");
-    if (!history_.empty() && widgets::button("a tick of this world")) {
+    if (!history_.empty() && widgets::button("use the tick of this world")) {
         tick_ms_ = std::clamp(static_cast<float>(history_.last().tick_s() * 1000), tick_ms_min, tick_ms_max);
         changed = true;
     }
@@ -150,12 +151,12 @@ void PhysicsPanel::build_demo() {
                                     : TimeStepDemo::System{0, rate, {0, 100}}};
     if (changed) {
         rows_ = demo.rows(dt, static_cast<std::size_t>(demo_s / dt));
-        take_curves(demo);
+        set_curves(demo);
     }
     const std::string steps = with_separators(rows_.size() - 1) + " steps";
     widgets::say(steps);
     widgets::mark(steps);
-    Plot x{.title = "x in 10 s, px"}, energy{.title = "energy, of that at the start"};
+    Plot x{.title = "x in 10 s, px"}, energy{.title = "energy, relative to the start"};
     for (const Curve& curve : curves_) {
         x.series.push_back({.colour = curve.colour, .x = t_s_, .y = curve.x_px});
         energy.series.push_back({.colour = curve.colour, .x = t_s_, .y = curve.energy});
@@ -197,17 +198,17 @@ void PhysicsPanel::build_demo() {
     if (spring_) {
         widgets::say(
             print("ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
-                  "short; symplectic Euler, the default of a world, %s.",
+                  "short. Symplectic Euler, the default of a world, %s.",
                   rate * dt, demo.explicit_growth(dt),
-                  demo.symplectic_is_stable(dt) ? "keeps it near what it was, while ω·dt is below 2"
-                                                : "keeps it only while ω·dt is below 2, so not here"),
+                  demo.symplectic_is_stable(dt) ? "keeps it near its start, as ω·dt is below 2"
+                                                : "keeps it only if ω·dt is below 2, so not here"),
             palette::text);
     } else {
         widgets::say(
             print(
-                "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the exact solution keeps e^(−c·dt): "
-                "from 1 on the body turns round, from 2 on it gets faster. With symplectic and explicit Euler a "
-                "world's damping keeps e^(−c·dt) itself, whatever the tick.",
+                "c·dt is %.3g. Each step multiplies the velocity by 1 − c·dt, the exact solution by e^(−c·dt): for "
+                "c·dt above 1 the body reverses, above 2 it speeds up. The damping of a world multiplies by e^(−c·dt) "
+                "itself, at any tick length.",
                 rate * dt),
             palette::text);
     }

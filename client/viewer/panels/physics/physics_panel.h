@@ -1,7 +1,8 @@
-// Physics panel: energy, momentum, overlaps and speeds of the bodies on the island over time, whether the tick is short
-// enough for them, and a motion with a known exact solution, stepped with a tick of any length.
+// Physics panel: energy, momentum, overlaps and speeds of the bodies of an island over time, whether the tick is short
+// enough for them, and a demonstration: a motion with a known exact solution, stepped with a tick of any length.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
@@ -19,17 +20,17 @@ class PhysicsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    /// Asks how the bodies move, a few times a second.
-    void ask(Context& context);
+    /// Requests the motion of the bodies a few times per second.
+    void poll(Context& context);
     void build_motion();
     void build_demo();
-    void take_curves(const TimeStepDemo& demo);
+    void set_curves(const TimeStepDemo& demo);
 
-    std::uint64_t place_number_ = 0; // that the history is of
+    std::uint64_t place_number_ = 0; // the place that history_ describes
     Poll poll_{std::chrono::milliseconds{250}};
     MotionHistory history_;
 
-    // The demonstration, as it was last worked out.
+    // The demonstration as last computed.
     bool spring_ = true;
     float rate_per_s_ = 2; // ω of the spring, c of damped motion
     float tick_ms_ = 100;
@@ -37,10 +38,10 @@ class PhysicsPanel : public Panel {
     struct Curve {
         const char* name;
         Colour colour;
-        std::vector<double> x_px, energy; // by row; energy as a share of that at the start
+        std::vector<double> x_px, energy; // by row; energy relative to the start
     };
     std::vector<double> t_s_;   // by row
-    std::vector<Curve> curves_; // the first at the back
+    std::vector<Curve> curves_; // the first is drawn first
 };
 
 } // namespace evod::viewer

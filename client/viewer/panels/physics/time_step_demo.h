@@ -1,12 +1,13 @@
-// Time step demo: a motion with a known exact solution, stepped as a world's bodies are, so that anyone can see what
-// the length of a tick does.
+// Time step demo: a motion with a known exact solution, stepped as the bodies of a world are, to show the effect of the
+// tick length.
 //
-// The motion is x'' = −ω²x − c·v: a spring (c = 0), damped motion (ω = 0), or both. A step first
-// works out v' = v + (−ω²x − c·v)·dt; then
+// The motion is x'' = −ω²x − c·v: a spring (c = 0), damped motion (ω = 0), or both. A step first computes
+// v' = v + (−ω²x − c·v)·dt; then
 //
-//   symplectic Euler  x' = x + v'·dt    a spring's energy goes up and down but stays, while ω·dt < 2
-//   explicit Euler    x' = x + v·dt     a spring's energy grows by 1 + ω²dt² in every step, however short
+//   symplectic Euler  x' = x + v'·dt    a spring's energy oscillates but stays bounded if ω·dt < 2
+//   explicit Euler    x' = x + v·dt     a spring's energy grows by the factor 1 + ω²dt² in every step, however short
 //
+// Owner        PhysicsPanel.
 // Threads      none; pure.
 // Source       Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, I.1.
 #pragma once
@@ -28,7 +29,7 @@ class TimeStepDemo {
         double damping_per_s = 0; // c, >= 0
         State start{100, 0};
     };
-    /// The same moment by each way.
+    /// The same moment by each method.
     struct Row {
         double t_s;
         State exact, symplectic_euler, explicit_euler;
@@ -39,15 +40,15 @@ class TimeStepDemo {
     /// The exact solution at t >= 0.
     State exact(double t_s) const;
     State step(State from, double dt_s, EulerMethod method) const;
-    /// Of a kilogram, kg px²/s².
+    /// Of a body of 1 kg, in kg px²/s².
     double energy(const State& state) const;
 
-    /// The start and the moments after 1 … step_count steps.
+    /// Row 0 is the start; row n is the state after n steps, up to step_count.
     std::vector<Row> rows(double dt_s, std::size_t step_count) const;
 
-    /// What a spring's energy is multiplied with by explicit Euler in one step.
+    /// The factor by which one step of explicit Euler multiplies a spring's energy.
     double explicit_growth(double dt_s) const;
-    /// Whether symplectic Euler stays near the exact solution for ever.
+    /// Whether the error of symplectic Euler stays bounded for ever.
     bool symplectic_is_stable(double dt_s) const;
 
   private:

@@ -24,7 +24,7 @@ class Maker {
     Figure take() { return std::move(figure_); }
     Plot& plot() { return figure_.plot; }
 
-    /// A column of the subject, and if it is compared the same one of the other.
+    /// A line for a column of the subject, and for the same column of the other if `compared`.
     void line(const std::string& column, const std::string& name, Colour colour, bool compared) {
         add(subject_, Series::Kind::Line, column, named(name, subject_), colour);
         if (other_ != nullptr && compared) {
@@ -32,7 +32,7 @@ class Maker {
         }
     }
 
-    /// Mean ± one deviation.
+    /// Mean ± one standard deviation.
     void band(const std::string& of, Colour colour) {
         const auto mean = column(subject_, of + "_mean"), deviation = column(subject_, of + "_deviation");
         if (mean.empty() || mean.size() != deviation.size()) {
@@ -124,8 +124,8 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
             for (std::size_t i = 0; i < names.size(); ++i) {
                 make.line(names[i] + "_selection", names[i], gene_colours[i % std::size(gene_colours)], true);
             }
-        } else { // the change last, as it is the sum of the others
-            make.plot().title = "What moved the mean of " + gene;
+        } else { // the change is the sum of the others and comes last
+            make.plot().title = "Causes of change in the mean of " + gene;
             make.line(gene + "_migration", "migration", palette::series_purple, true);
             make.line(gene + "_transmission", "transmission", palette::series_orange, true);
             make.line(gene + "_selection", "selection", palette::series_blue, true);

@@ -1,5 +1,6 @@
-// Figures: the plots of a history, and how another one stands beside it.
+// Figures: builds the plots of a history, alone or compared with another one.
 //
+// Owner        PlotsPanel.
 // Threads      none.
 #pragma once
 
@@ -14,7 +15,8 @@ namespace evod::viewer {
 
 enum class Quantity { Fitness, Genes, Selection, Diversity, Survivors, Deaths };
 
-/// A plot and the numbers in it that no table has. It shows tables as they are: they must stay as they were.
+/// A plot with the numbers that it computes itself. Its series also refer to the tables, which must not change while it
+/// lives.
 struct Figure {
     Plot plot;
     std::deque<std::vector<double>> numbers;
@@ -27,14 +29,14 @@ struct Figure {
 struct Subject {
     const HistoryTable& table;
     HistoryTable::Island island;
-    std::string name; // in the legend, where two are compared
+    std::string name; // in the legend of a comparison
 };
 
-/// gene   of Quantity::Genes and Selection: its name; empty: the means of all, or what selection did to them.
-/// other  null: nothing is compared. An island that it does not have is all of its islands.
+/// gene   name of a gene for Quantity::Genes and Selection; empty: the means, or the selection, of all genes.
+/// other  null: no comparison. If it has no such island, all its islands together are shown.
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene);
 
-/// How a gene is spread over organisms.
+/// The distribution of a gene over organisms.
 Figure histogram_of(const std::string& gene, std::vector<float> numbers);
 
 } // namespace evod::viewer

@@ -13,7 +13,7 @@ void History::see_run(const std::string& world, const std::string& run_id) {
     table_.clear();
     whole_until_ = ended_ = 0;
     missing_ = true;
-    give_up(); // what is still to be answered is of another run
+    cancel(); // a pending answer belongs to another run
     ++revision_;
 }
 
@@ -31,7 +31,7 @@ void History::set_gene_names(const std::vector<std::string>& names) {
 void History::see_event(const evod::v1::Event& event) {
     using Kind = evod::v1::Event::KindCase;
     if (event.kind_case() == Kind::kEventsDropped) {
-        poll_interval();
+        refresh();
     }
     if (event.world() != world_ || world_.empty()) {
         return;
@@ -54,7 +54,7 @@ void History::see_ended(std::uint64_t generation) {
     missing_ = missing_ || ended_ > whole_until_;
 }
 
-std::optional<History::Question> History::question() {
+std::optional<History::Query> History::next_query() {
     if (run_id_.empty() || !missing_ || asked_ != answered_) {
         return std::nullopt;
     }
@@ -63,24 +63,24 @@ std::optional<History::Question> History::question() {
         ended_when_asked_ = std::max(ended_, table_.last_generation());
     }
     again_ = false;
-    Question question{++asked_, {}};
-    evod::v1::GetHistory& query = *question.request.mutable_get_history();
-    query.set_world(world_);
-    query.set_first_generation(*next_page_);
-    return question;
+    Query query{++asked_, {}};
+    evod::v1::GetHistory& request = *query.request.mutable_get_history();
+    request.set_world(world_);
+    request.set_first_generation(*next_page_);
+    return query;
 }
 
-void History::give_up() {
+void History::cancel() {
     answered_ = asked_;
     next_page_.reset();
 }
 
-void History::take(std::uint64_t number, const evod::v1::History* answer) {
+void History::receive(std::uint64_t number, const evod::v1::History* answer) {
     if (number != asked_ || answered_ == asked_) {
-        return; // of another run
+        return; // the answer belongs to another run
     }
     if (answer == nullptr) {
-        return give_up();
+        return cancel();
     }
     answered_ = asked_;
     add(answer->generations());
@@ -89,7 +89,7 @@ void History::take(std::uint64_t number, const evod::v1::History* answer) {
         return;
     }
     next_page_.reset();
-    // What the server did not tell of those that had ended by then, it does not know any more.
+    // The server has dropped the generations that had ended by then and are not in its answer.
     if (!answer->generations().empty()) {
         ended_when_asked_ = std::max(ended_when_asked_, answer->generations().rbegin()->generation());
     }

@@ -1,9 +1,9 @@
-// History: the statistics of a world's run, from its first generation that the server still knows to the last that has
-// ended, kept up to date.
+// History: the statistics of all finished generations of a run that the server still has, kept up to date.
 //
-// The past is asked for page by page, what ends from then on is told by events. Whatever may have been missed (events
-// were dropped, the line broke, nobody listened) is asked for; another run begins anew.
+// Earlier generations are requested page by page; events add each generation that ends. After a possible loss (dropped
+// events, a broken connection, a hidden panel) the missing part is requested again. Another run clears the history.
 //
+// Owner        PlotsPanel.
 // Threads      none.
 #pragma once
 
@@ -19,41 +19,41 @@ namespace evod::viewer {
 
 class History {
   public:
-    /// Whose history it is; another world or run than before begins anew.
+    /// Sets the run; clears the history if the world or the run has changed.
     void see_run(const std::string& world, const std::string& run_id);
     void see_run(const evod::v1::WorldInfo& world);
 
-    /// Of any world; those of others are passed over.
+    /// Processes an event; ignores events of other worlds.
     void see_event(const evod::v1::Event& event);
 
-    /// So many generations of this run have ended, as pictures tell.
+    /// Generations of this run up to `generation` have ended, according to a snapshot.
     void see_ended(std::uint64_t generation);
 
     /// Events may have been missed.
-    void poll_interval() { missing_ = again_ = true; }
+    void refresh() { missing_ = again_ = true; }
 
-    struct Question {
-        std::uint64_t number; // for take()
+    struct Query {
+        std::uint64_t number; // for receive()
         evod::v1::Request request;
     };
-    /// What is to be asked now; nullopt: nothing, or a question is unanswered. Each is followed by one take(), or by
-    /// give_up().
-    std::optional<Question> question();
+    /// The query to send now; nullopt if nothing is missing or an answer is pending. The caller then calls receive() or
+    /// cancel() once.
+    std::optional<Query> next_query();
 
-    /// The answer to a question, or null if there was none or a refusal: then it will be asked again.
-    void take(std::uint64_t number, const evod::v1::History* answer);
+    /// The answer to a query; null if the query failed, which is then sent again.
+    void receive(std::uint64_t number, const evod::v1::History* answer);
 
-    /// Whether a question is unanswered.
-    bool waits() const { return asked_ != answered_; }
-    /// There will be no answer.
-    void give_up();
+    /// Whether an answer is pending.
+    bool pending() const { return asked_ != answered_; }
+    /// Drops the pending query; its answer will be ignored.
+    void cancel();
 
-    /// Of the run; none: nothing is told.
+    /// Names the genes of the run; ignores an empty list.
     void set_gene_names(const std::vector<std::string>& names);
 
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
-    /// Whether all that is known to have ended is here.
+    /// Whether the table has every generation known to have ended.
     bool complete() const { return !run_id_.empty() && !missing_; }
     const HistoryTable& table() const { return table_; }
     /// Changes whenever the table does.
@@ -65,12 +65,12 @@ class History {
 
     std::string world_, run_id_;
     HistoryTable table_;
-    std::uint64_t whole_until_ = 0; // up to this generation all is here that the server knows
+    std::uint64_t whole_until_ = 0; // the table has all that the server knows up to here
     bool missing_ = true;
-    bool again_ = false;                     // something was missed since the last question
-    std::uint64_t asked_ = 0, answered_ = 0; // numbers of questions
+    bool again_ = false;                     // something was missed since the last query
+    std::uint64_t asked_ = 0, answered_ = 0; // numbers of queries
     std::uint64_t ended_ = 0;                // the last generation that is known to have ended
-    std::uint64_t ended_when_asked_ = 0;     // the same when the first page was asked for
+    std::uint64_t ended_when_asked_ = 0;     // the same when the first page was requested
     std::optional<std::uint64_t> next_page_;
     std::uint64_t revision_ = 0;
 };

@@ -12,21 +12,21 @@ namespace evod::viewer {
 
 namespace {
 
-// Where core::history_columns() has them.
+// Positions in core::history_columns().
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
-// Of each gene; those of the accounts, of which there are as many, come after those of all genes.
+// Columns per gene. The columns of the selection account, as many per gene, follow those of all genes.
 constexpr std::size_t columns_of_gene = 4;
 
 std::size_t genes_in(std::size_t columns) {
     return (columns - gene_begin) / (2 * columns_of_gene);
 }
 
-constexpr std::size_t islands_max = 65'536; // more than any world has
+constexpr std::size_t islands_max = 65'536; // more than any world can have
 
-/// How numbers of islands become one of all. A deviation's mean is that of the column before it, or of fitness_mean.
+/// How the numbers of the islands are joined. The mean of a deviation is in the column before it, or in fitness_mean.
 enum class Together { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
-/// columns  how many there are.
+/// columns  number of columns.
 Together together(std::size_t column, std::size_t columns) {
     using enum Together;
     constexpr Together of_all[gene_begin] = {
@@ -56,14 +56,15 @@ Together together(std::size_t column, std::size_t columns) {
         return of_all[column];
     }
     const bool is_account = column >= gene_begin + genes_in(columns) * columns_of_gene;
-    return is_account ? Mean : of_gene[(column - gene_begin) % columns_of_gene]; // an island is as large as another
+    return is_account ? Mean
+                      : of_gene[(column - gene_begin) % columns_of_gene]; // all islands have the same population size
 }
 
 std::size_t mean_of_deviation(std::size_t column) {
     return column < gene_begin ? column - 3 : column - 1;
 }
 
-/// The numbers of a generation of all islands.
+/// Joins the rows of all islands of one generation.
 std::vector<double> joined(std::span<const std::vector<double>> rows) {
     std::vector<double> all = rows.front();
     if (rows.size() == 1) {
@@ -105,7 +106,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
         case Together::Mean:
             number = mean_of([&](const auto& row) { return row[column]; });
             break;
-        case Together::Deviation: { // within the islands, and between their means
+        case Together::Deviation: { // variance within the islands plus variance between their means
             const std::size_t mean_column = mean_of_deviation(column);
             const double mean = mean_of([&](const auto& row) { return row[mean_column]; });
             number = std::sqrt(mean_of([&](const auto& row) {
@@ -135,7 +136,7 @@ void HistoryTable::Rows::put(std::span<const double> numbers) {
         columns.resize(numbers.size(), std::vector<double>(generations().size(), unknown));
     }
     const std::vector<double>& known = columns[generation_column];
-    // Nearly always it comes after all others.
+    // Nearly always the row belongs at the end.
     const auto found = known.empty() || known.back() < numbers[generation_column]
                            ? known.end()
                            : std::lower_bound(known.begin(), known.end(), numbers[generation_column]);
@@ -163,7 +164,7 @@ void HistoryTable::add(std::span<const std::vector<double>> rows) {
 }
 
 void HistoryTable::put_generation(std::span<const std::vector<double>> rows) {
-    if (names_.empty()) { // genes are called by their numbers until somebody says better
+    if (names_.empty()) { // number the genes until set_gene_names()
         std::vector<std::string> numbers;
         for (std::size_t gene = 0; gene < genes_in(rows[0].size()); ++gene) {
             numbers.push_back("gene_" + std::to_string(gene));
@@ -208,7 +209,7 @@ std::uint64_t HistoryTable::last_generation() const {
 std::uint64_t HistoryTable::last_without_gap(std::uint64_t generation) const {
     const std::vector<double>& known = all_.generations();
     const auto after = std::upper_bound(known.begin(), known.end(), static_cast<double>(generation));
-    // Generations rise by 1 at least, so that the place tells where the first gap is.
+    // Generations rise by at least 1, so a binary search finds the first gap.
     const auto steps = std::distance(after, known.end());
     std::ptrdiff_t low = 0, high = steps;
     while (low < high) {
@@ -248,7 +249,7 @@ core::Result<HistoryTable> load_history(const std::string& path) {
     std::ifstream file{path, std::ios::binary};
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     if (!file) {
-        return core::Error{core::Error::Kind::Usage, "cannot read " + path + ": " + std::strerror(errno)};
+        return core::Error{core::Error::Kind::Usage, "could not read " + path + ": " + std::strerror(errno)};
     }
     auto read = core::read_history_csv(text);
     if (!read) {

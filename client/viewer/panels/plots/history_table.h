@@ -1,5 +1,6 @@
-// HistoryTable: the statistics of ended generations as columns, of each island and of all of them together.
+// HistoryTable: the statistics of finished generations as columns, for each island and for all islands together.
 //
+// Owner        PlotsPanel.
 // Threads      none.
 #pragma once
 
@@ -19,32 +20,32 @@ class HistoryTable {
     /// Nullopt: all islands together.
     using Island = std::optional<std::uint32_t>;
 
-    /// Takes in generations, in any order; one that is known already is replaced.
+    /// Adds generations in any order; replaces a generation that it already has.
     ///
-    /// rows  numbers as of core::history_numbers(), the islands of a generation one after another.
+    /// rows  numbers as returned by core::history_numbers(), the islands of a generation one after another.
     void add(std::span<const std::vector<double>> rows);
 
-    /// Forgets everything but the names of the genes.
+    /// Clears everything except the names of the genes.
     void clear();
 
-    /// They name the columns of genes; until they are told, a gene is called by its number.
+    /// Names the columns of the genes; before the first call they have numbers.
     void set_gene_names(std::vector<std::string> names);
     const std::vector<std::string>& gene_names() const { return gene_names_; }
 
-    /// A column of core::history_columns(), a number for each generation that is known, rising. Of all islands
-    /// together: the greatest "…best" and "…max", the least "…worst" and "…min", sums of what is counted; means are
-    /// weighted by organism_count, deviations are those of everyone together. Nobody can tell the median: it is not a
-    /// number. Empty if there is no such column or island.
+    /// A column of core::history_columns() with one number per generation, in rising order of generations. For all
+    /// islands together: the greatest of "…best" and "…max", the least of "…worst" and "…min", the sum of counts, means
+    /// weighted by organism_count, and standard deviations of the joint population. The joint median is unknown (NaN).
+    /// Empty if there is no such column or island.
     std::span<const double> column(Island island, std::string_view name) const;
 
     std::uint32_t island_count() const { return static_cast<std::uint32_t>(islands_.size()); }
     bool empty() const { return all_.generations().empty(); }
-    /// 0 if there is none.
+    /// 0 if the table is empty.
     std::uint64_t last_generation() const;
-    /// The last of those that follow `generation` without a gap; `generation` itself if the next one is not known.
+    /// The last generation reached from `generation` without a gap; `generation` itself if the next one is missing.
     std::uint64_t last_without_gap(std::uint64_t generation) const;
 
-    /// As core::read_history_csv() reads it, by generation, then island.
+    /// The CSV that core::read_history_csv() reads, sorted by generation, then island.
     std::string to_csv() const;
 
   private:
@@ -63,8 +64,8 @@ class HistoryTable {
     Rows all_;
 };
 
-/// What a file says that was written by to_csv(), `evoctl history --csv` or `evoctl export --what generations`. The
-/// error says what is wrong with it, or why it cannot be read.
+/// Reads a file written by to_csv(), `evoctl history --csv` or `evoctl export --what generations`. The error names the
+/// file and the fault.
 core::Result<HistoryTable> load_history(const std::string& path);
 
 } // namespace evod::viewer

@@ -23,7 +23,7 @@ std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b) {
 }
 
 Range with_room(Range range, double room_share) {
-    // Halves, as the width of a range of doubles may be more than a double holds.
+    // Computes with halves, because the width of a range of doubles can overflow.
     const double middle = range.min / 2 + range.max / 2;
     const double least = std::max(std::abs(middle) * 1e-9, 1e-12);
     const double half = std::min(std::max((range.max / 2 - range.min / 2) * (1 + 2 * room_share), least), 4e307);
@@ -105,10 +105,10 @@ std::vector<LinePoint> line_of(std::span<const double> x, std::span<const double
     };
     for (const Group group : groups) {
         std::optional<std::size_t> first, last, least, greatest;
-        bool parted = false;
+        bool split = false;
         for (std::size_t i = group.begin; i < group.end; ++i) {
             if (!std::isfinite(y[i])) {
-                parted = parted || !first;
+                split = split || !first;
                 continue;
             }
             first = first ? first : i;
@@ -116,7 +116,7 @@ std::vector<LinePoint> line_of(std::span<const double> x, std::span<const double
             least = !least || y[i] < y[*least] ? i : *least;
             greatest = !greatest || y[i] > y[*greatest] ? i : *greatest;
         }
-        if (parted && !line.empty() && std::isfinite(line.back().y)) {
+        if (split && !line.empty() && std::isfinite(line.back().y)) {
             line.push_back({x[group.begin], std::numeric_limits<double>::quiet_NaN()});
         }
         if (first) {

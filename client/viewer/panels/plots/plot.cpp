@@ -15,20 +15,20 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float gap = 6; // between letters and what they stand beside
+constexpr float gap = 6; // between text and its neighbours
 constexpr float tick_pixels = 4;
 constexpr float line_pixels = 1.6f;
 constexpr float dash_pixels = 6, dash_gap_pixels = 4;
 constexpr std::uint8_t dense_alpha = 110;
-constexpr double y_room = 0.04; // of the height, above and below
+constexpr double y_room = 0.04; // share of the height, above and below
 constexpr double zoom_of_one_notch = 1.25;
-constexpr double shown_min = 4; // generations, or as much of another x
+constexpr double x_units_min = 4; // generations, or units of another x
 
 struct Box {
     float left, top, right, bottom;
 };
 
-/// Draws one plot on a list, in a box.
+/// Draws one plot on a draw list, inside a box.
 class Drawing {
   public:
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, std::string title, Range x, Box box)
@@ -36,13 +36,13 @@ class Drawing {
         lay_out(box);
     }
 
-    /// Without axes: the lines fill the box, from y.min to y.max.
+    /// Without axes: the lines fill the box from y.min to y.max.
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
         : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
         group(columns());
     }
 
-    /// Where the data are.
+    /// The rectangle of the data.
     const Box& area() const { return area_; }
     double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
 
@@ -59,8 +59,8 @@ class Drawing {
         write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
     }
 
-    /// A line through the numbers that are nearest to the x, and which they are. Empty if there are none.
-    std::vector<std::string> draw_readout(double at) {
+    /// Draws a vertical line through the numbers nearest to x = `at`, and returns them as text. Empty if there are none.
+    std::vector<std::string> draw_cursor(double at) {
         std::optional<double> found;
         for (const Series& series : plot_.series) {
             if (const auto index = nearest(series.x, at);
@@ -112,7 +112,7 @@ class Drawing {
         }
     }
 
-    /// Groups of every series, the tops of stacks, the range of y, and the area that letters leave.
+    /// Computes the groups of every series, the tops of stacks, the y range, and the area that the labels leave.
     void lay_out(Box box) {
         const float letter = font_.FontSize;
         float legend_rows = 1, at = 0;
@@ -147,7 +147,7 @@ class Drawing {
             }
             const std::size_t begin = groups.front().begin, end = groups.back().end;
             if (series.kind == Series::Kind::Stack) {
-                take_stack(series, groups);
+                add_stack(series, groups);
                 y = joined(y, range_of(tops_));
                 continue;
             }
@@ -156,10 +156,10 @@ class Drawing {
                 y = joined(y, range_of(series.low.subspan(begin, end - begin)));
             }
         }
-        const bool stands_on_zero = plot_.from_zero && (!y || y->min >= 0);
+        const bool starts_at_zero = plot_.from_zero && (!y || y->min >= 0);
         y = y ? y : std::optional{Range{0, 1}};
-        y_ = with_room(stands_on_zero ? Range{0, y->max} : *y, y_room);
-        if (stands_on_zero) {
+        y_ = with_room(starts_at_zero ? Range{0, y->max} : *y, y_room);
+        if (starts_at_zero) {
             y_ = {0, std::max(y_.max, 1e-9)};
         }
         y_ticks_ = ticks_in(y_, std::max(2, static_cast<int>((area_.bottom - area_.top) / (1.7f * letter))));
@@ -171,8 +171,8 @@ class Drawing {
         area_.right = std::max(box.right - gap, area_.left + 1);
     }
 
-    /// Adds the means of a series to the tops of the stacks before it. All stacks of a plot have the same x.
-    void take_stack(const Series& series, std::span<const Group> groups) {
+    /// Adds the means of a series to the tops of the stacks below it. All stacks of a plot have the same x.
+    void add_stack(const Series& series, std::span<const Group> groups) {
         tops_.resize(groups.size());
         for (std::size_t i = 0; i < groups.size(); ++i) {
             tops_[i] += mean_of(series.y, groups[i]);
@@ -256,7 +256,7 @@ class Drawing {
 
     void draw_line(const Series& series, std::span<const Group> groups) {
         std::vector<ImVec2> points;
-        // Where a line goes up and down in every column, nobody sees dashes.
+        // Dashes are invisible where a line goes up and down within every column.
         const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
         const auto finish = [&] {
             if (points.size() == 1) {
@@ -282,7 +282,7 @@ class Drawing {
     }
 
     void draw_dashes(std::span<const ImVec2> points, ImU32 colour) {
-        float left = dash_pixels; // of the dash or gap that is being drawn
+        float left = dash_pixels; // pixels of the current dash or gap
         bool dash = true;
         for (std::size_t i = 1; i < points.size(); ++i) {
             ImVec2 at = points[i - 1];
@@ -317,7 +317,7 @@ class Drawing {
     void draw_bar(const Series& series, Group group, double from, double to) {
         const float left = column(series.x[group.begin] - series.bar_width / 2);
         const float right = column(series.x[group.end - 1] + series.bar_width / 2);
-        const float space = right - left > 6 ? 1.0f : 0.0f; // between bars that are wide enough
+        const float space = right - left > 6 ? 1.0f : 0.0f; // gap between bars that are wide enough
         list_.AddRectFilled({left + space, row(to)}, {std::max(right - space, left + 1), row(from)},
                             ink(series.colour));
     }
@@ -372,10 +372,10 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     const ImVec2 place = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 40.0f);
     ImGui::InvisibleButton(id, {width, std::max(height_pixels, 40.0f)});
-    ImGui::SetItemUsingMouseWheel(); // and not to scroll the window as well
+    ImGui::SetItemUsingMouseWheel(); // keeps the window from scrolling
     const Range whole = whole_x(plot);
-    if (view.x) { // what is compared may have gone, and the whole with it
-        view.x = zoomed(*view.x, 0, 1, whole, shown_min);
+    if (view.x) { // the compared history may have been removed
+        view.x = zoomed(*view.x, 0, 1, whole, x_units_min);
     }
     ImFont& font = *ImGui::GetFont();
     const Box box{place.x, place.y, place.x + width, place.y + std::max(height_pixels, 40.0f)};
@@ -390,10 +390,10 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
         if (ImGui::IsMouseDoubleClicked(0)) {
             view.x.reset();
         } else if (io.MouseWheel != 0) {
-            const Range next = zoomed(shown, share, std::pow(zoom_of_one_notch, io.MouseWheel), whole, shown_min);
+            const Range next = zoomed(shown, share, std::pow(zoom_of_one_notch, io.MouseWheel), whole, x_units_min);
             view.x = next == whole ? std::nullopt : std::optional{next};
         }
-        if (const auto lines = drawing.draw_readout(drawing.x_at(io.MousePos.x)); !lines.empty()) {
+        if (const auto lines = drawing.draw_cursor(drawing.x_at(io.MousePos.x)); !lines.empty()) {
             ImGui::BeginTooltip();
             for (const std::string& line : lines) {
                 ImGui::TextUnformatted(line.c_str());
@@ -415,7 +415,7 @@ void curve_widget(const Plot& plot, Range y, float height_pixels) {
     Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_bare();
 }
 
-sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {
+sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {
     const auto width = static_cast<float>(width_pixels), height = static_cast<float>(height_pixels);
     ImFont& font = *ImGui::GetFont();
     ImDrawList list{ImGui::GetDrawListSharedData()};

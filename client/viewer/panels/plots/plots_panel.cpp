@@ -14,8 +14,8 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float plot_height_min = 120;                               // pixels
-constexpr int picture_pixels_min = 200, picture_pixels_max = 10'000; // of either side of a file
+constexpr float plot_height_min = 120;                           // pixels
+constexpr int image_pixels_min = 200, image_pixels_max = 10'000; // of each side of a saved image
 
 struct Tab {
     const char* name;
@@ -25,19 +25,19 @@ constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},     {"Genes", Quantity::
                         {"Selection", Quantity::Selection}, {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors}, {"Deaths", Quantity::Deaths}};
 
-/// A field for a side of a picture.
+/// A field for the width or height of a saved image.
 void build_pixels(const char* label, const char* name, int& pixels) {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 4);
     ImGui::InputInt(label, &pixels, 0);
     if (ImGui::IsItemDeactivatedAfterEdit()) {
-        pixels = std::clamp(pixels, picture_pixels_min, picture_pixels_max);
+        pixels = std::clamp(pixels, image_pixels_min, image_pixels_max);
     }
     widgets::mark(name);
-    widgets::explain(std::string{"The "} + name + ", " + with_separators(picture_pixels_min) + " to " +
-                     with_separators(picture_pixels_max) + " pixels.");
+    widgets::explain(std::string{"The "} + name + ", " + with_separators(image_pixels_min) + " to " +
+                     with_separators(image_pixels_max) + " pixels.");
 }
 
-/// CSV files of the working folder, by name.
+/// CSV files in the working folder, sorted by name.
 std::vector<std::string> csv_files() {
     std::vector<std::string> names;
     std::error_code error;
@@ -60,24 +60,24 @@ std::vector<float> gene_of(const Population& population, std::size_t gene, std::
 
 } // namespace
 
-// ---- what is known ---------------------------------------------------------------------------------------------
+// ---- data ------------------------------------------------------------------------------------------------------
 
-void PlotsPanel::ask_history(const Context& context, TrackedHistory& tracked) {
+void PlotsPanel::poll_history(const Context& context, TrackedHistory& tracked) {
     if (!tracked.poll.due(context.world, context.now)) {
         return;
     }
-    if (tracked.history.waits()) { // for what was forgotten
-        tracked.history.give_up();
+    if (tracked.history.pending()) { // the answer has timed out
+        tracked.history.cancel();
     }
-    if (auto question = tracked.history.question()) {
-        tracked.poll.send(context.world, std::move(question->request), context.now,
-                          [&tracked, number = question->number](const evod::v1::Response* response) {
-                              tracked.history.take(number, response != nullptr ? &response->history() : nullptr);
+    if (auto query = tracked.history.next_query()) {
+        tracked.poll.send(context.world, std::move(query->request), context.now,
+                          [&tracked, number = query->number](const evod::v1::Response* response) {
+                              tracked.history.receive(number, response != nullptr ? &response->history() : nullptr);
                           });
     }
 }
 
-void PlotsPanel::ask_worlds(const Context& context) {
+void PlotsPanel::poll_worlds(const Context& context) {
     if (!worlds_poll_.due(context.world, context.now) || !(worlds_stale_ || worlds_poll_.pending())) {
         return;
     }
@@ -93,14 +93,14 @@ void PlotsPanel::ask_worlds(const Context& context) {
     });
 }
 
-void PlotsPanel::listen(Context& context) {
+void PlotsPanel::update(Context& context) {
     ViewedWorld& world = context.world;
     const int frame = ImGui::GetFrameCount();
     const std::uint64_t connected_count = world.server.status().connected_count;
     const bool may_have_missed =
-        heard_place_ != world.feed.place_number() || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
-    heard_place_ = world.feed.place_number();
-    heard_in_frame_ = frame;
+        seen_place_ != world.feed.place_number() || frame > seen_in_frame_ + 1 || connected_count != connected_count_;
+    seen_place_ = world.feed.place_number();
+    seen_in_frame_ = frame;
     connected_count_ = connected_count;
     worlds_stale_ = worlds_stale_ || may_have_missed;
     for (TrackedHistory* tracked : {&own_, other_world_.get()}) {
@@ -109,7 +109,7 @@ void PlotsPanel::listen(Context& context) {
         }
         History& history = tracked->history;
         if (may_have_missed) {
-            history.poll_interval();
+            history.refresh();
         }
         for (const evod::v1::Event& event : world.feed.events()) {
             history.see_event(event);
@@ -118,19 +118,19 @@ void PlotsPanel::listen(Context& context) {
     if (world.feed.control().known()) {
         own_.history.see_run(world.feed.control().world(), world.feed.control().run_id());
     }
-    const codec::DecodedSnapshot* picture = world.feed.snapshot();
-    if (picture != nullptr && picture->about.run_id() == own_.history.run_id() && picture->about.generation() > 0) {
-        own_.history.see_ended(picture->about.generation() - 1);
+    const codec::DecodedSnapshot* snapshot = world.feed.snapshot();
+    if (snapshot != nullptr && snapshot->about.run_id() == own_.history.run_id() && snapshot->about.generation() > 0) {
+        own_.history.see_ended(snapshot->about.generation() - 1);
     }
     own_.history.set_gene_names(world.feed.gene_names());
     for (const evod::v1::Event& event : world.feed.events()) {
         worlds_stale_ = worlds_stale_ || event.has_world_created() || event.has_world_deleted() ||
                         event.has_world_reset() || event.has_events_dropped();
     }
-    ask_worlds(context);
-    ask_history(context, own_);
+    poll_worlds(context);
+    poll_history(context, own_);
     if (other_world_) {
-        ask_history(context, *other_world_);
+        poll_history(context, *other_world_);
     }
 }
 
@@ -139,10 +139,10 @@ Subject PlotsPanel::subject() const {
     return {history.table(), island_, history.world().empty() ? "this world" : history.world()};
 }
 
-// ---- what is built ---------------------------------------------------------------------------------------------
+// ---- widgets ---------------------------------------------------------------------------------------------------
 
 void PlotsPanel::build(Context& context) {
-    listen(context);
+    update(context);
     build_choices();
     build_comparison();
     if (!own_.poll.problem().empty()) {
@@ -200,17 +200,17 @@ void PlotsPanel::build_choices() {
 
 void PlotsPanel::compare_with_file(const std::string& path) {
     auto loaded = load_history(path);
-    told_trouble_ = !loaded;
+    message_is_error_ = !loaded;
     if (!loaded) {
-        told_ = loaded.error().what;
+        message_ = loaded.error().what;
         return;
     }
     if (loaded->empty()) {
-        told_trouble_ = true;
-        told_ = path + " has a heading and no generation";
+        message_is_error_ = true;
+        message_ = path + " has a header but no generation";
         return;
     }
-    told_.clear();
+    message_.clear();
     file_ = std::move(*loaded);
     other_world_.reset();
     other_name_ = std::filesystem::path{path}.stem().string();
@@ -219,12 +219,12 @@ void PlotsPanel::compare_with_file(const std::string& path) {
 void PlotsPanel::build_comparison() {
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
     const bool compares = other_world_ || file_;
-    if (widgets::begin_drop_down("compare", compares ? other_name_.c_str() : "with nothing")) {
+    if (widgets::begin_drop_down("compare", compares ? other_name_.c_str() : "nothing")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
             worlds_stale_ = true;
         }
-        if (widgets::choice("compare", "with nothing", !compares)) {
+        if (widgets::choice("compare", "nothing", !compares)) {
             other_world_.reset();
             file_.reset();
         }
@@ -260,7 +260,7 @@ void PlotsPanel::build_comparison() {
 
 void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     quantity_ = quantity;
-    // Below it the row of the export and what became of it.
+    // Space below for the export row and its message.
     const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
         build_gene_choice("all: their means");
@@ -282,16 +282,16 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     }
     const float line = ImGui::GetFrameHeightWithSpacing();
     plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
-    widgets::checkbox("only the living", only_the_living_);
+    widgets::checkbox("living only", living_only_);
     ImGui::SameLine();
     const Population* population = population_.complete();
-    if (const std::string trouble = population_.problem(); !trouble.empty()) {
-        widgets::say(trouble, palette::warning);
+    if (const std::string problem = population_.problem(); !problem.empty()) {
+        widgets::say(problem, palette::warning);
     } else if (population == nullptr) {
         widgets::say("…");
     } else {
         widgets::say("generation " + with_separators(population->generation()) + ", island " +
-                     std::to_string(island_.value_or(context.world.feed.island())) + shown_of_population_);
+                     std::to_string(island_.value_or(context.world.feed.island())) + population_note_);
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -325,27 +325,27 @@ void PlotsPanel::update_histogram(Context& context) {
     const PopulationPoll::Of whose{history.world(), history.run_id(), island_.value_or(context.world.feed.island()),
                                    names.size()};
     population_.update(context.world, whose, !history.run_id().empty(), context.now);
-    const HistogramOf of{gene_, whose, population_.complete_count(), only_the_living_};
-    if (of == histogram_of_) { // populations may be large
+    const HistogramOf of{gene_, whose, population_.complete_count(), living_only_};
+    if (of == histogram_of_) { // nothing changed; populations may be large
         return;
     }
     histogram_of_ = of;
     const Population* population = population_.complete();
-    shown_of_population_.clear();
+    population_note_.clear();
     histogram_ = histogram_of(gene_, {});
     const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
     if (population == nullptr || index >= population->gene_count()) {
         return;
     }
-    if (only_the_living_) {
-        const codec::DecodedSnapshot* picture = context.world.feed.snapshot_of(whose.island);
-        const bool of_this_run = picture != nullptr && picture->about.run_id() == whose.run_id;
-        const auto ids = living(*population, of_this_run ? picture : nullptr);
+    if (living_only_) {
+        const codec::DecodedSnapshot* snapshot = context.world.feed.snapshot_of(whose.island);
+        const bool of_this_run = snapshot != nullptr && snapshot->about.run_id() == whose.run_id;
+        const auto ids = living(*population, of_this_run ? snapshot : nullptr);
         if (ids && !ids->empty()) {
             histogram_ = histogram_of(gene_, gene_of(*population, index, *ids));
             return;
         }
-        shown_of_population_ = ids ? ": nobody lives, so everyone" : ": who lives is not known, so everyone";
+        population_note_ = ids ? ": none alive, all shown" : ": living ones unknown, all shown";
     }
     const std::span<const float> of_all = population->gene(index);
     histogram_ = histogram_of(gene_, {of_all.begin(), of_all.end()});
@@ -353,7 +353,7 @@ void PlotsPanel::update_histogram(Context& context) {
 
 // ---- files -----------------------------------------------------------------------------------------------------
 
-/// "evoview-default-3f2a9c01-fitness-generation-120": what is there, and of which run.
+/// "evoview-default-3f2a9c01-fitness-generation-120": names the content and the run.
 std::string PlotsPanel::file_name(const std::string& what) const {
     const History& history = own_.history;
     return "evoview-" + history.world() + "-" + history.run_id().substr(0, 8) + "-" + what + "-generation-" +
@@ -362,13 +362,13 @@ std::string PlotsPanel::file_name(const std::string& what) const {
 
 void PlotsPanel::save_csv() {
     const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
-    told_trouble_ = false;
+    message_is_error_ = false;
     try {
         write_file(path, own_.history.table().to_csv());
-        told_ = "Saved " + path;
+        message_ = "Saved " + path;
     } catch (const std::runtime_error& error) {
-        told_ = error.what();
-        told_trouble_ = true;
+        message_ = error.what();
+        message_is_error_ = true;
     }
 }
 
@@ -379,9 +379,9 @@ void PlotsPanel::save_png() {
                       ", run " + own_.history.run_id().substr(0, 8);
         const std::string path = std::filesystem::absolute(file_name(what) + ".png").string();
         const auto pixels = [this](std::size_t i) {
-            return static_cast<unsigned>(std::clamp(picture_pixels_[i], picture_pixels_min, picture_pixels_max));
+            return static_cast<unsigned>(std::clamp(image_pixels_[i], image_pixels_min, image_pixels_max));
         };
-        write_file(path, png_of(picture_of(plot, view, pixels(0), pixels(1))));
+        write_file(path, png_of(image_of(plot, view, pixels(0), pixels(1))));
         return path;
     };
     try {
@@ -397,14 +397,14 @@ void PlotsPanel::save_png() {
         } else if (!gene_.empty() && quantity_ == Quantity::Selection) {
             what = gene_ + "-selection";
         }
-        told_ = "Saved " + save(figure_, view_, what);
+        message_ = "Saved " + save(figure_, view_, what);
         if (quantity_ == Quantity::Genes && !gene_.empty() && !histogram_.plot.series.empty()) {
-            told_ += " and " + save(histogram_, histogram_view_, gene_ + "-histogram");
+            message_ += " and " + save(histogram_, histogram_view_, gene_ + "-histogram");
         }
-        told_trouble_ = false;
+        message_is_error_ = false;
     } catch (const std::runtime_error& error) {
-        told_ = error.what();
-        told_trouble_ = true;
+        message_ = error.what();
+        message_is_error_ = true;
     }
 }
 
@@ -417,13 +417,13 @@ void PlotsPanel::build_export() {
         save_png();
     }
     ImGui::SameLine();
-    build_pixels("##width", "picture's width", picture_pixels_[0]);
+    build_pixels("##width", "image width", image_pixels_[0]);
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     ImGui::TextUnformatted("×");
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-    build_pixels("pixels", "picture's height", picture_pixels_[1]);
-    if (!told_.empty()) {
-        widgets::say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
+    build_pixels("pixels", "image height", image_pixels_[1]);
+    if (!message_.empty()) {
+        widgets::say(message_, message_is_error_ ? palette::warning : palette::text_quiet);
     }
 }
 

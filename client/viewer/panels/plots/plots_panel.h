@@ -1,6 +1,8 @@
-// Plots: how a run went, generation by generation, as it goes on; beside another world or an earlier run, and to files.
+// PlotsPanel: the statistics of a run, generation by generation, while it runs; compared with another world or an
+// earlier run, and saved to files.
 //
-// Threads      none; used by the thread that draws.
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
@@ -23,24 +25,25 @@ class PlotsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    static constexpr std::chrono::milliseconds ask_again{100};   // a world may breed faster than anybody looks
-    static constexpr std::chrono::seconds look_at_population{1}; // who lives
+    static constexpr std::chrono::milliseconds poll_interval{
+        100}; // a world may finish more generations than a user can see
+    static constexpr std::chrono::seconds population_interval{1}; // between queries of the organisms alive
 
     struct TrackedHistory {
         History history;
-        Poll poll{ask_again};
+        Poll poll{poll_interval};
     };
 
-    void listen(Context& context);
-    void ask_history(const Context& context, TrackedHistory& tracked);
-    void ask_worlds(const Context& context);
+    void update(Context& context);
+    void poll_history(const Context& context, TrackedHistory& tracked);
+    void poll_worlds(const Context& context);
 
     void build_choices();
     void build_comparison();
     void build_quantity(Context& context, Quantity quantity);
-    /// all  what is said where no gene is chosen.
+    /// all  the text of the choice "no single gene".
     void build_gene_choice(const char* all);
-    /// Of the gene that is chosen.
+    /// Computes the histogram of the chosen gene.
     void update_histogram(Context& context);
     void build_export();
     void compare_with_file(const std::string& path);
@@ -52,38 +55,38 @@ class PlotsPanel : public Panel {
 
     TrackedHistory own_;
     std::unique_ptr<TrackedHistory> other_world_; // null: another world is not compared
-    std::optional<HistoryTable> file_;            // an earlier run that is compared
-    std::string other_name_;                      // of what is compared
-    PopulationPoll population_{look_at_population};
+    std::optional<HistoryTable> file_;            // an earlier run to compare with
+    std::string other_name_;                      // name of the compared history
+    PopulationPoll population_{population_interval};
 
     std::vector<evod::v1::WorldInfo> worlds_;
     Poll worlds_poll_;
     bool worlds_stale_ = true;
-    std::vector<std::string> files_; // CSV files of the working folder
+    std::vector<std::string> files_; // CSV files in the working folder
 
-    std::uint64_t heard_place_ = 0; // of which events were heard
-    int heard_in_frame_ = -1;       // of Dear ImGui
+    std::uint64_t seen_place_ = 0; // place whose events were processed
+    int seen_in_frame_ = -1;       // frame of Dear ImGui
     std::uint64_t connected_count_ = 0;
 
     Quantity quantity_ = Quantity::Fitness;
     HistoryTable::Island island_;
     std::string gene_;
-    bool only_the_living_ = true;
+    bool living_only_ = true;
     PlotView view_, histogram_view_;
     Figure figure_, histogram_;
     struct HistogramOf {
         std::string gene;
         PopulationPoll::Of of;
         std::uint64_t whole_count = 0;
-        bool only_the_living = false;
+        bool living_only = false;
         bool operator==(const HistogramOf&) const = default;
     } histogram_of_;
-    std::string shown_of_population_; // where it is not the living that are wanted
+    std::string population_note_; // why not only the living are shown
 
     std::array<char, 256> path_{}; // of a file to compare with
-    std::array<int, 2> picture_pixels_{1200, 700};
-    std::string told_; // what became of the last file
-    bool told_trouble_ = false;
+    std::array<int, 2> image_pixels_{1200, 700};
+    std::string message_; // result of the last file operation
+    bool message_is_error_ = false;
 };
 
 } // namespace evod::viewer

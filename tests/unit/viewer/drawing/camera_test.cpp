@@ -22,9 +22,9 @@ void expect_near(Point a, Point b, double tolerance) {
     EXPECT_THAT(a.y, DoubleNear(b.y, tolerance));
 }
 
-TEST(Camera, FitsTheWholeIslandAndItsWallsIntoTheMiddleOfTheViewport) {
+TEST(Camera, CentresTheFittedIslandInTheViewport) {
     const Camera camera = fitted(1280, 720);
-    EXPECT_DOUBLE_EQ(camera.zoom(), (640 - 2 * (6 + 6)) / 720.0); // the height is scarce
+    EXPECT_DOUBLE_EQ(camera.zoom(), (640 - 2 * (6 + 6)) / 720.0); // the height limits the zoom
     expect_near(camera.to_screen({640, 360}), {640, 360}, 1e-9);
     EXPECT_GE(camera.to_screen({0, 0}).y - Camera::wall_pixels, viewport.top);
     EXPECT_LE(camera.to_screen({1280, 720}).y + Camera::wall_pixels, viewport.top + viewport.height);
@@ -34,7 +34,7 @@ TEST(Camera, FitsTheWidthOfAWideIsland) {
     EXPECT_DOUBLE_EQ(fitted(10'000, 100).zoom(), (1280 - 24) / 10'000.0);
 }
 
-TEST(Camera, StaysFittedThroughResizesUntilItIsMoved) {
+TEST(Camera, StaysFittedThroughResizesUntilMoved) {
     Camera camera = fitted(1280, 720);
     camera.set_viewport({0, 40, 640, 320});
     EXPECT_DOUBLE_EQ(camera.zoom(), (320 - 24) / 720.0);
@@ -47,7 +47,7 @@ TEST(Camera, StaysFittedThroughResizesUntilItIsMoved) {
     EXPECT_DOUBLE_EQ(camera.zoom(), (640 - 24) / 720.0);
 }
 
-TEST(Camera, AnotherIslandSizeIsFittedAndTheSameSizeChangesNothing) {
+TEST(Camera, FitsANewIslandSizeButNotTheSameSize) {
     Camera camera = fitted(1280, 720);
     camera.zoom_at({100, 100}, 3);
     const Point centre = camera.centre();
@@ -58,7 +58,7 @@ TEST(Camera, AnotherIslandSizeIsFittedAndTheSameSizeChangesNothing) {
     EXPECT_EQ(camera.centre(), (Point{1000, 1000}));
 }
 
-TEST(Camera, APanMovesThePictureByThatManyPixels) {
+TEST(Camera, APanMovesTheIslandByThatManyPixels) {
     Camera camera = fitted(1280, 720);
     camera.zoom_at({640, 360}, 4);
     const Point before = camera.to_screen({600, 300});
@@ -66,20 +66,20 @@ TEST(Camera, APanMovesThePictureByThatManyPixels) {
     expect_near(camera.to_screen({600, 300}), {before.x + 25, before.y - 10}, 1e-9);
 }
 
-TEST(Camera, TheMiddleOfTheViewportNeverLeavesTheIsland) {
+TEST(Camera, TheViewportCentreStaysOnTheIsland) {
     Camera camera = fitted(1280, 720);
     camera.pan({1e7, -1e7});
     EXPECT_EQ(camera.centre(), (Point{0, 720}));
 }
 
-RC_GTEST_PROP(Camera, WhatIsUnderTheCursorStaysThereWhenZooming, ()) {
+RC_GTEST_PROP(Camera, ZoomingKeepsThePointUnderTheCursor, ()) {
     Camera camera = fitted(1280, 720);
     const Point cursor{double(*rc::gen::inRange(300, 980)), double(*rc::gen::inRange(200, 500))};
     camera.zoom_at({640, 360}, *rc::gen::inRange(1, 8));
     const Point held = camera.to_world(cursor);
     camera.zoom_at(cursor, *rc::gen::element(0.7, 1.2, 1.9));
     const Point middle = camera.centre();
-    // Unless the middle had to be kept on the island.
+    // Unless the centre was clamped to the island.
     RC_PRE(middle.x > 0 && middle.x < 1280 && middle.y > 0 && middle.y < 720);
     const Point now = camera.to_world(cursor);
     RC_ASSERT(std::abs(now.x - held.x) < 1e-6);
@@ -95,7 +95,7 @@ RC_GTEST_PROP(Camera, ScreenAndWorldAreInverse, ()) {
     RC_ASSERT(std::abs(back.y - screen.y) < 1e-6);
 }
 
-TEST(Camera, ZoomsNoFurtherThanItsLimits) {
+TEST(Camera, ZoomStaysWithinItsLimits) {
     Camera camera = fitted(1280, 720);
     const double whole = camera.zoom();
     camera.zoom_at({640, 360}, 1e9);
@@ -104,7 +104,7 @@ TEST(Camera, ZoomsNoFurtherThanItsLimits) {
     EXPECT_DOUBLE_EQ(camera.zoom(), whole / 2);
 }
 
-TEST(Camera, TellsWhatIsVisible) {
+TEST(Camera, ReturnsTheVisibleRectangle) {
     Camera camera = fitted(1000, 1000);
     const Rectangle seen = camera.visible();
     EXPECT_TRUE(seen.contains({0, 0}));
@@ -114,7 +114,7 @@ TEST(Camera, TellsWhatIsVisible) {
     EXPECT_TRUE(camera.visible().contains({500, 500}));
 }
 
-TEST(Camera, LooksAtAPlaceOfTheIsland) {
+TEST(Camera, CentresOnAPointOfTheIsland) {
     Camera camera;
     camera.set_viewport({0, 0, 1000, 500});
     camera.set_island(1000, 500);
@@ -127,20 +127,20 @@ TEST(Camera, LooksAtAPlaceOfTheIsland) {
     EXPECT_EQ(camera.centre(), (Point{0, 500}));
 }
 
-TEST(Camera, LooksAsAnotherDoesInAPlaceOfItsOwn) {
+TEST(Camera, FollowsAnotherCameraInItsOwnViewport) {
     Camera leader, other;
     leader.set_viewport({0, 0, 600, 400});
     other.set_viewport({602, 0, 600, 400});
     leader.set_island(1000, 500);
     other.set_island(1000, 500);
     leader.zoom_at({150, 100}, 3);
-    other.look_as(leader);
+    other.follow(leader);
     EXPECT_EQ(other.zoom(), leader.zoom());
     EXPECT_EQ(other.centre(), leader.centre());
     EXPECT_EQ(other.viewport().left, 602);
     EXPECT_FALSE(other.fitted());
     leader.fit();
-    other.look_as(leader);
+    other.follow(leader);
     EXPECT_TRUE(other.fitted());
 }
 

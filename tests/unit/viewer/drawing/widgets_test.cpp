@@ -7,16 +7,16 @@ namespace {
 
 constexpr Point apply{10, 20}, discard{80, 20}; // corners of widgets
 
-TEST(Spots, TheMouseLingersWhereItHasBeenForHalfASecond) {
+TEST(Spots, TheMouseLingersAfterHalfASecond) {
     Spots spots;
     EXPECT_FALSE(spots.lingers(apply, 1.0, false));
     EXPECT_FALSE(spots.lingers(apply, 1.2, false));
     EXPECT_FALSE(spots.lingers(apply, 1.4, false));
     EXPECT_TRUE(spots.lingers(apply, 1.6, false));
-    EXPECT_FALSE(spots.lingers(discard, 1.7, false)) << "elsewhere it has just come";
+    EXPECT_FALSE(spots.lingers(discard, 1.7, false)) << "the mouse has just moved there";
 }
 
-TEST(Spots, AfterAClickItLingersOnlyOnceItHasBeenElsewhere) {
+TEST(Spots, AfterAClickTheMouseMustLeaveFirst) {
     Spots spots;
     for (double now_s = 1; now_s < 1.6; now_s += 0.1) {
         spots.lingers(apply, now_s, false);
@@ -33,18 +33,18 @@ TEST(Spots, AfterAClickItLingersOnlyOnceItHasBeenElsewhere) {
     EXPECT_TRUE(spots.lingers(apply, 5.7, false));
 }
 
-TEST(Spots, AnOpenDropDownTellsWhatItOffers) {
+TEST(Spots, AnOpenDropDownListsItsChoices) {
     Spots spots;
     spots.begin_panel("Plots");
     spots.add("Fit", discard);
     spots.add_drop_down("compare", apply);
-    spots.add_choice("compare", "with nothing", apply);
+    spots.add_choice("compare", "nothing", apply);
     spots.add_choice("compare", "world b", discard);
-    EXPECT_EQ(spots.choices("compare"), nullptr) << "it is not drawn yet";
+    EXPECT_EQ(spots.choices("compare"), nullptr) << "not drawn yet";
     spots.begin_frame();
     for (const char* name : {"compare", "Plots/compare"}) {
         ASSERT_NE(spots.choices(name), nullptr);
-        EXPECT_EQ(*spots.choices(name), (std::vector<std::string>{"with nothing", "world b"}));
+        EXPECT_EQ(*spots.choices(name), (std::vector<std::string>{"nothing", "world b"}));
     }
     EXPECT_EQ(spots.find("Plots/compare: world b"), discard);
     EXPECT_EQ(spots.choices("Fit"), nullptr) << "a button";

@@ -12,7 +12,7 @@ TEST(Layout, OneWorldHasTheWholeWindow) {
     EXPECT_EQ(columns[0].height, 720);
 }
 
-TEST(Layout, TwoWorldsShareItsWidthInWholePixelsAndTheLastTakesTheRest) {
+TEST(Layout, TwoWorldsShareTheWidthInWholePixels) {
     const auto columns = side_by_side({0, 10, 1281, 720}, 2);
     ASSERT_EQ(columns.size(), 2u);
     EXPECT_EQ(columns[0].left, 0);
@@ -23,13 +23,13 @@ TEST(Layout, TwoWorldsShareItsWidthInWholePixelsAndTheLastTakesTheRest) {
     EXPECT_EQ(columns[1].height, 720);
 }
 
-TEST(Layout, AWindowWithoutRoomStillGivesEveryWorldAPixel) {
+TEST(Layout, ATinyWindowGivesEveryWorldAPixel) {
     for (const Rectangle& column : side_by_side({0, 0, 1, 1}, 2)) {
         EXPECT_GE(column.width, 1);
     }
 }
 
-TEST(Layout, TilesAreAsLargeAsTheyCanBe) {
+TEST(Layout, TilesAreAsLargeAsPossible) {
     // Eight islands of 16:9: in 1280 × 650, three in a row are 425 wide and 214 high; four would be smaller.
     const auto wide = in_tiles({0, 38, 1280, 650}, 8, 16.0 / 9);
     ASSERT_EQ(wide.size(), 8u);
@@ -37,13 +37,13 @@ TEST(Layout, TilesAreAsLargeAsTheyCanBe) {
     EXPECT_EQ(wide[2].top, wide[0].top);
     EXPECT_EQ(wide[3].top, wide[0].top + wide[0].height + gap_pixels);
     EXPECT_EQ(wide[3].left, wide[0].left);
-    // Square ones in a narrow, high place stand one above the other.
+    // Square islands in a narrow, high place are stacked.
     const auto high = in_tiles({0, 0, 200, 1000}, 4, 1);
     EXPECT_EQ(high[3].left, 0);
     EXPECT_GT(high[3].top, high[2].top);
 }
 
-TEST(Layout, TilesNeitherOverlapNorLeaveTheirPlace) {
+TEST(Layout, TilesStayInsideAndDoNotOverlap) {
     const Rectangle place{7, 38, 801, 453};
     for (const std::size_t count : {1u, 2u, 3u, 5u, 8u, 13u, 64u}) {
         const auto all = in_tiles(place, count, 1.5);
@@ -63,7 +63,7 @@ TEST(Layout, TilesNeitherOverlapNorLeaveTheirPlace) {
     }
 }
 
-TEST(FreePlaces, AreAtTheSidesAndCoverNobody) {
+TEST(FreePlaces, AreAtTheSidesAndCoverNothing) {
     const Rectangle room{0, 50, 1000, 600};
     std::vector<Rectangle> taken;
     const auto add = [&](PlaceWanted wanted) {
@@ -74,13 +74,13 @@ TEST(FreePlaces, AreAtTheSidesAndCoverNobody) {
     EXPECT_EQ(add({300, 250, true}), (Rectangle{690, 60, 300, 250}));
     EXPECT_EQ(add({200, 400, false}), (Rectangle{10, 60, 200, 400}));
     EXPECT_EQ(add({300, 300, true}), (Rectangle{690, 320, 300, 300})) << "below the first";
-    EXPECT_EQ(add({200, 300, true}), (Rectangle{220, 60, 200, 300})) << "further in, where that is nearer to a side";
+    EXPECT_EQ(add({200, 300, true}), (Rectangle{220, 60, 200, 300})) << "further in, because that is nearer to a side";
     EXPECT_EQ(add({250, 250, false}), (Rectangle{220, 370, 250, 250})) << "below that";
     EXPECT_EQ(add({400, 300, true}), std::nullopt);
     EXPECT_EQ(add({990, 300, true}), std::nullopt) << "wider than the room";
 }
 
-TEST(FreePlaces, ALargeScreenHasRoomForSeveralPanelsApart) {
+TEST(FreePlaces, ALargeScreenFitsSeveralPanels) {
     const Rectangle room = viewport_of(below_panel_strip(3840, 2160, 2), 2);
     std::vector<Rectangle> taken;
     for (const PlaceWanted& wanted : {PlaceWanted{920, 840, true},

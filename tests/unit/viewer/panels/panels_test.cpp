@@ -5,7 +5,7 @@
 namespace evod::viewer {
 namespace {
 
-TEST(Panels, TheOneUsedLastIsClosedFirst) {
+TEST(Panels, ClosesThePanelUsedLastFirst) {
     Panels panels;
     for (const std::size_t index : {4u, 1u, 2u, 0u}) {
         panels.toggle(index);
@@ -20,7 +20,7 @@ TEST(Panels, TheOneUsedLastIsClosedFirst) {
     EXPECT_FALSE(panels.close_front());
 }
 
-TEST(Panels, WhatIsShownStaysSoInAnotherSessionAndIsClosedInTheSameOrder) {
+TEST(Panels, VisiblePanelsSurviveANewSession) {
     Panels panels;
     panels.toggle(3);
     panels.show(panels.titles()[1]);

@@ -8,13 +8,13 @@
 namespace evod::viewer {
 namespace {
 
-TEST(Print, IsNeverCutOff) {
+TEST(Print, HasNoLengthLimit) {
     EXPECT_EQ(print("%d of %s", 3, "four"), "3 of four");
     EXPECT_EQ(print("%500d", 7).size(), 500);
     EXPECT_EQ(print("%s", ""), "");
 }
 
-TEST(Numbers, AreWrittenAsPeopleReadThem) {
+TEST(Numbers, HaveSeparators) {
     EXPECT_EQ(with_separators(0), "0");
     EXPECT_EQ(with_separators(999), "999");
     EXPECT_EQ(with_separators(1000), "1,000");
@@ -35,11 +35,21 @@ TEST(Numbers, HaveSixDigits) {
     EXPECT_EQ(with_unit(3, ""), "3");
 }
 
-TEST(Numbers, AreReadWhole) {
+TEST(Numbers, AreReadOnlyFromDigits) {
     EXPECT_EQ(whole_number("0"), 0u);
     EXPECT_EQ(whole_number("18446744073709551615"), ~std::uint64_t{0});
     for (const char* text : {"", "-1", "+1", "1.5", "7 ", " 7", "1,000", "18446744073709551616", "seven"}) {
         EXPECT_EQ(whole_number(text), std::nullopt) << text;
+    }
+}
+
+TEST(Numbers, OfAFieldAreCheckedAgainstTheirRange) {
+    std::string problem = "seed: earlier";
+    EXPECT_EQ(number_in("ticks", "60", 1, 1000, problem), 60u);
+    EXPECT_EQ(problem, "");
+    for (const char* refused : {"0", "1001", "-3", "", "6 0", "99999999999999999999"}) {
+        EXPECT_EQ(number_in("ticks", refused, 1, 1000, problem), std::nullopt) << refused;
+        EXPECT_EQ(problem, "ticks: got \"" + std::string{refused} + "\", allowed whole numbers from 1 to 1,000");
     }
 }
 

@@ -73,7 +73,7 @@ TEST(OrganismHistory, ReportsItsDeath) {
     last.set_cause_of_death(evod::v1::CAUSE_OF_DEATH_POISONED);
     story.add(last);
     EXPECT_TRUE(story.dead());
-    EXPECT_EQ(shown_fate(story), "dead of poison after 12.3 s");
+    EXPECT_EQ(shown_fate(story), "died of poison after 12.3 s");
 }
 
 TEST(OrganismHistory, ChildrenAreInTheNextGeneration) {
@@ -103,22 +103,22 @@ TEST(OrganismHistory, ChildrenAreInTheNextGeneration) {
     EXPECT_FALSE(story.children());
     story.add(next);
     ASSERT_TRUE(story.children());
-    EXPECT_EQ(shown_children(*story.children()), "0 (with 9), 1 (as it was), 2 (alone)");
+    EXPECT_EQ(shown_children(*story.children()), "0 (with 9), 1 (unchanged), 2 (single parent)");
     EXPECT_FALSE(story.waits_for_children());
-    EXPECT_EQ(shown_children({}), "nobody");
+    EXPECT_EQ(shown_children({}), "none");
 }
 
 TEST(Parents, NameTwoOrOneOrNone) {
     evod::v1::OrganismInfo info;
     info.set_generation(1);
-    EXPECT_EQ(told_parents(info), "No parents: founder of generation 1, or loaded from a file");
+    EXPECT_EQ(shown_parents(info), "No parents: founder of generation 1, or loaded from a file");
     info.set_generation(36);
     info.add_parents(45);
-    EXPECT_EQ(told_parents(info), "Parent: 45 (generation 35)") << "a survivor";
+    EXPECT_EQ(shown_parents(info), "Parent: 45 (generation 35)") << "a survivor";
     info.add_parents(45);
-    EXPECT_EQ(told_parents(info), "Parent: 45 (generation 35)");
+    EXPECT_EQ(shown_parents(info), "Parent: 45 (generation 35)");
     info.set_parents(1, 12);
-    EXPECT_EQ(told_parents(info), "Parents: 45 and 12 (generation 35)");
+    EXPECT_EQ(shown_parents(info), "Parents: 45 and 12 (generation 35)");
 }
 
 TEST(OrganismHistory, StopsWaitingForChildrenAfterTwoGenerations) {

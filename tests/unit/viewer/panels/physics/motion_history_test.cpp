@@ -24,13 +24,13 @@ TEST(MotionHistory, KeepsOneOfEachTick) {
     MotionHistory history;
     EXPECT_TRUE(history.empty());
     history.add(at(3, 1));
-    history.add(at(3, 2)); // a paused world is asked again and again
+    history.add(at(3, 2)); // a paused world returns the same tick again
     history.add(at(9, 4));
     EXPECT_THAT(energies(history), ElementsAre(2, 4));
     EXPECT_EQ(history.last().tick(), 9u);
 }
 
-TEST(MotionHistory, BeginsAnewWhenTimeGoesBack) {
+TEST(MotionHistory, ClearsWhenTheTickGoesBack) {
     MotionHistory history;
     history.add(at(30, 1));
     history.add(at(40, 2));
@@ -38,7 +38,7 @@ TEST(MotionHistory, BeginsAnewWhenTimeGoesBack) {
     EXPECT_THAT(energies(history), ElementsAre(3));
 }
 
-TEST(MotionHistory, ForgetsTheOldest) {
+TEST(MotionHistory, DropsTheOldest) {
     MotionHistory history;
     for (std::uint64_t tick = 0; tick < MotionHistory::kept + 10; ++tick) {
         history.add(at(tick, static_cast<double>(tick)));
@@ -56,14 +56,14 @@ evod::v1::Motion moving(double share, std::uint64_t too_fast) {
     return motion;
 }
 
-TEST(JudgeTick, IsContentWithSlowBodies) {
+TEST(JudgeTick, AcceptsSlowBodies) {
     const TickVerdict verdict = judge_tick(moving(0.2, 0));
     EXPECT_EQ(verdict.level, TickVerdict::Level::Good);
     EXPECT_EQ(verdict.sentence, "The tick is short enough: the fastest body moves 0.2 of its radius in a tick.");
 }
 
-TEST(JudgeTick, SaysWhichParametersWouldHelp) {
-    EXPECT_EQ(judge_tick(moving(0.61, 0)).level, TickVerdict::Level::Good) << "as in the world of the start";
+TEST(JudgeTick, NamesParametersThatHelp) {
+    EXPECT_EQ(judge_tick(moving(0.61, 0)).level, TickVerdict::Level::Good) << "as in the default world";
     const TickVerdict close = judge_tick(moving(0.8, 0));
     EXPECT_EQ(close.level, TickVerdict::Level::Close);
     EXPECT_THAT(close.sentence, HasSubstr("Set tick_s to 0.0312 or less, or max_speed_px_s to 250."));
@@ -73,7 +73,7 @@ TEST(JudgeTick, SaysWhichParametersWouldHelp) {
     EXPECT_THAT(fast.sentence, Not(HasSubstr("this generation")));
 }
 
-TEST(JudgeTick, RemembersWhatHappenedInTheGeneration) {
+TEST(JudgeTick, CountsFastMovesOfTheGeneration) {
     const TickVerdict verdict = judge_tick(moving(0.1, 1234));
     EXPECT_EQ(verdict.level, TickVerdict::Level::TooLong);
     EXPECT_THAT(verdict.sentence, HasSubstr("1,234 moves of this generation went further than the body's own radius"));

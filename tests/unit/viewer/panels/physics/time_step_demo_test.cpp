@@ -19,7 +19,7 @@ System slowing(double damping) {
     return {.omega_per_s = 0, .damping_per_s = damping, .start = {0, 100}};
 }
 
-TEST(TimeStepDemo, KnowsTheTruthOfASpringAndOfWhatSlowsDown) {
+TEST(TimeStepDemo, SolvesTheSpringAndDampedMotionExactly) {
     for (const double t : {0.0, 0.3, 1.0, 7.5}) {
         const State swung = TimeStepDemo{spring(3)}.exact(t);
         EXPECT_NEAR(swung.x_px, 100 * std::cos(3 * t), 1e-9);
@@ -33,7 +33,7 @@ TEST(TimeStepDemo, KnowsTheTruthOfASpringAndOfWhatSlowsDown) {
     }
 }
 
-TEST(TimeStepDemo, TheTruthOfADampedSpringObeysItsEquation) {
+TEST(TimeStepDemo, TheDampedSpringSatisfiesItsEquation) {
     // x'' + c·x' + ω²x = 0 by central differences; below, at and above critical damping.
     for (const double c : {1.0, 6.0, 9.0}) {
         const TimeStepDemo demo{{.omega_per_s = 3, .damping_per_s = c, .start = {40, 70}}};
@@ -48,7 +48,7 @@ TEST(TimeStepDemo, TheTruthOfADampedSpringObeysItsEquation) {
     }
 }
 
-TEST(TimeStepDemo, ExplicitEulerMultipliesASpringsEnergyInEveryStep) {
+TEST(TimeStepDemo, ExplicitEulerMultipliesTheEnergyEachStep) {
     const TimeStepDemo demo{spring(2)};
     const double dt = 0.05, start = demo.energy({100, 0});
     EXPECT_EQ(start, 2 * 100 * 100);
@@ -60,8 +60,8 @@ TEST(TimeStepDemo, ExplicitEulerMultipliesASpringsEnergyInEveryStep) {
     }
 }
 
-TEST(TimeStepDemo, SymplecticEulerKeepsASpringsEnergyWithinBounds) {
-    // v² + ω²x² − ω²·dt·x·v stays; so the energy stays within a factor of 1 ± ω·dt/2 of it, each way.
+TEST(TimeStepDemo, SymplecticEulerBoundsTheEnergy) {
+    // v² + ω²x² − ω²·dt·x·v is invariant, so the energy stays within a factor of 1 ± ω·dt/2 of it.
     const TimeStepDemo demo{spring(2)};
     const double dt = 0.1, bound = 2 * dt / 2, start = demo.energy({100, 0});
     double least = start, most = start;
@@ -73,10 +73,10 @@ TEST(TimeStepDemo, SymplecticEulerKeepsASpringsEnergyWithinBounds) {
     }
     EXPECT_GE(least, start / (1 + bound));
     EXPECT_LE(most, start / (1 - bound));
-    EXPECT_GT(most - least, start * bound) << "it does go up and down";
+    EXPECT_GT(most - least, start * bound) << "the energy oscillates";
 }
 
-TEST(TimeStepDemo, SymplecticEulerHoldsUpToTwoOverOmega) {
+TEST(TimeStepDemo, SymplecticEulerIsStableUpToTwoOverOmega) {
     const TimeStepDemo demo{spring(2)};
     const auto furthest = [&](double dt) {
         double most = 0;
@@ -91,7 +91,7 @@ TEST(TimeStepDemo, SymplecticEulerHoldsUpToTwoOverOmega) {
     EXPECT_GT(furthest(1.01), 1e6);
 }
 
-TEST(TimeStepDemo, BothKeepAShareOfTheVelocityOfWhatSlowsDown) {
+TEST(TimeStepDemo, BothScaleTheVelocityOfDampedMotion) {
     const double c = 2, dt = 0.1, kept = 1 - c * dt;
     const auto rows = TimeStepDemo{slowing(c)}.rows(dt, 50);
     for (std::size_t n = 0; n < rows.size(); ++n) {
@@ -104,7 +104,7 @@ TEST(TimeStepDemo, BothKeepAShareOfTheVelocityOfWhatSlowsDown) {
     }
 }
 
-TEST(TimeStepDemo, ErrorsAreOfFirstOrderInTheStep) {
+TEST(TimeStepDemo, ErrorsAreOfFirstOrder) {
     const TimeStepDemo demo{spring(2)};
     const auto error = [&](std::size_t steps, State TimeStepDemo::Row::*way) {
         const auto last = demo.rows(1.0 / static_cast<double>(steps), steps).back();

@@ -26,7 +26,7 @@ HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
             statistics.add_genes()->set_mean(100);
             statistics.mutable_genes(0)->set_deviation(4);
             statistics.add_genes()->set_mean(50);
-            if (generation > 1) { // the first came from none
+            if (generation > 1) { // the first generation has no predecessor
                 v1::GeneAccount& account = *statistics.mutable_genes(0)->mutable_account();
                 account.set_selection(3 + 2 * island);
                 account.set_transmission(-1);
@@ -64,9 +64,9 @@ TEST(Figures, TheMedianOfSeveralIslandsIsNotShown) {
                 ElementsAre("± one deviation", "worst", "mean", "best"));
 }
 
-TEST(Figures, WhatIsComparedHasItsOwnLinesAndNames) {
+TEST(Figures, AComparisonAddsLinesWithTheirOwnNames) {
     const HistoryTable table = table_of(2, 3), other = table_of(1, 5);
-    const Subject beside{other, 1u, "yesterday"}; // which has no island 1
+    const Subject beside{other, 1u, "yesterday"}; // has no island 1
     const Figure figure = figure_of(Quantity::Diversity, {table, 1u, "lab"}, &beside, "");
     EXPECT_THAT(names_of(figure), ElementsAre("diversity, lab", "diversity, yesterday"));
     EXPECT_EQ(figure.plot.series[1].kind, Series::Kind::Dashes);
@@ -83,10 +83,10 @@ TEST(Figures, GenesAreShownOneByOneOrTogether) {
     EXPECT_THAT(figure.plot.series[0].low, Each(96));
 }
 
-TEST(Figures, SelectionIsAskedOfAllGenesAndAllThatMovedTheMeanOfOne) {
+TEST(Figures, SelectionIsShownForAllGenesOrOneInParts) {
     const HistoryTable table = table_of(2, 3);
     EXPECT_THAT(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "")), ElementsAre("impulse"))
-        << "nobody knows of the other gene";
+        << "the other gene has no account";
     const Figure figure = figure_of(Quantity::Selection, {table, std::nullopt, "lab"}, nullptr, "impulse");
     ASSERT_THAT(names_of(figure), ElementsAre("migration", "transmission", "selection", "change"));
     EXPECT_THAT(figure.plot.series[0].y, ElementsAre(IsNan(), 0.5, 0.5));
@@ -104,7 +104,7 @@ TEST(Figures, DeathsAreStacked) {
     EXPECT_EQ(whole_x(figure.plot), (Range{0.5, 3.5})) << "whole bars";
 }
 
-TEST(Figures, NothingIsKnownOfAnEmptyTable) {
+TEST(Figures, AnEmptyTableGivesNoSeries) {
     const HistoryTable table;
     for (const auto quantity : {Quantity::Fitness, Quantity::Genes, Quantity::Selection, Quantity::Diversity,
                                 Quantity::Survivors, Quantity::Deaths}) {
@@ -113,7 +113,7 @@ TEST(Figures, NothingIsKnownOfAnEmptyTable) {
     EXPECT_TRUE(histogram_of("impulse", {}).plot.series.empty());
 }
 
-TEST(Figures, AHistogramHasEveryOrganism) {
+TEST(Figures, AHistogramCountsEveryOrganism) {
     const Figure figure = histogram_of("impulse", {1, 1, 2, 5, 9});
     const Series& bars = figure.plot.series.at(0);
     EXPECT_EQ(bars.y.size(), 8u);

@@ -46,19 +46,19 @@ v1::History page(std::uint64_t first, std::uint64_t last, std::optional<std::uin
 struct HistoryTest : testing::Test {
     HistoryTest() { history.see_run("lab", "a"); }
 
-    /// Asks, and tells from which generation on.
+    /// Returns the first generation of the next query.
     std::uint64_t ask() {
-        const auto question = history.question();
-        EXPECT_TRUE(question);
-        if (!question) {
+        const auto query = history.next_query();
+        EXPECT_TRUE(query);
+        if (!query) {
             return 0;
         }
-        number = question->number;
-        EXPECT_EQ(question->request.get_history().world(), "lab");
-        EXPECT_FALSE(question->request.get_history().has_island());
-        return question->request.get_history().first_generation();
+        number = query->number;
+        EXPECT_EQ(query->request.get_history().world(), "lab");
+        EXPECT_FALSE(query->request.get_history().has_island());
+        return query->request.get_history().first_generation();
     }
-    void answer(const v1::History& told) { history.take(number, &told); }
+    void answer(const v1::History& page) { history.receive(number, &page); }
     std::vector<double> known() const {
         const auto column = history.table().column(std::nullopt, "generation");
         return {column.begin(), column.end()};
@@ -68,22 +68,22 @@ struct HistoryTest : testing::Test {
     std::uint64_t number = 0;
 };
 
-TEST_F(HistoryTest, AsksForThePastPageByPage) {
+TEST_F(HistoryTest, RequestsEarlierGenerationsPageByPage) {
     EXPECT_EQ(ask(), 1u);
-    EXPECT_EQ(history.question(), std::nullopt) << "one at a time";
+    EXPECT_EQ(history.next_query(), std::nullopt) << "one at a time";
     answer(page(1, 3, 4));
     EXPECT_FALSE(history.complete());
     EXPECT_EQ(ask(), 4u);
     answer(page(4, 5));
     EXPECT_TRUE(history.complete());
-    EXPECT_EQ(history.question(), std::nullopt);
+    EXPECT_EQ(history.next_query(), std::nullopt);
     EXPECT_THAT(known(), ElementsAre(1, 2, 3, 4, 5));
     EXPECT_THAT(history.table().column(0, "fitness_best"), ElementsAre(100, 200, 300, 400, 500));
 }
 
-TEST_F(HistoryTest, EventsGoOnWhereThePagesEnd) {
+TEST_F(HistoryTest, EventsContinueAfterThePages) {
     ask();
-    history.see_event(finished(4)); // while the first page is under way
+    history.see_event(finished(4)); // while the first page is pending
     answer(page(1, 3));
     history.see_event(finished(5));
     history.see_event(finished(5));
@@ -91,7 +91,7 @@ TEST_F(HistoryTest, EventsGoOnWhereThePagesEnd) {
     EXPECT_THAT(known(), ElementsAre(1, 2, 3, 4, 5));
 }
 
-TEST_F(HistoryTest, AGapIsAskedFor) {
+TEST_F(HistoryTest, RequestsAGap) {
     ask();
     answer(page(1, 3));
     history.see_event(finished(6));
@@ -102,12 +102,12 @@ TEST_F(HistoryTest, AGapIsAskedFor) {
     EXPECT_THAT(known(), ElementsAre(1, 2, 3, 4, 5, 6, 7));
 }
 
-TEST_F(HistoryTest, AnEventBetweenTheAnswerAndItsGapLeavesNoHole) {
+TEST_F(HistoryTest, AnEventBeyondAGapLeavesNoHole) {
     ask();
     answer(page(1, 3));
     history.see_event(finished(5));
     EXPECT_EQ(ask(), 4u);
-    history.see_event(finished(8)); // 6 and 7 were not told
+    history.see_event(finished(8)); // 6 and 7 are missing
     answer(page(4, 6));
     EXPECT_FALSE(history.complete());
     EXPECT_EQ(ask(), 7u);
@@ -116,7 +116,7 @@ TEST_F(HistoryTest, AnEventBetweenTheAnswerAndItsGapLeavesNoHole) {
     EXPECT_TRUE(history.complete());
 }
 
-TEST_F(HistoryTest, WhatTheServerHasForgottenIsNotAskedForAgain) {
+TEST_F(HistoryTest, DoesNotRequestWhatTheServerDropped) {
     ask();
     answer(page(1, 3));
     history.see_event(finished(20'000));
@@ -127,14 +127,14 @@ TEST_F(HistoryTest, WhatTheServerHasForgottenIsNotAskedForAgain) {
     EXPECT_TRUE(history.complete());
 }
 
-TEST_F(HistoryTest, DroppedEventsAndPicturesTellThatSomethingIsMissing) {
+TEST_F(HistoryTest, DroppedEventsAndSnapshotsRevealAGap) {
     ask();
     answer(page(1, 3));
     v1::Event dropped;
     dropped.mutable_events_dropped()->set_dropped_count(2);
     history.see_event(dropped);
     EXPECT_EQ(ask(), 4u);
-    history.poll_interval(); // once more, while it is under way
+    history.refresh(); // again, while the query is pending
     answer(page(4, 5));
     EXPECT_EQ(ask(), 6u);
     answer({});
@@ -144,10 +144,10 @@ TEST_F(HistoryTest, DroppedEventsAndPicturesTellThatSomethingIsMissing) {
     history.see_ended(6);
     EXPECT_EQ(ask(), 6u);
     answer({});
-    EXPECT_TRUE(history.complete()) << "the server does not know it";
+    EXPECT_TRUE(history.complete()) << "the server no longer has it";
 }
 
-TEST_F(HistoryTest, AResetBeginsAnewAndOldAnswersAreOfNobody) {
+TEST_F(HistoryTest, AResetClearsItAndOldAnswersAreIgnored) {
     ask();
     answer(page(1, 3, 4));
     ask();
@@ -160,7 +160,7 @@ TEST_F(HistoryTest, AResetBeginsAnewAndOldAnswersAreOfNobody) {
     history.see_event(reset);
     EXPECT_NE(history.revision(), revision);
     EXPECT_TRUE(history.table().empty());
-    answer(page(4, 9)); // of the run before
+    answer(page(4, 9)); // of the previous run
     history.see_event(finished(10, "a"));
     EXPECT_TRUE(history.table().empty());
     EXPECT_EQ(ask(), 1u);
@@ -170,18 +170,18 @@ TEST_F(HistoryTest, AResetBeginsAnewAndOldAnswersAreOfNobody) {
     EXPECT_THAT(known(), ElementsAre(1)) << "the same as before";
 }
 
-TEST_F(HistoryTest, EventsOfOtherWorldsArePassedOver) {
+TEST_F(HistoryTest, IgnoresEventsOfOtherWorlds) {
     ask();
     answer(page(1, 1));
     history.see_event(finished(2, "a", "other"));
     EXPECT_THAT(known(), ElementsAre(1));
 }
 
-TEST_F(HistoryTest, ARefusedQuestionIsAskedAgain) {
+TEST_F(HistoryTest, SendsAFailedQueryAgain) {
     ask();
     answer(page(1, 3, 4));
     ask();
-    history.take(number, nullptr);
+    history.receive(number, nullptr);
     EXPECT_FALSE(history.complete());
     EXPECT_EQ(ask(), 1u);
 }
@@ -206,7 +206,7 @@ TEST(HistoryTable, JoinsIslands) {
     EXPECT_EQ(all("fitness_best"), 101);
     EXPECT_EQ(all("fitness_worst"), -5);
     EXPECT_EQ(all("fitness_mean"), 17.5);
-    // The mean square less the square of the mean, of 10 and 30 organisms.
+    // The mean square minus the square of the mean, of 10 and 30 organisms.
     EXPECT_NEAR(all("fitness_deviation"), std::sqrt((10 * (9 + 100) + 30 * (16 + 400)) / 40.0 - 17.5 * 17.5), 1e-12);
     EXPECT_TRUE(std::isnan(all("fitness_median")));
     EXPECT_EQ(all("starved_count"), 7);
@@ -216,7 +216,7 @@ TEST(HistoryTable, JoinsIslands) {
     EXPECT_TRUE(table.column(0, "beauty").empty());
 }
 
-TEST(HistoryTable, OneIslandIsAllOfThem) {
+TEST(HistoryTable, OneIslandEqualsAllIslands) {
     HistoryTable table;
     const auto numbers = core::history_numbers(statistics_of(7));
     table.add(std::vector<std::vector<double>>{numbers});
@@ -226,7 +226,7 @@ TEST(HistoryTable, OneIslandIsAllOfThem) {
     EXPECT_THAT(table.column(0, "impulse_mean"), ElementsAre(1.5));
 }
 
-TEST(HistoryTable, ComesBackFromAFile) {
+TEST(HistoryTable, IsReadBackFromAFile) {
     HistoryTable table;
     table.set_gene_names({"impulse"});
     for (const std::uint64_t generation : {2, 1, 5}) {

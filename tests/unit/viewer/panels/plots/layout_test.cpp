@@ -34,7 +34,7 @@ TEST(Ticks, AreRoundNumbersInsideTheRange) {
     EXPECT_TRUE(ticks_in({none, 3}, 5).at.empty());
 }
 
-TEST(Ticks, HaveTheDecimalsThatTheyNeed) {
+TEST(Ticks, HaveTheDecimalsTheyNeed) {
     EXPECT_EQ(tick_label(1500, 500), "1,500");
     EXPECT_EQ(tick_label(-1'234'000, 1000), "−1,234,000");
     EXPECT_EQ(tick_label(0.25, 0.05), "0.25");
@@ -99,13 +99,13 @@ TEST_F(LongSeries, IsDrawnWithFewPointsAndKeepsItsPeaks) {
 
 TEST_F(LongSeries, ShowsEveryNumberWhenZoomedIn) {
     const auto groups = groups_of(x, {1000.5, 1010.5}, 500);
-    ASSERT_EQ(groups.size(), 12u) << "ten, and one on either side so that the line goes on to the edge";
+    ASSERT_EQ(groups.size(), 12u) << "ten, and one on either side so that the line reaches the edge";
     EXPECT_EQ(x[groups.front().begin], 1000);
     EXPECT_EQ(x[groups.back().begin], 1011);
     EXPECT_EQ(line_of(x, y, groups).size(), 12u);
 }
 
-TEST(Lines, ArePartedWhereThereIsNoNumber) {
+TEST(Lines, AreSplitWhereANumberIsMissing) {
     const std::vector<double> x{1, 2, 3, 4}, y{5, none, 6, 7};
     const auto line = line_of(x, y, groups_of(x, {1, 4}, 100));
     ASSERT_EQ(line.size(), 4u);
@@ -115,13 +115,13 @@ TEST(Lines, ArePartedWhereThereIsNoNumber) {
     EXPECT_TRUE(groups_of({}, {0, 1}, 100).empty());
 }
 
-TEST(Lines, MeansAreOfNumbers) {
+TEST(Lines, MeansIgnoreMissingNumbers) {
     const std::vector<double> y{5, none, 7};
     EXPECT_EQ(mean_of(y, {0, 3}), 6);
     EXPECT_EQ(mean_of(y, {1, 2}), 0);
 }
 
-TEST(Nearest, IsFoundOnEitherSide) {
+TEST(Nearest, IsFoundOnBothSides) {
     const std::vector<double> x{1, 2, 10};
     EXPECT_EQ(nearest(x, -5), 0u);
     EXPECT_EQ(nearest(x, 1.4), 0u);
