@@ -21,8 +21,8 @@ def genes_of(descendant):
     """What the record says became of the parents' genes."""
     genes = [second if descendant.from_second >> gene & 1 else first
              for gene, (first, second) in enumerate(zip(descendant.first_genes, descendant.second_genes))]
-    if descendant.HasField("rearrangement"):
-        genes = [genes[gene] for gene in descendant.rearrangement.order]
+    if descendant.HasField("order_mutation"):
+        genes = [genes[gene] for gene in descendant.order_mutation.order]
     for mutation in descendant.mutations:
         assert genes[mutation.gene] == mutation.before
         genes[mutation.gene] = mutation.after
@@ -57,6 +57,9 @@ class Breeding(export_test.Runs):
             self.assertEqual(contender.own_fitness if shuffled else contender.fitness,
                              float(table[generation, *home]["fitness"]))
             self.assertEqual(contender.copies, sum(pick.organism == organism for pick in bred.picks))
+            self.assertGreaterEqual(contender.expected_copies_error, 0)
+            self.assertTrue(0 <= contender.unpicked_chance <= 1, contender.unpicked_chance)
+            self.assertGreaterEqual(contender.expected_copies, 1 - contender.unpicked_chance - 1e-9)
         order = sorted(range(len(homes)), key=lambda i: (-bred.contenders[i].fitness, i))
         self.assertEqual([bred.contenders[organism].rank for organism in order], list(range(len(order))))
         self.assertAlmostEqual(sum(contender.expected_copies for contender in bred.contenders), bred.pick_count)
