@@ -66,7 +66,7 @@ void read_by_generation(const v1::ParameterDescription& parameter, const json::o
     if (parameter.effect() == v1::PARAMETER_EFFECT_RESET || values.empty()) {
         mistakes.lines.push_back(parameter.name() + ": got " + json::serialize(values) + ", allowed " +
                                  (values.empty() ? R"(a generation and its value, as in {"1": 0.2, "30": 0.05})"
-                                                 : "one value, as it can only change when a world is reset"));
+                                                 : "one value: it can change only at a reset"));
         return;
     }
     for (const auto& [key, value] : values) {

@@ -7,7 +7,7 @@
 namespace evod::base {
 
 [[noreturn]] inline void assertion_failed(const char* condition, const char* file, int line) {
-    std::fprintf(stderr, "%s:%d: this must hold and does not: %s\n", file, line, condition);
+    std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
     std::abort();
 }
 

@@ -1,7 +1,7 @@
 // Commutative operations on memory that several pieces of a parallel loop write to: the final value does not depend on
 // the order of the writes. The returned values do depend on it, so no result may use them.
 //
-// `side_by_side` is true if several threads may write at the same time. If it is false, the plain operation is used,
+// `parallel` is true if several threads may write at the same time. If it is false, the plain operation is used,
 // which is several times faster.
 #pragma once
 
@@ -12,9 +12,9 @@
 namespace evod::base {
 
 /// value += change; returns the value before the addition.
-template <bool side_by_side, class T>
+template <bool parallel, class T>
 T fetch_add(T& value, T change) {
-    if constexpr (side_by_side) {
+    if constexpr (parallel) {
         return std::atomic_ref{value}.fetch_add(change, std::memory_order_relaxed);
     } else {
         return std::exchange(value, value + change);
@@ -22,9 +22,9 @@ T fetch_add(T& value, T change) {
 }
 
 /// value = min(value, candidate). Numbers only, no NaN.
-template <bool side_by_side, class T>
+template <bool parallel, class T>
 void fetch_min(T& value, T candidate) {
-    if constexpr (side_by_side) {
+    if constexpr (parallel) {
         std::atomic_ref shared{value};
         T now = shared.load(std::memory_order_relaxed);
         while (candidate < now && !shared.compare_exchange_weak(now, candidate, std::memory_order_relaxed)) {
@@ -35,9 +35,9 @@ void fetch_min(T& value, T candidate) {
 }
 
 /// value = what; all threads that write at the same time write the same value.
-template <bool side_by_side, class T>
+template <bool parallel, class T>
 void put(T& value, T what) {
-    if constexpr (side_by_side) {
+    if constexpr (parallel) {
         std::atomic_ref{value}.store(what, std::memory_order_relaxed);
     } else {
         value = what;
@@ -46,7 +46,7 @@ void put(T& value, T what) {
 
 /// Reads a value that other threads may write at the same time.
 template <class T>
-T look_at(T& value) {
+T load_shared(T& value) {
     return std::atomic_ref{value}.load(std::memory_order_relaxed);
 }
 

@@ -29,7 +29,7 @@ enum class Purpose : std::uint32_t {
     Selection = 10,
     Pairing = 11,
     Crossover = 12,
-    Rearranging = 13,
+    OrderMutation = 13,
     Mutation = 14,
     SurvivorMutation = 15,
     Migration = 16,

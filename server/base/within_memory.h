@@ -15,9 +15,8 @@ auto within_memory(Work&& work) -> decltype(work()) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        return refusal(
-            RefusalCode::ResourceExhausted,
-            "there is not enough memory for that: nothing was changed; ask for less, or delete a world first");
+        return refusal(RefusalCode::ResourceExhausted,
+                       "not enough memory: nothing was changed; request less, or delete a world first");
     }
 }
 

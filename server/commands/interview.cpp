@@ -42,7 +42,7 @@ constexpr Question questions[] = {
     {"crossover_cuts", [](const Parameters& p) { return p.crossover == evolution::CrossoverMethod::MultiPoint; }},
     {"crossover_chance", [](const Parameters& p) { return p.crossover != evolution::CrossoverMethod::None; }},
     {"rearranging", always},
-    {"rearrange_chance", [](const Parameters& p) { return p.rearranging != evolution::Rearranging::None; }},
+    {"rearrange_chance", [](const Parameters& p) { return p.rearranging != evolution::OrderMutationMethod::None; }},
     {"creep", always},
     {"mutation_chance", always},
     {"mutation_step", always},

@@ -20,19 +20,20 @@ const char* effect_text(base::Effect effect) {
     return "";
 }
 
-/// Markdown, one row a parameter.
+/// Markdown, one row per parameter.
 std::string parameter_list() {
     std::string text =
         "# Parameters\n\n"
-        "Every parameter of a world, as `evod parameters` prints it. The names are the same in experiment files, with\n"
-        "`evod run --set`, in `evoctl` and in the protocol. A change to one that holds from the *next tick* acts at\n"
-        "once, for breeding the next time it happens; from the *next generation*, when that begins; from a *reset*,\n"
-        "when the world is reset.\n\n"
-        "An experiment file may give a parameter values by generation, unless it holds from a reset:\n"
-        "`\"mutation_chance\": {\"1\": 0.2, \"30\": 0.05}`. Each holds from the first tick of its generation, so what "
-        "breeding\n"
-        "goes by acts first in the breeding after it; until the first of them, the default holds.\n\n"
-        "| name | default | allowed | unit | holds from | meaning |\n|---|---|---|---|---|---|\n";
+        "All parameters of a world, as `evod parameters` prints them. The names are the same in experiment files, in\n"
+        "`evod run --set`, in `evoctl` and in the protocol.\n\n"
+        "A changed value takes effect from the moment in the column *takes effect*: at the *next tick*, when the\n"
+        "*next generation* begins, or at a *reset* of the world. Parameters of breeding that take effect at the next\n"
+        "tick are used by the next breeding.\n\n"
+        "An experiment file may give a parameter values by generation, unless it takes effect at a reset:\n"
+        "`\"mutation_chance\": {\"1\": 0.2, \"30\": 0.05}`. Each value holds from the first tick of its generation. A\n"
+        "parameter of breeding therefore first acts when the following generation is bred. Before the first listed\n"
+        "generation the parameter has its default.\n\n"
+        "| name | default | allowed | unit | takes effect | meaning |\n|---|---|---|---|---|---|\n";
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
         text += "| `" + std::string{description.name} + "` | " + parameters::to_text(description.default_value()) +
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +

@@ -8,8 +8,8 @@
 #include "server/evolution/crossover.h"
 #include "server/evolution/mutation.h"
 #include "server/evolution/next_generation.h"
+#include "server/evolution/order_mutation.h"
 #include "server/evolution/ranking.h"
-#include "server/evolution/rearranging.h"
 #include "server/evolution/selection.h"
 
 #include <algorithm>
@@ -57,8 +57,8 @@ inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
 }
 
 /// Applies the mutations to a chromosome without recording them.
-struct Untold {
-    static void rearrange(const RearrangingMutation& by, Genes genes, base::RandomStream& random) {
+struct WithoutRecord {
+    static void mutate_order(const OrderMutation& by, Genes genes, base::RandomStream& random) {
         by.apply(genes, random);
     }
     static unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) {
@@ -75,10 +75,10 @@ class Descent {
         : present_{present}
         , survivor_key_{key.seed, base::Purpose::SurvivorMutation, key.island, key.generation}
         , crossover_key_{key.seed, base::Purpose::Crossover, key.island, key.generation}
-        , rearranging_key_{key.seed, base::Purpose::Rearranging, key.island, key.generation}
+        , order_mutation_key_{key.seed, base::Purpose::OrderMutation, key.island, key.generation}
         , mutation_key_{key.seed, base::Purpose::Mutation, key.island, key.generation}
         , crossover_{parameters}
-        , rearranging_{parameters}
+        , order_mutation_{parameters}
         , mutation_{parameters}
         , bounds_{gene_bounds(parameters)} {}
 
@@ -91,8 +91,8 @@ class Descent {
         if (!mutates) {
             return by.clamp(genes, bounds_);
         }
-        base::RandomStream rearranging{survivor_key_, place, 0}, mutation{survivor_key_, place, 1};
-        by.rearrange(rearranging_, genes, rearranging);
+        base::RandomStream order{survivor_key_, place, 0}, mutation{survivor_key_, place, 1};
+        by.mutate_order(order_mutation_, genes, order);
         return by.mutate(mutation_, genes, mutation);
     }
 
@@ -104,18 +104,18 @@ class Descent {
 
     /// Makes one child, in its place. Returns the number of clamped genes.
     template <class By>
-    unsigned beget(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
+    unsigned make_child(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
         cross(column(present_, of.parents.first), column(present_, of.parents.second), of.from_second, child);
-        base::RandomStream rearranging{rearranging_key_, place}, mutation{mutation_key_, place};
-        by.rearrange(rearranging_, child, rearranging);
+        base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
+        by.mutate_order(order_mutation_, child, order);
         return by.mutate(mutation_, child, mutation);
     }
 
   private:
     const GeneMatrix& present_;
-    base::RandomKey survivor_key_, crossover_key_, rearranging_key_, mutation_key_;
+    base::RandomKey survivor_key_, crossover_key_, order_mutation_key_, mutation_key_;
     Crossover crossover_;
-    RearrangingMutation rearranging_;
+    OrderMutation order_mutation_;
     ValueMutation mutation_;
     GeneBounds bounds_;
 };

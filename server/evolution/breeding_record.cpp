@@ -99,10 +99,10 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
 }
 
 /// Applies the mutations to a chromosome and records them.
-struct Telling {
+struct WithRecord {
     Descendant& of;
 
-    void rearrange(const RearrangingMutation& by, Genes genes, base::RandomStream& random) const {
+    void mutate_order(const OrderMutation& by, Genes genes, base::RandomStream& random) const {
         base::RandomStream same = random;
         std::array<std::uint32_t, gene_count> order{};
         std::iota(order.begin(), order.end(), 0u);
@@ -140,26 +140,26 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
     const Descent descent{genes, parameters, key};
     const Rows descendants{rows.first_descendant, wanted, rows.count_max};
     for (std::uint32_t place = descendants.first; place < descendants.end; ++place) {
-        Descendant& told = record.descendants.emplace_back();
-        told.id = place;
-        const Genes made{told.genes.data(), gene_count};
+        Descendant& descendant = record.descendants.emplace_back();
+        descendant.id = place;
+        const Genes made{descendant.genes.data(), gene_count};
         if (place < choice.places.survivors) {
             const std::uint32_t organism = choice.survivors()[place];
-            told.parents = {organism, organism};
+            descendant.parents = {organism, organism};
             descent.keep(organism, place, parameters.mutate_survivors && place >= choice.places.elite, made,
-                         Telling{told});
+                         WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
             const std::optional<GeneMask> mask = descent.draw_mask(child / 2);
             const Inheritance inheritance =
                 inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0));
-            told.parents = inheritance.parents;
-            told.from_second = inheritance.from_second;
-            told.crossed = mask.has_value();
-            descent.beget(inheritance, place, made, Telling{told});
+            descendant.parents = inheritance.parents;
+            descendant.from_second = inheritance.from_second;
+            descendant.crossed = mask.has_value();
+            descent.make_child(inheritance, place, made, WithRecord{descendant});
         }
-        told.first_genes = chromosome(genes, told.parents.first);
-        told.second_genes = chromosome(genes, told.parents.second);
+        descendant.first_genes = chromosome(genes, descendant.parents.first);
+        descendant.second_genes = chromosome(genes, descendant.parents.second);
     }
     return record;
 }

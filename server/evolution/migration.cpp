@@ -12,7 +12,7 @@ namespace evod::evolution {
 namespace {
 
 // The draws of one migration and island have different decisions in the place of the tick.
-enum Decision : std::uint64_t { Destination, WhoLeaves, WhoIsReplaced, LastPlaces };
+enum Decision : std::uint64_t { Destination, EmigrantChoice, ReplacedChoice, LastPlaces };
 
 struct Edge {
     std::uint32_t from, to;
@@ -117,10 +117,10 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
             const auto order = rankings[to].best_first();
             replaced.assign(order.rbegin(), order.rend());
         } else {
-            base::RandomStream random = stream(to, 0, WhoIsReplaced);
+            base::RandomStream random = stream(to, 0, ReplacedChoice);
             replaced = draw_unique(population(to), population(to), random, executor);
         }
-        auto makes_room = replaced.begin();
+        auto place = replaced.begin();
         for (const std::uint32_t count : leaving) {
             const std::uint32_t from = first++->from;
             std::vector<std::uint32_t> drawn;
@@ -128,12 +128,12 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
             if (parameters.emigrants == Emigrants::Best) {
                 emigrants = rankings[from].best_first().first(count);
             } else {
-                base::RandomStream random = stream(from, to, WhoLeaves);
+                base::RandomStream random = stream(from, to, EmigrantChoice);
                 drawn = draw_unique(population(from), count, random, executor);
                 emigrants = drawn;
             }
             for (const std::uint32_t organism : emigrants) {
-                migrants.push_back({from, to, organism, *makes_room++});
+                migrants.push_back({from, to, organism, *place++});
             }
         }
     }

@@ -26,7 +26,7 @@ class Breeding {
                 prefetch(survivors[i + pairs_prefetched]);
             }
             next.parents[i] = {survivors[i], survivors[i]};
-            return descent_.keep(survivors[i], place, place >= kept, column(next.genes, place), Untold{});
+            return descent_.keep(survivors[i], place, place >= kept, column(next.genes, place), WithoutRecord{});
         });
     }
 
@@ -45,7 +45,7 @@ class Breeding {
             for (std::uint32_t place = begin; place < std::min(begin + 2, organisms); ++place, mask = ~mask) {
                 const Inheritance inheritance = inheritance_of(pair, mask);
                 next.parents[place] = inheritance.parents;
-                clamped += descent_.beget(inheritance, place, column(next.genes, place), Untold{});
+                clamped += descent_.make_child(inheritance, place, column(next.genes, place), WithoutRecord{});
             }
             return clamped;
         });

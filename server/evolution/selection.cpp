@@ -85,18 +85,18 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
         return picked;
     }
     picked.reserve(wanted);
-    std::vector<std::uint32_t> everyone(population);
-    std::iota(everyone.begin(), everyone.end(), 0u);
+    std::vector<std::uint32_t> organisms(population);
+    std::iota(organisms.begin(), organisms.end(), 0u);
     while (picked.size() < wanted) {
         const auto round = static_cast<std::uint32_t>(std::min<std::size_t>(population, wanted - picked.size()));
         if (round > shuffled_whole_max) {
-            shuffle(everyone, random, executor);
-            picked.insert(picked.end(), everyone.begin(), everyone.begin() + round);
+            shuffle(organisms, random, executor);
+            picked.insert(picked.end(), organisms.begin(), organisms.begin() + round);
             continue;
         }
         for (std::uint32_t i = 0; i < round; ++i) {
-            std::swap(everyone[i], everyone[i + random.below(population - i)]);
-            picked.push_back(everyone[i]);
+            std::swap(organisms[i], organisms[i + random.below(population - i)]);
+            picked.push_back(organisms[i]);
         }
     }
     return picked;

@@ -155,7 +155,7 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
 }
 
 /// How the winners are found. Each method is the cheapest in its case.
-enum class Way {
+enum class Method {
     Held,            // contestants are drawn and compared
     OrderStatistics, // with replacement
     WheelOfRanks,    // without replacement, one winner
@@ -166,28 +166,28 @@ enum class Way {
 // Walking over this many ranks per winner costs as much as one skip.
 constexpr std::uint64_t walked_ranks_max = 13;
 
-Way choose_way(std::uint32_t population, const Tournament& tournament) {
+Method choose_method(std::uint32_t population, const Tournament& tournament) {
     const std::uint64_t size = tournament.size, winners = tournament.winners;
     if (tournament.replacement) {
-        return size <= held_contestants_max || size < 4 * winners ? Way::Held : Way::OrderStatistics;
+        return size <= held_contestants_max || size < 4 * winners ? Method::Held : Method::OrderStatistics;
     }
     if (winners == 1) {
-        return size <= held_contestants_max ? Way::Held : Way::WheelOfRanks;
+        return size <= held_contestants_max ? Method::Held : Method::WheelOfRanks;
     }
     if (size <= held_contestants_max) {
-        return Way::Held;
+        return Method::Held;
     }
     if (population <= walked_ranks_max * size) {
-        return Way::WalkDownRanks;
+        return Method::WalkDownRanks;
     }
-    return size < 4 * winners ? Way::Held : Way::SkipRanks;
+    return size < 4 * winners ? Method::Held : Method::SkipRanks;
 }
 
 /// The rules of the tournaments for a number of picks.
 struct Rules {
     std::uint32_t population, size, winners;
     bool replacement;
-    Way way;
+    Method method;
 };
 
 Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted) {
@@ -195,7 +195,7 @@ Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint
     const std::uint32_t size = tournament.replacement ? tournament.size : std::min(tournament.size, population);
     const std::uint32_t winners = std::min({tournament.winners, size, wanted});
     return {population, size, winners, tournament.replacement,
-            choose_way(population, {size, winners, tournament.replacement})};
+            choose_method(population, {size, winners, tournament.replacement})};
 }
 
 /// Draws the contestants of Method::Held.
@@ -208,7 +208,7 @@ void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSe
 }
 
 DrawnSet drawn_set_for(const Rules& rules) {
-    return DrawnSet{rules.way == Way::Held && !rules.replacement ? rules.size : 0};
+    return DrawnSet{rules.method == Method::Held && !rules.replacement ? rules.size : 0};
 }
 
 } // namespace
@@ -226,7 +226,7 @@ std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tourna
 std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
                                           std::uint32_t wanted, const base::RandomKey& key) {
     const Rules rules = rules_of(population, tournament, wanted);
-    if (rules.way != Way::Held) {
+    if (rules.method != Method::Held) {
         return {};
     }
     std::vector<std::uint32_t> contestants(rules.size);
@@ -244,9 +244,9 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
     }
     const Rules rules = rules_of(population, tournament, wanted);
     const std::uint32_t size = rules.size, winners = rules.winners;
-    const Way way = rules.way;
-    const bool held = way == Way::Held;
-    const Wheel wheel{way == Way::WheelOfRanks ? chances_of_ranks(population, size) : std::vector<double>{1}};
+    const Method method = rules.method;
+    const bool held = method == Method::Held;
+    const Wheel wheel{method == Method::WheelOfRanks ? chances_of_ranks(population, size) : std::vector<double>{1}};
     const std::span<const std::uint32_t> best_first = held ? std::span<const std::uint32_t>{} : ranking.best_first();
     const Fitter fitter{ranking.fitness()};
 
@@ -266,20 +266,20 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
             for (std::size_t i = 0; i < count; ++i) {
                 base::RandomStream random{key, static_cast<std::uint32_t>(first + i)};
                 const std::span<std::uint32_t> contestants = contestants_of(i);
-                switch (way) {
-                case Way::Held:
+                switch (method) {
+                case Method::Held:
                     draw_held(rules, contestants, drawn, random);
                     break;
-                case Way::OrderStatistics:
+                case Method::OrderStatistics:
                     draw_winning_ranks(population, size, contestants, random);
                     break;
-                case Way::WheelOfRanks:
+                case Method::WheelOfRanks:
                     contestants[0] = wheel.at(random.uniform());
                     break;
-                case Way::WalkDownRanks:
+                case Method::WalkDownRanks:
                     draw_different_winning_ranks(population, size, contestants, random);
                     break;
-                case Way::SkipRanks:
+                case Method::SkipRanks:
                     skip_to_different_winning_ranks(population, size, contestants, random);
                     break;
                 }

@@ -32,14 +32,14 @@ Parameters with_random_selection(Parameters p) {
 
 bool mutates(const Parameters& p) {
     return (p.mutation_chance > 0 && p.mutation_step > 0) || p.reset_chance > 0 || p.bit_flip_chance > 0 ||
-           (p.rearranging != Rearranging::None && p.rearrange_chance > 0);
+           (p.rearranging != OrderMutationMethod::None && p.rearrange_chance > 0);
 }
 
 Parameters without_mutation(Parameters p) {
     p.mutation_chance = 0;
     p.reset_chance = 0;
     p.bit_flip_chance = 0;
-    p.rearranging = Rearranging::None;
+    p.rearranging = OrderMutationMethod::None;
     return p;
 }
 

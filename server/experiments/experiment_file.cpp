@@ -61,7 +61,7 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
     }
     if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "some parameters cannot have these values",
+                             .message = "invalid parameter values",
                              .violations = std::move(violations)};
     }
     experiment.parameters = *changed;

@@ -17,20 +17,20 @@ namespace json = boost::json;
 struct Field {
     std::string_view name;
     std::size_t line;
-    std::string_view from_value; // the text from its value on
+    std::string_view from_value; // the text from the field's value on
 };
 
-/// The fields of the object that `text` begins with, in the order in which they stand; it is JSON.
+/// The fields of the object at the beginning of `text`, which is valid JSON, in the order of the text.
 std::vector<Field> fields_of(std::string_view text) {
     std::vector<Field> fields;
-    std::size_t line = 1; // a JSON string holds no line breaks
+    std::size_t line = 1; // a JSON string contains no line breaks
     int depth = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         line += text[i] == '\n';
         depth += text[i] == '{' || text[i] == '[';
         depth -= text[i] == '}' || text[i] == ']';
         if (depth == 0 && (text[i] == '}' || text[i] == ']')) {
-            break; // what comes then is not of this object
+            break; // the rest is outside this object
         }
         if (text[i] != '"') {
             continue;
@@ -52,13 +52,13 @@ std::string with_line(std::string_view field, std::size_t line) {
     return std::string{field} + " (line " + std::to_string(line) + ")";
 }
 
-/// With the line of the field's first place.
+/// Adds the line of the field's first occurrence.
 std::string with_line(const std::vector<Field>& fields, std::string_view field) {
     const auto found = std::ranges::find(fields, field, &Field::name);
     return with_line(field, found == fields.end() ? 1 : found->line);
 }
 
-/// Nothing for a name that is written with escapes, which is no parameter's.
+/// Empty for a name that is written with escapes; no parameter's name needs any.
 std::string_view from_value_of(const std::vector<Field>& fields, std::string_view name) {
     const auto found = std::ranges::find(fields, name, &Field::name);
     return found == fields.end() ? std::string_view{} : found->from_value;
@@ -68,14 +68,14 @@ base::Refusal refusal(std::string message) {
     return {.code = base::RefusalCode::InvalidArgument, .message = std::move(message), .violations = {}};
 }
 
-/// A number as it is written, to the last bit, which Boost.JSON does not promise.
+/// A number exactly as written, which Boost.JSON does not guarantee.
 double exact(double nearly, std::string_view text) {
     double number = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
     return read.ec == std::errc{} ? number : nearly;
 }
 
-/// A JSON value as a parameter value; numbers without a fraction are counts where they fit one.
+/// Converts a JSON value to a parameter value. A number without a fraction becomes a count if it fits.
 ///
 /// from_value  the text from the value on.
 std::optional<ParameterValue> to_parameter_value(const json::value& value, std::string_view from_value) {
@@ -98,7 +98,7 @@ std::optional<ParameterValue> to_parameter_value(const json::value& value, std::
     return std::nullopt;
 }
 
-/// As an experiment file has it.
+/// The value as an experiment file writes it.
 std::string json_text(const ParameterValue& value) {
     return std::holds_alternative<std::string>(value) ? "\"" + to_text(value) + "\"" : to_text(value);
 }
@@ -115,11 +115,11 @@ std::optional<std::uint64_t> generation_of(std::string_view key) {
     return good ? std::optional{generation} : std::nullopt;
 }
 
-/// A parameter's values by generation.
+/// The values of one parameter by generation.
 class ValuesByGeneration {
   public:
-    /// text  the file's.
-    /// from  the text from the object on; nothing where the name is no parameter's.
+    /// text  the whole file.
+    /// from  the text from the object on; empty if the name is not a parameter's.
     ValuesByGeneration(const std::string& name, const json::object& values, std::string_view text,
                        std::string_view from)
         : name_{name}, description_{find_parameter(name)} {
@@ -132,12 +132,11 @@ class ValuesByGeneration {
         if (description_ == nullptr) {
             refuse(name_, line_, *fault_of({name_, ParameterValue{0u}}));
         } else if (!can_be_scheduled(*description_)) {
-            refuse(name_, line_,
-                   {{}, "one value, as it can only change when a world is reset", "values by generation"});
+            refuse(name_, line_, {{}, "one value: it can change only at a reset", "values by generation"});
         } else if (values.empty()) {
             refuse(name_, line_, {{}, R"(a generation and its value, as in {"1": 0.2, "30": 0.05})", "{}"});
         } else if (values.size() > 2 * Schedule::values_max) {
-            // Not looked at one by one.
+            // Too many to check each value.
             refuse(name_, line_,
                    {{}, "at most " + std::to_string(Schedule::values_max) + " values", std::to_string(values.size())});
         } else {
@@ -156,7 +155,7 @@ class ValuesByGeneration {
 
     const std::map<std::uint64_t, ParameterValue>& values() const { return values_; }
     const std::vector<base::Violation>& violations() const { return violations_; }
-    /// Nothing if the generation has none.
+    /// nullopt if the generation has no value.
     std::optional<std::size_t> line_at(std::uint64_t generation) const {
         const auto found = std::ranges::find(fields_, std::to_string(generation), &Field::name);
         return found == fields_.end() ? std::nullopt : std::optional{found->line};
@@ -196,15 +195,16 @@ class ValuesByGeneration {
 base::Result<json::value> parse_object(std::string_view text) {
     auto document = parse_json(text);
     if (document && !document->is_object()) {
-        return refusal("not an experiment: a JSON object of parameters is needed");
+        return refusal("not an experiment: expected a JSON object of parameters");
     }
     return document;
 }
 
-/// What a file plans, and where it says so.
+/// Collects the schedule of a file and the lines of its values.
 class ScheduleReader {
   public:
-    /// Takes a parameter's values after generation 1; that one, if it is given, is for the caller.
+    /// Reads the values of one parameter. Adds those after generation 1 to the schedule and returns the value of
+    /// generation 1, if there is one.
     ///
     /// from_value  the text from the value on.
     std::optional<ParameterValue> read(const std::string& name, const json::object& values, std::string_view text,
@@ -246,7 +246,7 @@ class ScheduleReader {
     const Schedule& schedule() const { return schedule_; }
 
   private:
-    /// Of the parameter, or of what changes in that generation, where the file does not name that one.
+    /// The line of the parameter, or, if the file does not name it, of a parameter that changes in that generation.
     std::string line_text(const std::vector<Field>& fields, const ScheduleFault& fault) const {
         const auto found = std::ranges::find(fields, fault.violation.field, &Field::name);
         if (found != fields.end()) {
@@ -264,7 +264,7 @@ class ScheduleReader {
     Schedule schedule_;
 };
 
-/// "{"1": 0.2, "30": 0.05}"; empty if nothing is planned for the parameter.
+/// "{"1": 0.2, "30": 0.05}"; empty if the parameter is not scheduled.
 std::string values_text(const Schedule& schedule, std::string_view name) {
     std::string text;
     for (const auto& [generation, assignments] : schedule.changes()) {
@@ -348,7 +348,7 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     }
     if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "the experiment has fields that cannot be used",
+                             .message = "invalid experiment",
                              .violations = std::move(violations)};
     }
     experiment.parameters = *parameters;
@@ -385,7 +385,7 @@ base::Result<Schedule> parse_schedule(std::string_view text) {
     }
     if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "the schedule cannot be used",
+                             .message = "invalid schedule",
                              .violations = std::move(violations)};
     }
     return schedule;
@@ -404,7 +404,7 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
     std::string text = "{";
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
-        // What a reader takes where nothing is said.
+        // The value that a reader uses if the file does not name the parameter.
         const std::string scheduled = values_text(schedule, description.name);
         const bool follows = description.name == "reference_population";
         if (written == Written::Differences && scheduled.empty() &&

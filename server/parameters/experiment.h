@@ -1,8 +1,8 @@
 // Experiment files: a JSON object of parameters by their registry names, with optional "seed" and "description".
 //
-// A parameter that can change while a world runs may have an object of values instead of one, by the generation from
-// whose first tick on each holds: "mutation_chance": {"1": 0.2, "30": 0.05}. Until the first of them it has its
-// default.
+// A parameter that can change while a world runs may have an object of values by generation instead of one value:
+// "mutation_chance": {"1": 0.2, "30": 0.05}. Each value holds from the first tick of its generation. Before the first
+// listed generation the parameter has its default.
 #pragma once
 
 #include "server/base/random.h"
@@ -23,20 +23,20 @@ struct Experiment {
     std::string description;
 };
 
-/// Reads the text of an experiment file; what it does not name has its default, but reference_population, which follows
-/// population_size, the first if that changes. Violations name the field with its line: "mutation_chance (line 4)",
-/// "mutation_chance at generation 30 (line 4)".
+/// Reads the text of an experiment file. A parameter that it does not name has its default, except
+/// reference_population, which then equals population_size of generation 1. Violations name the field with its line:
+/// "mutation_chance (line 4)", "mutation_chance at generation 30 (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
 
-enum class Written { Differences, Everything }; // from the defaults
-/// The parameters as an experiment file, one a line, in registry order; those that are scheduled as their schedule has
-/// them.
+enum class Written { Differences, Everything }; // Differences: only the parameters that differ from their defaults
+/// The parameters as an experiment file, one per line, in registry order. Scheduled parameters are written with the
+/// values of the schedule.
 std::string to_experiment_text(const Parameters& parameters, Written written = Written::Differences,
                                const Schedule& schedule = {});
 
-/// A schedule alone, as an experiment file has it; "{}\n" for none.
+/// A schedule alone, in the form of an experiment file; "{}\n" if it is empty.
 std::string to_schedule_text(const Schedule& schedule);
-/// Takes nothing else than to_schedule_text() writes. Whether the values go together, the run's parameters decide.
+/// Reads the output of to_schedule_text() and nothing else. Does not check whether the values fit the run's parameters.
 base::Result<Schedule> parse_schedule(std::string_view text);
 
 } // namespace evod::parameters

@@ -1,4 +1,4 @@
-// JSON text: what people write in files, with the line of what is wrong in it.
+// JSON text: parses files that people write, and reports errors with their line.
 #pragma once
 
 #include "server/base/result.h"
@@ -10,10 +10,10 @@
 
 namespace evod::parameters {
 
-/// Of the character at `offset`, from 1.
+/// The number of the line, from 1, that contains the character at `offset`.
 std::size_t line_of(std::string_view text, std::size_t offset);
 
-/// The one value that the text holds. Refused, as an invalid argument, with the line: "not JSON: line 3: …".
+/// Parses the one value that the text contains. Refused as an invalid argument, with the line: "not JSON: line 3: …".
 base::Result<boost::json::value> parse_json(std::string_view text);
 
 } // namespace evod::parameters

@@ -34,9 +34,9 @@ using base::Overloaded;
 // clang-format on
 
 std::vector<ParameterDescription> make_registry() {
-    using namespace evolution; // the names of the enumerations in the list of that folder
+    using namespace evolution; // for the enumeration names in EVOD_EVOLUTION_PARAMETERS
     using base::count_max;
-    return {EVOD_SIMULATION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+    return {EVOD_MODEL_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
                 EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
 }
 
@@ -46,7 +46,7 @@ std::string number_text(double value) {
     return {text, end};
 }
 
-/// Sets one parameter, or says what is wrong with the value.
+/// Sets one parameter, or returns what is wrong with the value.
 std::optional<base::Violation> set_value(const ParameterDescription& description, const ParameterValue& value,
                                          Parameters& parameters, std::string field) {
     const bool done =
@@ -112,8 +112,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & 
     return row.back();
 }
 
-/// The greatest share of the room for something's centre that is forbidden to it, at most, by what is there when it is
-/// placed at random, were every organism as large as it may be. Things of a kind count with their own area.
+/// An upper bound on the share of an island that is blocked for the centre of a new body placed at random, if every
+/// organism had the greatest size. Bodies of the kind being placed count with their own area only.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
     const auto square = [](double x) { return x * x; };
     const double radius = p.body_size_max * p.radius_per_unit_px;
@@ -205,7 +205,7 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name) {
 
 namespace {
 
-/// Makes one assignment, or says what is wrong with it.
+/// Makes one assignment, or returns what is wrong with it.
 std::optional<base::Violation> assign_one(const Assignment& assignment, std::string_view field_prefix,
                                           Parameters& parameters) {
     std::string field = std::string{field_prefix} + assignment.name;
@@ -228,11 +228,10 @@ std::optional<base::Violation> fault_of(const Assignment& assignment, std::strin
 
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix) {
-    base::Refusal refusal{.code = base::RefusalCode::InvalidArgument,
-                          .message = "some parameters cannot have these values",
-                          .violations = {}};
+    base::Refusal refusal{
+        .code = base::RefusalCode::InvalidArgument, .message = "invalid parameter values", .violations = {}};
     if (const std::size_t most = parameter_registry().size(); assignments.size() > most) {
-        // Not looked at one by one: it may be a great many.
+        // There may be very many: not checked one by one.
         const std::string field =
             field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
         refusal.violations.push_back(
@@ -331,10 +330,11 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
     }
 
-    // What a server with a few gigabytes can hold; a parameter alone says nothing of the islands' number.
+    // Limits that a server with a few gigabytes can hold. The range of a single parameter does not limit the number of
+    // islands.
     const double organisms = static_cast<double>(p.island_count) * p.population_size;
     if (organisms > 4e6) {
-        refuse("island_count", "so many that all islands together have at most 4000000 organisms",
+        refuse("island_count", "at most 4000000 organisms on all islands together",
                std::to_string(p.island_count) + ", with " + number_text(organisms));
     }
 
@@ -349,7 +349,7 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         refuse("max_speed_px_s", "at most 5000 px in a tick of tick_s", number_text(p.max_speed_px_s));
     }
     const IslandPlan plan = island_plan(p);
-    const std::string scaled = p.scale_with_population ? " as scaled with the population" : "";
+    const std::string scaled = p.scale_with_population ? " after scaling with the population" : "";
     if (plan.width_px > 500'000) {
         refuse("island_width_px", "at most 500000" + scaled, number_text(plan.width_px));
     }
@@ -365,12 +365,12 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     const double items =
         static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
     if (items > 4e7) {
-        refuse("island_count", "so many that all islands together have at most 40000000 items",
+        refuse("island_count", "at most 40000000 items on all islands together",
                std::to_string(p.island_count) + ", with " + number_text(items));
     }
     if (const double share = covered_share(p, plan); share > 0.4) {
         refuse("population_size",
-               "so many that organisms of body_size_max, crates and obstacles cover at most 0.4 of an island",
+               "organisms of body_size_max, crates and obstacles that cover at most 0.4 of an island",
                std::to_string(p.population_size) + ", covering " + number_text(std::round(share * 1000) / 1000));
     }
     return violations;

@@ -1,7 +1,9 @@
-// Every parameter of a world: those of the genetic algorithm and, one line each below, those of the model.
+// The registry of all parameters of a world: those of the genetic algorithm and, one line each below, those of the
+// model.
 //
-// The registry made from the lines is all that validation, JSON files, the protocol, evoctl's help and
-// docs/PARAMETERS.md know of parameters. Adding one is adding a line here or in evolution/parameters.h.
+// The struct, its defaults and the registry are all made from these lines. Validation, JSON files, the protocol,
+// evoctl's help and docs/PARAMETERS.md use the registry, so a new parameter needs one new line, here or in
+// evolution/parameters.h.
 #pragma once
 
 #include "server/base/parameter.h"
@@ -28,17 +30,17 @@ EVOD_CHOICE_NAMES(evod::parameters::FleeRule, "nearer", "always")
 EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
 
 // clang-format off
-#define EVOD_SIMULATION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                          \
-    CHOICE(fitness, FitnessFunction, Life, Reset, "What evolution strives for: life is seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
-    REAL(generation_s, 40, 0.001, 86'400, "s", NextGeneration, "How long a generation lasts, unless everyone dies before.") \
-    REAL(tick_s, 1.0 / 60, 0.001, 1, "s", NextGeneration, "Length of a physics step.")                                 \
-    COUNT(island_count, 1, 1, 4096, "islands", Reset, "Islands that evolve apart but for migration.")                  \
+#define EVOD_MODEL_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                               \
+    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
+    REAL(generation_s, 40, 0.001, 86'400, "s", NextGeneration, "Length of a generation; it ends earlier if every organism dies.") \
+    REAL(tick_s, 1.0 / 60, 0.001, 1, "s", NextGeneration, "Simulated time per tick.")                                  \
+    COUNT(island_count, 1, 1, 4096, "islands", Reset, "Number of islands; they are independent except for migration.") \
     REAL(island_width_px, 1280, 100, 500'000, "px", NextGeneration, "Distance between the left and right walls.")      \
     REAL(island_height_px, 720, 100, 500'000, "px", NextGeneration, "Distance between the upper and lower walls.")     \
-    COUNT(food_count, 25, 0, 20'000'000, "items", NextGeneration, "Food on each island.")                              \
-    COUNT(poison_count, 40, 0, 20'000'000, "items", NextGeneration, "Poison on each island.")                          \
-    FLAG(scale_with_population, false, NextGeneration, "Whether an island's area, food and poison grow with population_size, from the values given for reference_population.") \
-    COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population for which island size, food and poison are given, where scale_with_population is on; an experiment file's own population_size unless it says otherwise.") \
+    COUNT(food_count, 25, 0, 20'000'000, "items", NextGeneration, "Food items on each island.")                        \
+    COUNT(poison_count, 40, 0, 20'000'000, "items", NextGeneration, "Poison items on each island.")                    \
+    FLAG(scale_with_population, false, NextGeneration, "Whether the area, food and poison of islands scale with population_size; the given values are those for reference_population.") \
+    COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population for which island size, food and poison are given if scale_with_population is on; in an experiment file, the default is its population_size.") \
     COUNT(obstacle_count, 0, 0, 1000, "obstacles", NextGeneration, "Immovable rectangles on each island.")             \
     REAL(obstacle_size_px, 60, 5, 2000, "px", NextGeneration, "Side of an obstacle.")                                  \
     COUNT(crate_count, 0, 0, 1000, "crates", NextGeneration, "Movable rectangles on each island.")                     \
@@ -46,17 +48,17 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(crate_mass_kg, 4, 0.001, 1e6, "kg", NextGeneration, "Mass of a crate.")                                       \
     REAL(item_radius_px, 4, 0.5, 100, "px", NextGeneration, "Radius of food and poison.")                              \
     FLAG(respawn, true, NextGeneration, "Whether eaten food and poison reappear.")                                     \
-    REAL(respawn_s, 0, 0, 86'400, "s", NextGeneration, "Time until an eaten item reappears; 0 is the next tick.")      \
-    REAL(health_loss_per_s, 6, 0, 10'000, "health/s", NextGeneration, "Health that living costs.")                     \
-    REAL(food_health, 25, 0, 10'000, "health", NextTick, "Health that food gives.")                                    \
-    REAL(poison_harm, 40, 0, 10'000, "health", NextTick, "Health that poison takes.")                                  \
-    REAL(steering_lookahead_s, 0.3, 0, 10, "s", NextTick, "How far ahead an organism corrects for its own velocity when it steers to food; with 0 it orbits.") \
-    CHOICE(flee_rule, FleeRule, Nearer, NextTick, "When seen poison may be fled: only if nearer than the nearest food seen, or always.") \
+    REAL(respawn_s, 0, 0, 86'400, "s", NextGeneration, "Time until an eaten item reappears; 0 means the next tick.")   \
+    REAL(health_loss_per_s, 6, 0, 10'000, "health/s", NextGeneration, "Health that an organism loses per second of life.") \
+    REAL(food_health, 25, 0, 10'000, "health", NextTick, "Health gained from a food item.")                            \
+    REAL(poison_harm, 40, 0, 10'000, "health", NextTick, "Health lost to a poison item.")                              \
+    REAL(steering_lookahead_s, 0.3, 0, 10, "s", NextTick, "How far ahead an organism compensates for its own velocity when it steers to food; with 0 it orbits the food.") \
+    CHOICE(flee_rule, FleeRule, Nearer, NextTick, "When an organism may flee from poison that it sees: nearer means only if the poison is nearer than the nearest food that it sees.") \
     REAL(flee_certain_impulse, 200, 1, 10'000, "gene units", NextTick, "Value of the gene impulse from which an organism always flees.") \
-    REAL(damping, 0.999, 0.01, 1, "share per 1/60 s", NextGeneration, "Share of its velocity that a body keeps in 1/60 s.") \
-    REAL(restitution, 0.8, 0, 1, "", NextGeneration, "Share of the approaching speed with which bodies part after a collision.") \
+    REAL(damping, 0.999, 0.01, 1, "share per 1/60 s", NextGeneration, "Share of its velocity that a body keeps after 1/60 s.") \
+    REAL(restitution, 0.8, 0, 1, "", NextGeneration, "Share of the approach speed with which two bodies separate after a collision.") \
     REAL(max_speed_px_s, 600, 1, 100'000, "px/s", NextGeneration, "Greatest speed of a body.")                         \
-    CHOICE(integrator, IntegratorChoice, SymplecticEuler, NextGeneration, "How velocities become positions.")          \
+    CHOICE(integrator, IntegratorChoice, SymplecticEuler, NextGeneration, "How a tick updates velocities and positions.") \
     REAL(radius_per_unit_px, 0.1, 0.001, 10, "px", NextGeneration, "Radius per unit of the gene body_size.")           \
     REAL(mass_per_unit_kg, 0.01, 0.0001, 1000, "kg", NextGeneration, "Mass per unit of the gene body_size.")           \
     REAL(force_per_unit, 1, 0, 1000, "kg px/s²", NextTick, "Force per unit of the genes normal_speed and impulse.")    \
@@ -65,17 +67,17 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per (base_health/100 − 1).")      \
     REAL(food_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((food_radius/100)² − 1).")   \
     REAL(poison_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((poison_radius/100)² − 1).") \
-    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "At each meal health is cut to this times the gene body_size; 0 is no cap.")
+    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "Upper limit of health after a meal, per unit of the gene body_size; 0 is no limit.")
 // clang-format on
 
 namespace evod::parameters {
 
-/// Every parameter of a world. A set that validate() finds nothing wrong with is valid; the core is given no other.
+/// Every parameter of a world. A set is valid if validate() returns no violations. The core receives only valid sets.
 struct Parameters : evolution::Parameters {
-    EVOD_SIMULATION_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
+    EVOD_MODEL_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 };
 
-/// A value as it comes from outside or goes there; a choice is its name.
+/// A value at the boundary: in files, options and messages. A choice is its name.
 using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;
 
 std::string to_text(const ParameterValue& value);
@@ -100,7 +102,7 @@ struct ChoiceParameter {
     void (*set)(Parameters&, std::size_t);
 };
 
-/// One line of the registry.
+/// One parameter of the registry.
 struct ParameterDescription {
     std::string_view name, unit, help;
     base::Effect effect;
@@ -108,7 +110,7 @@ struct ParameterDescription {
 
     ParameterValue get(const Parameters& parameters) const;
     ParameterValue default_value() const { return get(Parameters{}); }
-    /// Gives `to` the value that `from` has.
+    /// Copies the value of `from` to `to`.
     void copy(const Parameters& from, Parameters& to) const;
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
@@ -116,13 +118,13 @@ struct ParameterDescription {
 /// Every parameter, those of the model first, in the order of the lists.
 std::span<const ParameterDescription> parameter_registry();
 
-/// Those that do not have the same value in both, in the order of the registry.
+/// The parameters whose values differ, in the order of the registry.
 std::vector<const ParameterDescription*> parameters_that_differ(const Parameters& a, const Parameters& b);
 
-/// nullptr if there is none of that name.
+/// Returns nullptr if no parameter has that name.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// The names most like `name`, best first, at most three: for "did you mean".
+/// The names most similar to `name`, best first, at most three: for "did you mean".
 std::vector<std::string_view> similar_parameter_names(std::string_view name);
 
 struct Assignment {
@@ -131,39 +133,40 @@ struct Assignment {
     friend bool operator==(const Assignment&, const Assignment&) = default;
 };
 
-/// What is wrong with an assignment on its own: its name, its kind, its range.
+/// Checks one assignment by itself: its name, its kind, its range.
 std::optional<base::Violation> fault_of(const Assignment& assignment, std::string_view field_prefix = "");
 
-/// `parameters` with every assignment made. A count is taken for a real. Refuses unknown and repeated names, wrong
-/// kinds, values outside their range (NaN too) and sets that do not go together, naming every one as `field_prefix` +
-/// name.
+/// Applies every assignment to `parameters`. A count is accepted for a real. Refuses unknown and repeated names, wrong
+/// kinds, values outside their range (NaN too) and values that do not fit together. Each violation is named
+/// `field_prefix` + name.
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix = "");
 
-/// A value from text ("0.05", "true", "tournament"), as `--set` and consoles spell it.
+/// Parses a value from text ("0.05", "true", "tournament"), as in `--set` and on consoles.
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text);
 
-/// What is wrong between parameters that are each within their range: bounds the wrong way round, no room, ….
+/// Checks parameters that are each within their range against each other: bounds in the wrong order, too little room,
+/// ….
 std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
 
-/// An island as the parameters ask for it, scaled with the population if they say so.
+/// The island that the parameters describe, scaled with the population if they say so.
 struct IslandPlan {
     double width_px, height_px;
     std::uint32_t food_count, poison_count;
 };
 IslandPlan island_plan(const Parameters& parameters);
 
-/// What holds during a generation and what was asked for, for parameters that wait for a generation or a reset.
+/// The parameters in effect and the requested ones, which may wait for a generation or a reset.
 struct ParameterSet {
-    Parameters active;          // holds now
-    Parameters requested;       // will hold in the end
-    std::uint64_t revision = 1; // rises with every accepted change
+    Parameters active;          // in effect now
+    Parameters requested;       // in effect once all have taken effect
+    std::uint64_t revision = 1; // increases with every accepted change
 };
 
-/// The set after a change: what has an immediate effect is active at once, the rest is only requested.
+/// The set after a change. Values with an immediate effect become active at once; the others are only requested.
 ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
 
-/// `active` with everything that `requested` says and that holds by now, `reached` being what has just come.
+/// `active` with every requested value that has taken effect when `reached` has just happened.
 Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
 
 bool operator==(const Parameters& a, const Parameters& b);

@@ -33,7 +33,9 @@ void Schedule::add(std::uint64_t generation, const Assignment& assignment) {
     }
     auto& there = changes_[generation];
     const auto place = std::ranges::find_if(
-        there, [&](const Assignment& other) { return find_parameter(other.name) > description; }); // of one array
+        there, [&](const Assignment& other) { return find_parameter(other.name) > description; }); // both point into
+                                                                                                   // the registry,
+                                                                                                   // which is an array
     there.insert(place, std::move(added));
 }
 
@@ -71,7 +73,7 @@ namespace {
 
 base::Refusal refused(std::vector<base::Violation> violations) {
     return {.code = base::RefusalCode::InvalidArgument,
-            .message = "some parameters cannot have these values before the world is reset",
+            .message = "invalid parameter values until the world is reset",
             .violations = std::move(violations)};
 }
 
@@ -83,7 +85,7 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     if (!requested) {
         return requested;
     }
-    // What waits for a reset may wait for ever, so the rest must go together without it.
+    // Parameters that wait for a reset may wait for ever, so the others must be valid without them.
     const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
     if (auto violations = validate(next, field_prefix); !violations.empty()) {
         return refused(std::move(violations));
@@ -99,7 +101,7 @@ base::Result<Parameters> request_at_generation(const ParameterSet& set, std::spa
     }
     if (auto violations = validate(breeding_with(set.active, *requested), field_prefix); !violations.empty()) {
         for (base::Violation& violation : violations) {
-            violation.allowed += ", by what breeding still goes by then";
+            violation.allowed += ", with the values that breeding still uses then";
         }
         return refused(std::move(violations));
     }

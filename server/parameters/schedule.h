@@ -1,9 +1,9 @@
-// Schedules: parameters that change by generation, as experiment files plan them.
+// Schedules: parameters that change by generation, as experiment files list them.
 //
-// A value holds from the first tick of its generation. What breeding goes by therefore acts first in the breeding that
-// makes the generation after it; how many are born, and what there is on their islands, is so in the generation itself.
+// A value holds from the first tick of its generation. Parameters of breeding therefore first act when the following
+// generation is bred. The population size and the contents of the islands already apply to the generation itself.
 //
-// Determinism  World makes the changes, from its schedule, its parameters and its moment alone.
+// Determinism  World applies the changes, from its schedule, its parameters and its moment alone.
 #pragma once
 
 #include "server/base/result.h"
@@ -19,27 +19,26 @@
 
 namespace evod::parameters {
 
-/// What is planned, generation by generation.
+/// Planned values, generation by generation.
 class Schedule {
   public:
-    /// Values after generation 1, of all parameters together.
+    /// The maximum number of values after generation 1, over all parameters.
     static constexpr std::size_t values_max = 4096;
 
     bool empty() const { return changes_.empty(); }
-    /// Of a generation, in the order of the registry; of generation 1: all that is scheduled, as runs begin with it.
+    /// The values of a generation, in the order of the registry. Generation 1 has a value of every scheduled parameter.
     std::span<const Assignment> at(std::uint64_t generation) const;
-    /// Generation by generation.
+    /// All values, by generation.
     const std::map<std::uint64_t, std::vector<Assignment>>& changes() const { return changes_; }
     bool holds(std::string_view name) const;
-    /// How many there are after generation 1.
+    /// The number of values after generation 1.
     std::size_t value_count() const;
 
-    /// assignment  that fault_of() finds nothing wrong with, of a parameter that can_be_scheduled(); the first of its
-    ///             name in that generation.
+    /// assignment  valid by fault_of(), of a parameter that can_be_scheduled(), and not yet present in that generation.
     void add(std::uint64_t generation, const Assignment& assignment);
-    /// What is planned for a parameter is so no more.
+    /// Removes all values of a parameter.
     void remove(std::string_view name);
-    /// The values of generation 1, of all that is scheduled, from what a run begins with.
+    /// Sets the values of generation 1, for every scheduled parameter, from the parameters that a run begins with.
     void begin_with(const Parameters& parameters);
 
     friend bool operator==(const Schedule&, const Schedule&) = default;
@@ -48,48 +47,50 @@ class Schedule {
     std::map<std::uint64_t, std::vector<Assignment>> changes_;
 };
 
-/// A moment of a run that is to come: one of the two.
+/// A future moment of a run: exactly one of the two is set.
 struct PlannedMoment {
     std::optional<std::uint64_t> generation; // its first tick, as in a schedule
-    std::optional<std::uint64_t> tick;       // right after it, since the run began: as a command that comes there
+    std::optional<std::uint64_t> tick;       // directly after this tick, counted from the beginning of the run, like a
+                                             // command that arrives there
 
     friend bool operator==(const PlannedMoment&, const PlannedMoment&) = default;
 };
-/// What somebody wants to change then, all of it or nothing. It is looked at anew when it is due.
+/// A change planned for a future moment; it is applied completely or not at all. It is validated again when it is due.
 struct PlannedChange {
-    std::uint64_t id = 0; // 1 for the first that was planned in the run
+    std::uint64_t id = 0; // 1 for the first planned change of the run
     PlannedMoment at;
     std::vector<Assignment> assignments;
-    std::string by; // as others are told
+    std::string by; // the author's name as other clients see it
 
     friend bool operator==(const PlannedChange&, const PlannedChange&) = default;
 };
-/// That wait in a world.
+/// The maximum number of planned changes of a world.
 constexpr std::size_t planned_changes_max = 100;
 
-/// Whether it can change while a world runs.
+/// Whether the parameter can change while a world runs.
 inline bool can_be_scheduled(const ParameterDescription& description) {
     return description.effect != base::Effect::Reset;
 }
 
-/// What is asked for all in all once the assignments are made while a world runs; refused if that cannot be, or what
-/// does not wait for a reset cannot be without the rest.
+/// The requested parameters after the assignments, made while a world runs. Refused if they are not valid, or if those
+/// that do not wait for a reset are not valid without the others.
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix = "");
-/// The same for a change that comes as a generation begins: this one is bred by what holds before, and so many as hold
-/// after it.
+/// The same for a change at the beginning of a generation. That generation is bred with the old values of breeding
+/// parameters, but has the new population size.
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix = "");
 
-/// `active` with what holds from the first tick of a generation that is bred now: breeding still goes by the rest.
+/// `active` with the values that hold from the first tick of the generation that is being bred. Breeding itself still
+/// uses the other values of `active`.
 Parameters breeding_with(const Parameters& active, const Parameters& requested);
 
 struct ScheduleFault {
     std::uint64_t generation;
-    base::Violation violation; // of a parameter, by its name
+    base::Violation violation; // names the parameter
 };
-/// What cannot hold in a run that begins with these parameters if nobody else changes any, of the first generation in
-/// which something cannot.
+/// The violations in a run that begins with these parameters if no other change is made: all of the first generation
+/// that has any.
 ///
 /// parameters  valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);

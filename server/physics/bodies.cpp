@@ -6,8 +6,8 @@ namespace {
 /// visit(column, the value of a void circle).
 template <class F>
 void for_each_column(Circles& circles, F&& visit) {
-    visit(circles.x, elsewhere);
-    visit(circles.y, elsewhere);
+    visit(circles.x, void_position);
+    visit(circles.y, void_position);
     visit(circles.velocity_x, 0.0f);
     visit(circles.velocity_y, 0.0f);
     visit(circles.inverse_mass, 0.0f);
@@ -45,7 +45,7 @@ void Circles::add(const AtRest& circle) {
 
 void Circles::remove(std::size_t i) {
     // The id stays: it identifies the circle that was here.
-    x[i] = y[i] = elsewhere;
+    x[i] = y[i] = void_position;
     velocity_x[i] = velocity_y[i] = 0;
     inverse_mass[i] = radius[i] = 0;
 }

@@ -58,7 +58,7 @@ struct Circles : Bodies {
     base::Column<float> radius;     // px
 
     std::size_t size() const { return size_; }
-    bool is_void(std::size_t i) const { return x[i] == elsewhere; }
+    bool is_void(std::size_t i) const { return x[i] == void_position; }
     void clear();
     /// Appends void circles, or removes the last ones.
     void resize(std::size_t size);

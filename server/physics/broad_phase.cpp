@@ -37,13 +37,13 @@ void Strips::choose_cells(std::size_t circles, const Area& area, float reach_px)
     column_scale_ = scale(column_width);
 }
 
-template <bool side_by_side>
+template <bool parallel>
 void Strips::count_and_place(const Circles& circles, base::Executor& executor) {
-    const std::size_t grain = side_by_side ? 4 * circles_per_block : circles.size();
+    const std::size_t grain = parallel ? 4 * circles_per_block : circles.size();
     executor.parallel_for(circles.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (!circles.is_void(i)) {
-                base::fetch_add<side_by_side>(first_[cell_of(circles, i)], 1u);
+                base::fetch_add<parallel>(first_[cell_of(circles, i)], 1u);
             }
         }
     });
@@ -55,8 +55,7 @@ void Strips::count_and_place(const Circles& circles, base::Executor& executor) {
     executor.parallel_for(circles.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (!circles.is_void(i)) {
-                order_[base::fetch_add<side_by_side>(first_[cell_of(circles, i)], ~0u) - 1] =
-                    static_cast<std::uint32_t>(i);
+                order_[base::fetch_add<parallel>(first_[cell_of(circles, i)], ~0u) - 1] = static_cast<std::uint32_t>(i);
             }
         }
     });
@@ -103,11 +102,11 @@ std::uint32_t Strips::strip_of_place(std::size_t k) const {
     return low;
 }
 
-bool NearPairs::worn(const Circles& circles, const Boxes& boxes) const {
+bool NearPairs::stale(const Circles& circles, const Boxes& boxes) const {
     // A little less than half the skin, to allow for rounding of distances.
     const float allowed = skin_px_ / 2 - 0.01f;
     if (circles.size() != circle_count_ || boxes.size() != box_anchor_x_.size() || allowed <= 0 ||
-        strayed_square_ > allowed * allowed) {
+        displacement_square_ > allowed * allowed) {
         return true;
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -145,7 +144,7 @@ void NearPairs::anchor(const Circles& circles, base::Executor& executor) {
         std::copy(circles.y.begin() + range.begin, circles.y.begin() + range.end, anchor_y_.begin() + range.begin);
     });
     circle_count_ = circles.size();
-    strayed_square_ = 0;
+    displacement_square_ = 0;
 }
 
 void NearPairs::follow_reordering(const Circles& circles, base::Executor& executor) {

@@ -110,7 +110,7 @@ class Strips {
         return static_cast<std::uint32_t>(std::min<std::uint64_t>(clamped * scale >> scale_bits, count - 1));
     }
     void choose_cells(std::size_t circles, const Area& area, float reach_px);
-    template <bool side_by_side>
+    template <bool parallel>
     void count_and_place(const Circles& circles, base::Executor& executor);
     std::size_t cell_of(const Circles& circles, std::size_t i) const {
         return std::size_t{strip_at(circles.y[i])} * columns_ + index_at(circles.x[i], column_scale_, columns_);
@@ -131,16 +131,16 @@ class NearPairs {
     };
 
     /// Whether unlisted pairs might touch, so that the list must be renewed. True until the list is made.
-    bool worn(const Circles& circles, const Boxes& boxes) const;
+    bool stale(const Circles& circles, const Boxes& boxes) const;
     /// Makes stale() true, because all bodies are new.
-    void forget() {
-        strayed_square_ = std::numeric_limits<float>::infinity();
+    void invalidate() {
+        displacement_square_ = std::numeric_limits<float>::infinity();
         skin_share_ = 1;
     }
     /// The circle has become void: its displacement no longer counts.
-    void remove(std::size_t circle) { anchor_x_[circle] = anchor_y_[circle] = elsewhere; }
+    void remove(std::size_t circle) { anchor_x_[circle] = anchor_y_[circle] = void_position; }
     /// The input of the next stale(). displacement_square: of the circle furthest from its anchor, px².
-    void circles_strayed(float strayed_square) { strayed_square_ = strayed_square; }
+    void set_displacement_square(float displacement_square) { displacement_square_ = displacement_square; }
 
     /// Renews the list from the present positions: sort(), then list(). To reorder circles, call the two separately and
     /// reorder between them.
@@ -171,7 +171,7 @@ class NearPairs {
     /// others.
     template <class Visit>
     void for_each_stretch_near(Coordinate x, Coordinate y, float radius, Visit&& visit) const {
-        const auto reach = static_cast<std::int64_t>((radius + std::sqrt(strayed_square_) + 0.1f) * units_per_px);
+        const auto reach = static_cast<std::int64_t>((radius + std::sqrt(displacement_square_) + 0.1f) * units_per_px);
         strips_.for_each_stretch(x - reach, x + reach, y - reach, y + reach, visit);
     }
 
@@ -184,7 +184,7 @@ class NearPairs {
     base::Column<Coordinate> anchor_x_, anchor_y_;
     base::Column<Coordinate> box_anchor_x_, box_anchor_y_;
     std::size_t circle_count_ = 0;
-    float strayed_square_ = std::numeric_limits<float>::infinity();
+    float displacement_square_ = std::numeric_limits<float>::infinity();
     float radius_max_ = 0; // px
     float skin_px_ = 0;
     float skin_share_ = 1; // share of the skin that suits an even distribution; smaller in crowds

@@ -10,7 +10,7 @@ namespace evod::physics {
 namespace {
 
 constexpr std::uint32_t box_bit = 0x8000'0000;
-constexpr std::uint32_t nobody = ~0u;
+constexpr std::uint32_t no_identity = ~0u;
 constexpr std::size_t contacts_per_piece = 256;
 
 BoxShape shape_of(const Boxes& boxes, std::size_t i) {
@@ -38,12 +38,12 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
     const float total = mass_a + mass_b;
     const float nx = overlap.normal_x, ny = overlap.normal_y;
     // Immovable bodies are not written to, because several contacts with one may be resolved in parallel.
-    const auto move = [&](Body body, float way) {
+    const auto move = [&](Body body, float distance) {
         if (body.bodies.inverse_mass[body.index] == 0) {
             return;
         }
-        body.bodies.x[body.index] += to_units(nx * way);
-        body.bodies.y[body.index] += to_units(ny * way);
+        body.bodies.x[body.index] += to_units(nx * distance);
+        body.bodies.y[body.index] += to_units(ny * distance);
     };
     move(a, -overlap.depth * (mass_a / total));
     move(b, overlap.depth * (mass_b / total));
@@ -58,12 +58,12 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
         return;
     }
     const float impulse = -(1 + restitution) * approach / total;
-    const auto push = [&](Body body, float mass, float way) {
+    const auto push = [&](Body body, float mass, float sign) {
         if (mass == 0) {
             return;
         }
-        body.bodies.velocity_x[body.index] += way * (impulse * mass * nx);
-        body.bodies.velocity_y[body.index] += way * (impulse * mass * ny);
+        body.bodies.velocity_x[body.index] += sign * (impulse * mass * nx);
+        body.bodies.velocity_y[body.index] += sign * (impulse * mass * ny);
     };
     push(a, mass_a, -1);
     push(b, mass_b, 1);
@@ -86,8 +86,8 @@ void Contacts::begin(const Circles& circles, const Boxes& boxes) {
     resize_lists(found_in_block_, block_count(circles.size()), usually_enough);
     left_.reserve(found_in_block_.size() * usually_enough + 8 * boxes.size());
     found_with_boxes_.reserve(8 * boxes.size());
-    first_of_circle_.resize(circles.size(), nobody);
-    first_of_box_.resize(boxes.size(), nobody);
+    first_of_circle_.resize(circles.size(), no_identity);
+    first_of_box_.resize(boxes.size(), no_identity);
     found_with_boxes_.clear();
 }
 
@@ -172,7 +172,7 @@ void Contacts::resolve_in_order(Circles& circles, Boxes& boxes, float restitutio
     left_.clear();
 }
 
-template <bool side_by_side>
+template <bool parallel>
 void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor) {
     const auto identity = [&](std::uint32_t body) { return identity_of(circles, body); };
     const auto first_of = [&](std::uint32_t body) -> std::uint32_t& {
@@ -180,16 +180,16 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
     };
     // A contact does not change an immovable body, so such a body may take part in several contacts at once.
     const auto waits = [&](std::uint32_t body) { return !(body & box_bit) || boxes.inverse_mass[body & ~box_bit] > 0; };
-    const std::size_t grain = side_by_side ? contacts_per_piece : left_.size();
+    const std::size_t grain = parallel ? contacts_per_piece : left_.size();
 
     executor.parallel_for(left_.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const std::uint32_t a = left_[i].a, b = left_[i].b;
             if (waits(a)) {
-                base::fetch_min<side_by_side>(first_of(a), identity(b));
+                base::fetch_min<parallel>(first_of(a), identity(b));
             }
             if (waits(b)) {
-                base::fetch_min<side_by_side>(first_of(b), identity(a));
+                base::fetch_min<parallel>(first_of(b), identity(a));
             }
         }
     });
@@ -205,8 +205,8 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
     });
     executor.parallel_for(left_.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            base::put<side_by_side>(first_of(left_[i].a), nobody);
-            base::put<side_by_side>(first_of(left_[i].b), nobody);
+            base::put<parallel>(first_of(left_[i].a), no_identity);
+            base::put<parallel>(first_of(left_[i].b), no_identity);
         }
     });
     std::erase_if(left_, [](const Contact& contact) { return contact.resolved; });

@@ -44,7 +44,7 @@ class Contacts {
         bool resolved = false;
     };
 
-    template <bool side_by_side>
+    template <bool parallel>
     void resolve_round(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor);
     void resolve_in_order(Circles& circles, Boxes& boxes, float restitution);
     static void resolve_one(Circles& circles, Boxes& boxes, const Contact& contact, float restitution);

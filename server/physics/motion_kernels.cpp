@@ -61,7 +61,7 @@ Axis kept_inside(Axis axis, Integers extent, std::int32_t size, Integers movable
 
 MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules) {
     MoveCounts counts;
-    Floats strayed{};
+    Floats displacement{};
     const float limit_square = rules.max_speed * rules.max_speed;
     for (std::size_t i = begin; i < end; i += lanes) {
         prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.radius,
@@ -85,19 +85,19 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
                 moving_y = vy;
             }
         }
-        const Floats way_x = moving_x * rules.tick_s, way_y = moving_y * rules.tick_s;
+        const Floats shift_x = moving_x * rules.tick_s, shift_y = moving_y * rules.tick_s;
         const Floats radius = load<Floats>(columns.radius + i);
-        if (const unsigned too_fast = bits_of(way_x * way_x + way_y * way_y > radius * radius); too_fast != 0) {
+        if (const unsigned too_fast = bits_of(shift_x * shift_x + shift_y * shift_y > radius * radius); too_fast != 0) {
             counts.too_fast += static_cast<unsigned>(__builtin_popcount(too_fast));
         }
 
         const Integers old_x = load<Integers>(columns.x + i);
-        const Integers movable = old_x != elsewhere;
+        const Integers movable = old_x != void_position;
         const Integers extent = round_to_integers(radius * static_cast<float>(units_per_px));
-        const Axis x = kept_inside({old_x + round_to_integers(way_x * static_cast<float>(units_per_px)), vx}, extent,
+        const Axis x = kept_inside({old_x + round_to_integers(shift_x * static_cast<float>(units_per_px)), vx}, extent,
                                    rules.width, movable, rules);
         const Axis y = kept_inside(
-            {load<Integers>(columns.y + i) + round_to_integers(way_y * static_cast<float>(units_per_px)), vy}, extent,
+            {load<Integers>(columns.y + i) + round_to_integers(shift_y * static_cast<float>(units_per_px)), vy}, extent,
             rules.height, movable, rules);
         store(columns.x + i, x.position);
         store(columns.y + i, y.position);
@@ -105,10 +105,11 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
         store(columns.velocity_y + i, y.velocity);
         const Floats away_x = to_floats(x.position - load<Integers>(columns.anchor_x + i)) * px_per_unit;
         const Floats away_y = to_floats(y.position - load<Integers>(columns.anchor_y + i)) * px_per_unit;
-        strayed = greater(strayed, away_x * away_x + away_y * away_y);
+        displacement = greater(displacement, away_x * away_x + away_y * away_y);
     }
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-        counts.strayed_square = strayed[lane] > counts.strayed_square ? strayed[lane] : counts.strayed_square;
+        counts.displacement_square =
+            displacement[lane] > counts.displacement_square ? displacement[lane] : counts.displacement_square;
     }
     return counts;
 }

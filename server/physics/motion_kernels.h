@@ -33,7 +33,7 @@ struct MotionRules {
 
 struct MoveCounts {
     std::uint64_t too_fast = 0, speed_limited = 0; // as in StepCounts
-    float strayed_square = 0;                      // px²; of the circle furthest from its anchor
+    float displacement_square = 0;                 // px²; of the circle furthest from its anchor
 };
 
 struct MotionKernels {

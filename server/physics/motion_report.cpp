@@ -107,7 +107,7 @@ MotionReport report(const Circles& circles, const Boxes& boxes, const Area& area
 
 MotionReport report_motion(const Circles& circles, const Boxes& boxes, const Area& area, double tick_s,
                            const NearPairs& near) {
-    if (!near.worn(circles, boxes)) {
+    if (!near.stale(circles, boxes)) {
         return report(circles, boxes, area, tick_s, near);
     }
     NearPairs fresh;

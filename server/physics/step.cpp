@@ -43,7 +43,7 @@ void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
 
 StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                          const Forces& force, base::Executor& executor) {
-    if (near_.worn(circles, boxes)) {
+    if (near_.stale(circles, boxes)) {
         near_.renew(circles, boxes, area, executor);
     }
     begin(circles, boxes, area, parameters);
@@ -122,13 +122,13 @@ void Stepper::move(Circles& circles, std::size_t block) {
 
 StepCounts Stepper::finish(Boxes& boxes) {
     StepCounts counts;
-    float strayed_square = 0;
+    float displacement_square = 0;
     for (const MoveCounts& block : counts_of_block_) {
         counts.too_fast += block.too_fast;
         counts.speed_limited += block.speed_limited;
-        strayed_square = std::max(strayed_square, block.strayed_square);
+        displacement_square = std::max(displacement_square, block.displacement_square);
     }
-    near_.circles_strayed(strayed_square);
+    near_.set_displacement_square(displacement_square);
 
     const float limit = parameters_.max_speed_px_s, tick_s = rules_.tick_s;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -137,11 +137,11 @@ StepCounts Stepper::finish(Boxes& boxes) {
         float moving_y = is_explicit() ? vy + box_drift_y_[i] : vy;
         counts.speed_limited += limit_speed(vx, vy, limit);
         limit_speed(moving_x, moving_y, limit);
-        const float way_x = moving_x * tick_s, way_y = moving_y * tick_s;
-        boxes.x[i] += to_units(way_x);
-        boxes.y[i] += to_units(way_y);
+        const float shift_x = moving_x * tick_s, shift_y = moving_y * tick_s;
+        boxes.x[i] += to_units(shift_x);
+        boxes.y[i] += to_units(shift_y);
         const float extent = std::min(boxes.half_width[i], boxes.half_height[i]);
-        counts.too_fast += way_x * way_x + way_y * way_y > extent * extent;
+        counts.too_fast += shift_x * shift_x + shift_y * shift_y > extent * extent;
     }
     for_each_axis(boxes, area_, [&](Coordinate& position, float& velocity, Coordinate extent, Coordinate size) {
         if (position < extent || position > size - extent) {

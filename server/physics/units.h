@@ -12,6 +12,6 @@ constexpr float px_per_unit = 1.0f / units_per_px;
 
 /// The position of void bodies. It is further from every place of an island than anything reaches, so loops need no
 /// test for void bodies.
-constexpr Coordinate elsewhere = -(1 << 30);
+constexpr Coordinate void_position = -(1 << 30);
 
 } // namespace evod::physics

@@ -65,7 +65,7 @@ v1::DescendantKind kind_of(std::uint32_t id, const evolution::Places& places) {
 }
 
 v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant, const evolution::Places& places,
-                        evolution::Rearranging rearranging) {
+                        evolution::OrderMutationMethod rearranging) {
     const auto add = [](const evolution::Chromosome& genes, auto& to) { to.Add(genes.begin(), genes.end()); };
     v1::Descendant to;
     to.set_id(descendant.id);
@@ -77,8 +77,8 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     to.set_from_second(descendant.from_second);
     to.set_crossed(descendant.crossed);
     if (descendant.order) {
-        to.mutable_order_mutation()->set_method(
-            std::string{base::ChoiceNames<evolution::Rearranging>::names[static_cast<std::size_t>(rearranging)]});
+        to.mutable_order_mutation()->set_method(std::string{
+            base::ChoiceNames<evolution::OrderMutationMethod>::names[static_cast<std::size_t>(rearranging)]});
         to.mutable_order_mutation()->mutable_order()->Add(descendant.order->begin(), descendant.order->end());
     }
     for (const evolution::GeneChange& change : descendant.changes) {

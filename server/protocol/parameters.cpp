@@ -178,7 +178,7 @@ parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
             return parameters::fault_of({value.name(), parameters::ParameterValue{0u}});
         }
         if (!can_be_scheduled(*description)) {
-            return base::Violation{{}, "one value, as it can only change when a world is reset", "a scheduled one"};
+            return base::Violation{{}, "one value: it can change only at a reset", "a scheduled one"};
         }
         if (value.generation() < 2) {
             return base::Violation{{}, "a generation from 2 on", std::to_string(value.generation())};

@@ -55,7 +55,7 @@ void append_column(std::string& bytes, const Rows& rows, Of&& of) {
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
     v1::WorldList list;
     for (const auto& entry : laboratory.entries()) {
-        if (!entry->is_look_back()) {
+        if (!entry->replays_another_world()) {
             *list.add_worlds() = to_proto(*entry);
         }
     }

@@ -63,7 +63,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     if (!recovered.journal.empty()) {
         recovered.control = recovered.journal.back().control;
     }
-    simulation::mind_goals(recovered.control, recovered.world);
+    simulation::remove_reached_goals(recovered.control, recovered.world);
     return recovered;
 }
 

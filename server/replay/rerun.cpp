@@ -253,7 +253,7 @@ Result<void> ComingChanges::plan_again(const std::string& path, std::span<const 
         }
         (void)world.add_planned({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
     }
-    world.forget_what_was_due();
+    world.drop_due_changes();
     return {};
 }
 

@@ -290,7 +290,7 @@ void Replays::open(const OpenReplay& request, const ReplayReply& reply) {
                                                     " replays open already: try again when one of them is closed",
                                           base::Reason::PastsMax));
     }
-    const std::string name = (*origin)->is_look_back() ? (*origin)->replay->replay_of : (*origin)->name;
+    const std::string name = (*origin)->replays_another_world() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;
     const auto run = replay_of(world);
     if (!run) {

@@ -447,7 +447,7 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         if (const auto watch = watches_.find(entry.name); watch != watches_.end()) {
             found->second.watch = &watch->second;
         }
-        if (outputs_.counted != nullptr && !entry.is_look_back()) {
+        if (outputs_.counted != nullptr && !entry.replays_another_world()) {
             found->second.counted = outputs_.counted->add(entry.name);
         }
     }

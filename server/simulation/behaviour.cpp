@@ -16,7 +16,7 @@ ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key
             .pair_key = key.pair_key()};
 }
 
-/// The columns of a few bodies, copied out of all. What is not filled in is not read.
+/// Copies of the columns of a few bodies. Columns that are not set are not read.
 struct FewOrganisms {
     static constexpr std::size_t room = physics::circles_per_block;
     struct View {
@@ -25,7 +25,7 @@ struct FewOrganisms {
         std::array<ItemQuery, room> queries;
         std::array<TwoNearest, room> nearest;
 
-        void look(const Items& items, std::size_t count) {
+        void search(const Items& items, std::size_t count) {
             items_kernels().two_nearest(items.grid(), queries.data(), nearest.data(), count);
             for (std::size_t k = 0; k < count; ++k) {
                 x[k] = nearest[k].x;
@@ -74,7 +74,7 @@ struct FewOrganisms {
 
 } // namespace
 
-OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight& sight, const Items& food,
+OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
                                  const Items& poison) {
     OrganismColumns columns{.x = bodies.x.data(),
                             .y = bodies.y.data(),
@@ -90,7 +90,7 @@ OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight
                             .seen_y = nullptr,
                             .food = {},
                             .poison = {}};
-    sight.add_to(columns, living, food, poison);
+    perception.add_to(columns, living, food, poison);
     return columns;
 }
 
@@ -100,22 +100,22 @@ void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules
                               forces.y.data());
 }
 
-void foresee(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-             const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
-             std::span<const std::uint32_t> who, std::span<Intention> intentions) {
-    EVOD_ASSERT(who.size() == intentions.size());
+void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
+                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
+    EVOD_ASSERT(bodies_asked.size() == intentions.size());
     FewOrganisms few;
     ChosenForces forces;
     std::array<std::int32_t, FewOrganisms::room> choices;
-    for (std::size_t begin = 0; begin < who.size(); begin += FewOrganisms::room) {
-        const std::size_t count = std::min(who.size() - begin, FewOrganisms::room);
+    for (std::size_t begin = 0; begin < bodies_asked.size(); begin += FewOrganisms::room) {
+        const std::size_t count = std::min(bodies_asked.size() - begin, FewOrganisms::room);
         for (std::size_t k = 0; k < count; ++k) {
-            few.put(k, bodies, living, who[begin + k]);
+            few.put(k, bodies, living, bodies_asked[begin + k]);
         }
-        few.food.look(food, count);
-        few.poison.look(poison, count);
-        organism_kernels().foretell(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),
-                                    forces.y.data(), choices.data());
+        few.food.search(food, count);
+        few.poison.search(poison, count);
+        organism_kernels().predict(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),
+                                   forces.y.data(), choices.data());
         for (std::size_t k = 0; k < count; ++k) {
             const auto choice = static_cast<Choice>(choices[k]);
             const auto [x, y] = choice == Choice::Flee   ? Place{few.poison.x[k], few.poison.y[k]}

@@ -1,14 +1,14 @@
-// Behaviour: what each organism sees, and the force with which it answers.
+// Behaviour: what each organism sees, and the force that it chooses in response.
 //
-// The nearest food within food_radius and the nearest poison within poison_radius are seen, centre to centre. Seen
-// poison is fled, with chance min(1, impulse / certain_impulse), if it is nearer than the nearest food seen
-// (FleeRule::Always: whatever the food): a force straight away from it. Otherwise seen food is steered to: a force
-// along (food − position − velocity · lookahead). Otherwise the organism wanders in a fresh uniform direction. Where
-// the direction has no length, it is random.
+// An organism sees the nearest food within food_radius and the nearest poison within poison_radius, centre to centre.
+// 1. It flees from seen poison with probability min(1, impulse / certain_impulse), if the poison is nearer than the
+// nearest seen food (FleeRule::Always: regardless of food). The force points straight away from the poison.
+// 2. Otherwise it steers to seen food: a force along (food − position − velocity · lookahead).
+// 3. Otherwise it wanders: a force in a new uniform direction. A direction of length 0 is replaced by a random one too.
 //
-// Threads      ranges of organisms are done side by side; each organism writes its own force.
-// Determinism  everything is seen at the positions of the tick's start; the draws of an organism are keyed by its id
-//              and the tick.
+// Threads      ranges of organisms are processed in parallel; each organism writes its own force.
+// Determinism  all positions are those at the start of the tick; the draws of an organism are keyed by its id and the
+//              tick.
 #pragma once
 
 #include "server/base/random.h"
@@ -17,7 +17,7 @@
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
 #include "server/simulation/organism_kernels.h"
-#include "server/simulation/sight.h"
+#include "server/simulation/perception.h"
 
 #include <array>
 #include <span>
@@ -27,34 +27,36 @@ namespace evod::simulation {
 struct BehaviourRules {
     parameters::FleeRule flee_rule;
     float lookahead_s;
-    float certain_impulse; // gene value from which fleeing is certain; the chance is impulse over this
+    float certain_impulse; // gene value from which fleeing is certain; the probability is impulse / certain_impulse
     float force_per_unit;  // kg px/s² per gene unit
 };
 
-/// What kernels take. Valid until columns grow or are reordered.
-OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight& sight, const Items& food,
+/// The columns that kernels take. Valid until columns grow or are reordered.
+OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
                                  const Items& poison);
 
-/// What the organisms of one block answer with, kg px/s².
+/// The forces that the organisms of one block choose, kg px/s².
 struct ChosenForces {
     std::array<float, physics::circles_per_block> x, y;
 };
 
-/// The loss of health that a tick costs, and the choice of the organisms of a block, whose views are good.
+/// Subtracts the health that a tick costs, and chooses the forces of the organisms of a block. Their views must be
+/// current.
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces);
 
-/// What an organism is about to do.
+/// What an organism will do in the next tick.
 struct Intention {
     Choice choice = Choice::None;                   // None: there is no such organism
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // of the food or poison; its own place where it wanders
+    physics::Coordinate target_x = 0, target_y = 0; // of the food or poison; its own position if it wanders
 };
 
-/// What the bodies `who` would choose in `tick` if nothing reappeared before it; changes nothing. Not void ones.
-/// intentions  shape (who).
-void foresee(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-             const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
-             std::span<const std::uint32_t> who, std::span<Intention> intentions);
+/// Predicts what `bodies_asked` will choose in `tick` if no item reappears before it; changes nothing. No body may be
+/// void.
+/// intentions  shape (bodies_asked).
+void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
+                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
 
 } // namespace evod::simulation

@@ -1,6 +1,6 @@
-// Commands: all that can change a laboratory from outside. Applied at a tick boundary by Laboratory::apply.
+// Commands: everything that can change a laboratory from outside. Laboratory::apply applies them between two ticks.
 //
-// A world is named by the caller; the edge has already turned an empty name into a real one.
+// The caller names the world; the boundary has already replaced an empty name.
 #pragma once
 
 #include "server/base/random.h"
@@ -15,7 +15,7 @@
 
 namespace evod::simulation {
 
-/// A run's name for ever: random, drawn by the shell for every create and reset; no part of the state.
+/// The permanent identity of a run: random, drawn by the shell for every create and reset. Not part of the state.
 struct RunId {
     std::uint64_t high = 0, low = 0;
     friend bool operator==(const RunId&, const RunId&) = default;
@@ -23,10 +23,10 @@ struct RunId {
 
 /// 32 lower-case hexadecimal digits.
 std::string to_text(const RunId& id);
-/// The same 16 bytes, the most significant first.
+/// The same 128 bits as 16 bytes, most significant first.
 std::string to_bytes(const RunId& id);
 
-/// Simulated seconds per second, 0.001 to 10,000; nullopt is as fast as the machine can.
+/// Simulated seconds per second, 0.001 to 10,000; nullopt: as fast as possible.
 using Speed = std::optional<double>;
 constexpr double speed_min = 0.001, speed_max = 10'000;
 
@@ -35,20 +35,20 @@ struct CreateWorld {
     parameters::Parameters parameters;
     base::Seed seed;
     RunId run_id;
-    FirstPopulation first_population = {}; // that a world with these parameters can have
-    parameters::Schedule schedule = {};    // in which faults_of() finds nothing; begins with the parameters
+    FirstPopulation first_population = {}; // valid for these parameters
+    parameters::Schedule schedule = {};    // faults_of() is empty; generation 1 has the values of `parameters`
 };
 struct DeleteWorld {
     std::string world;
 };
 struct ResetWorld {
     std::string world;
-    std::optional<base::Seed> seed; // nullopt: the same again
+    std::optional<base::Seed> seed; // nullopt: the same seed as before
     RunId run_id;
 };
 struct Run {
     std::string world;
-    std::optional<std::uint64_t> generations; // >= 1; nullopt: until paused or a termination criterion holds
+    std::optional<std::uint64_t> generations; // >= 1; nullopt: until paused or until a termination criterion holds
 };
 struct RunUntilTick {
     std::string world;
@@ -56,7 +56,7 @@ struct RunUntilTick {
 };
 struct ReleaseLease {
     std::string world;
-    std::optional<std::uint64_t> lease = {}; // only if this one still holds
+    std::optional<std::uint64_t> lease = {}; // only if this lease still holds
 };
 struct Pause {
     std::string world;
@@ -73,20 +73,20 @@ struct SetParameters {
     std::vector<parameters::Assignment> assignments;
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
-    std::optional<parameters::PlannedMoment> at = std::nullopt; // nothing: at once
-    std::string by = {};                                        // who plans it, as others are told
+    std::optional<parameters::PlannedMoment> at = std::nullopt; // nullopt: at once
+    std::string by = {};                                        // the author's name as other clients see it
 };
-/// Takes back what was planned.
+/// Cancels a planned change.
 struct CancelChange {
     std::string world;
     std::uint64_t id;
 };
 
 struct ForkWorld {
-    std::string world; // the origin
-    std::string name;  // of the new world; as CreateWorld
-    // From its first moment; nullopt: from where the origin is. One that is over is not known any more to a laboratory,
-    // only to a run file.
+    std::string world; // the world to fork
+    std::string name;  // of the new world; as in CreateWorld
+    // The new world starts at the first moment of this generation; nullopt: from the present state of the original.
+    // Earlier generations exist only in a run file.
     std::optional<std::uint64_t> at_generation;
     RunId run_id;
 };

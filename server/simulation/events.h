@@ -1,4 +1,4 @@
-// Events: what a laboratory tells when it happens. Collected by Laboratory, taken by the runtime after every step.
+// Events: what happened in a laboratory. Laboratory collects them; the runtime takes them after every step.
 #pragma once
 
 #include "server/evolution/termination.h"
@@ -18,10 +18,10 @@ struct MigrationHappened {
     struct Edge {
         std::uint32_t from, to, migrant_count;
     };
-    std::uint64_t generation; // that has ended, whose organisms went
+    std::uint64_t generation; // the ended generation, whose organisms are replaced
     std::vector<Edge> edges;
 };
-/// Everyone on an island is dead before the generation's time is up.
+/// Every organism of an island is dead before the generation's time is up.
 struct Extinction {
     std::uint32_t island;
     std::uint64_t generation;
@@ -29,21 +29,21 @@ struct Extinction {
 struct RunTerminated {
     evolution::Outcome outcome;
 };
-/// What was planned for a moment was done.
+/// A planned or scheduled change was applied.
 struct ParametersChanged {
     std::uint64_t planned = 0;      // PlannedChange::id; 0: the schedule of the experiment
-    std::string by;                 // who planned it; empty for the schedule
-    std::vector<std::string> names; // of those that were assigned
+    std::string by;                 // author of the plan; empty for the schedule
+    std::vector<std::string> names; // of the assigned parameters
     std::uint64_t revision;
 };
-/// What was planned for a moment does not go together with what holds there, and was left out.
+/// A planned or scheduled change was dropped, because it does not fit the parameters in effect at its moment.
 struct ChangeDropped {
     std::uint64_t planned = 0;
-    std::string by;                 // as above
-    std::vector<std::string> names; // of those that were to be assigned
+    std::string by;                 // as in ParametersChanged
+    std::vector<std::string> names; // of the parameters to be assigned
     std::vector<base::Violation> violations;
 };
-struct GoalReached {}; // told generations or ticks are over: the world waits, or is paused
+struct GoalReached {}; // the requested generations or ticks are over: the world waits, or is paused
 
 using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, ParametersChanged,
                                ChangeDropped, GoalReached>;

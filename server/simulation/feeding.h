@@ -1,8 +1,8 @@
-// Feeding: who touches which items of one kind after the tick's move, and who gets each.
+// Feeding: finds which bodies touch which items of one kind after the tick's move, and which body gets each item.
 //
-// Threads      blocks of bodies are looked at side by side.
-// Determinism  an item goes to its nearest toucher, of equally near ones to the lowest id, whatever the order of
-//              search.
+// Threads      blocks of bodies are searched in parallel.
+// Determinism  an item goes to the nearest body that touches it, of equally near bodies to the lowest id, whatever the
+//              order of the search.
 #pragma once
 
 #include "server/physics/bodies.h"
@@ -16,30 +16,30 @@ namespace evod::simulation {
 
 /// A body that touches an item.
 struct Touch {
-    std::uint32_t item, place; // where the item is, as Items tell
-    float square;              // of the distance, px²
+    std::uint32_t item, place; // place: as in TwoNearest
+    float square;              // squared distance, px²
     std::uint32_t id, body;
-    bool gets_it; // once award() has been called; of all who touch an item, one does
+    bool gets_it; // valid after award(); exactly one body that touches an item gets it
 };
 
 class Feeding {
   public:
-    /// Before the blocks are looked at, which makes each forget what it had. blocks: how many there will be.
+    /// Prepares for `blocks` blocks. Each block clears its touches when it is searched.
     void begin(std::size_t blocks);
 
-    /// What some bodies touch; blocks may be done side by side. `at_items` holds every body of the block that touches
-    /// an item.
+    /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
+    /// that touches an item, and may contain others.
     void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
                       const Items& items);
 
-    /// Decides who gets what, of all blocks. Returns the number of items touched.
+    /// Decides which body gets each item, over all blocks. Returns the number of items touched.
     std::size_t award();
 
     std::span<const Touch> touches(std::size_t block) const { return touches_of_block_[block]; }
 
   private:
-    std::vector<std::vector<Touch>> touches_of_block_; // kept warm between ticks
-    std::vector<Touch*> first_of_item_;                // open addressing, by item
+    std::vector<std::vector<Touch>> touches_of_block_; // kept between ticks
+    std::vector<Touch*> first_of_item_;                // hash table with open addressing, by item
 };
 
 } // namespace evod::simulation

@@ -1,4 +1,4 @@
-// First population: chromosomes that a run begins with instead of drawn ones.
+// First population: chromosomes that a run begins with, instead of drawn ones.
 #pragma once
 
 #include "server/base/result.h"
@@ -11,17 +11,18 @@
 
 namespace evod::simulation {
 
-/// One matrix per island; nullptr: they are drawn by the seed. Shared, for it is never changed and may be large.
+/// One matrix per island; nullptr: drawn from the seed. Shared, because it is never changed and may be large.
 using FirstPopulation = std::shared_ptr<const std::vector<evolution::GeneMatrix>>;
 
-/// Whether two are the same, to the last bit but the sign of 0.
+/// Whether two are equal to the last bit, except for the sign of 0.
 bool same(const FirstPopulation& a, const FirstPopulation& b);
 
-/// What keeps a world with these parameters from beginning so: islands, organisms and genes that it cannot have.
+/// Why a world with these parameters cannot begin with this population: wrong numbers of islands or organisms, genes
+/// out of bounds.
 ///
-/// field  of the population as the sender spells it: "create_world.population"; a gene is
-///        "create_world.population[0].organism[17].body_size".
-/// returns  empty if nothing does; at most faults_max of all that are wrong.
+/// field    of the population as the sender spells it: "create_world.population"; a gene is
+///          "create_world.population[0].organism[17].body_size".
+/// returns  empty if it can; at most faults_max violations.
 std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field);
 constexpr std::size_t faults_max = 20;

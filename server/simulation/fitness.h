@@ -1,4 +1,4 @@
-// Fitness functions of the chromosome alone: for lessons, and to check the algorithm apart from the physics.
+// Fitness functions of the chromosome alone: for teaching, and to test the algorithm without the physics.
 #pragma once
 
 #include "server/evolution/chromosome.h"
@@ -8,9 +8,9 @@ namespace evod::simulation {
 /// The sum of the genes: greatest with every gene at its upper bound.
 double gene_sum(const evolution::Chromosome& genes);
 
-/// −(10 n + Σ (x² − 10 cos 2πx)) with x = (gene − 150)/25 for each of the n genes: 0 where every gene is 150, and a
-/// local maximum near every 25 gene units. Source  Rastrigin 1974; Mühlenbein, Schomisch & Born 1991, "The parallel
-/// genetic algorithm as function optimizer".
+/// −(10 n + Σ (x² − 10 cos 2πx)) with x = (gene − 150)/25 for each of the n genes: 0 if every gene is 150, with a local
+/// maximum near every 25 gene units.
+/// Source  Rastrigin 1974; Mühlenbein, Schomisch & Born 1991, "The parallel genetic algorithm as function optimizer".
 double rastrigin(const evolution::Chromosome& genes);
 
 } // namespace evod::simulation

@@ -12,11 +12,12 @@
 namespace evod::simulation {
 namespace {
 
-// Kinds of entity in the state hash beside organisms; part of a run's identity.
+// Kinds of entities in the state hash, besides organisms; part of a run's identity.
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
-/// The most health that meals lead to: from here on a meal's, at most 10,000, is lost in the rounding of a float.
+/// The greatest health that meals can lead to: above this, rounding of a float loses a meal, which gives at most
+/// 10,000.
 constexpr float health_reachable = 0x1p38f;
 
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
@@ -29,7 +30,7 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
 }
 
 ItemRules item_rules(const parameters::Parameters& p) {
-    // A little less, so that 23 sixtieths are 23 ticks of a sixtieth however they are rounded.
+    // Rounds down a little, so that 23 sixtieths are 23 ticks of a sixtieth despite rounding.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,
@@ -61,7 +62,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     boxes_.clear();
     alive_count_ = 0;
     body_of_.clear();
-    stepper_.near().forget();
+    stepper_.near().invalidate();
     renewals_ = 0;
 
     std::vector<base::StateHash> hash_of_block((organisms + organisms_per_block - 1) / organisms_per_block);
@@ -138,22 +139,22 @@ void Island::place(const parameters::Parameters& parameters, std::uint64_t gener
     rules.respawn_purpose = base::Purpose::PoisonRespawn;
     rules.kind = PoisonKind;
     poison_.begin_generation(rules, seed_, index_, generation, area_, obstacles_, executor);
-    sight_.begin(bodies_, living_, food_, poison_);
+    perception_.begin(bodies_, living_, food_, poison_);
 }
 
 void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
-    if (stepper_.near().worn(bodies_, boxes_)) {
+    if (stepper_.near().stale(bodies_, boxes_)) {
         renew_near_pairs(executor);
     }
     for_each_kind(
         executor,
         [&] {
             food_.reappear(tick, obstacles_, executor);
-            sight_.notice_food(bodies_, stepper_.near(), living_, food_, executor);
+            perception_.notice_food(bodies_, stepper_.near(), living_, food_, executor);
         },
         [&] {
             poison_.reappear(tick, obstacles_, executor);
-            sight_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor);
+            perception_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor);
         });
 
     const BehaviourRules rules = behaviour_rules(parameters);
@@ -178,11 +179,11 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     const physics::StepCounts step = stepper_.finish(boxes_);
     counts_.too_fast_count += step.too_fast;
     counts_.speed_limit_count += step.speed_limited;
-    const base::StateHash organisms = feed_and_bury(parameters, tick, executor);
+    const base::StateHash organisms = feed_and_remove_dead(parameters, tick, executor);
     hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
 }
 
-/// Food and poison, side by side where that pays.
+/// Processes food and poison, in parallel if that pays.
 template <class OfFood, class OfPoison>
 void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
     executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
@@ -205,8 +206,8 @@ void Island::resize_blocks(std::size_t count) {
 }
 
 void Island::renew_near_pairs(base::Executor& executor) {
-    // Never put in order, a tick of 1,000,000 takes 30 % longer, and one of 20,000 the same time. More often than at
-    // every fourth renewal costs more than it saves.
+    // Without sorting, a tick of 1,000,000 takes 30 % longer, and one of 20,000 the same time. Sorting more often than
+    // at every fourth renewal costs more than it saves.
     constexpr std::uint32_t renewals_between = 4;
     constexpr std::size_t worth_ordering = 1024;
     physics::NearPairs& near = stepper_.near();
@@ -223,7 +224,7 @@ void Island::reorder(base::Executor& executor) {
     const physics::Reordering reordering{near.strips().order(), spare_column_, executor};
     bodies_.reorder(reordering);
     living_.reorder(reordering);
-    sight_.reorder(reordering);
+    perception_.reorder(reordering);
     near.follow_reordering(bodies_, executor);
     executor.parallel_for(bodies_.size(), 2 * organisms_per_block, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -234,7 +235,7 @@ void Island::reorder(base::Executor& executor) {
 
 void Island::act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block) {
     const base::Range range = physics::circles_of_block(bodies_.size(), block);
-    sight_.look(bodies_, living_, food_, poison_, range);
+    perception_.search(bodies_, living_, food_, poison_, range);
     ChosenForces forces;
     live_and_choose(columns(), rules, behaviour_key_, tick, range, forces);
     stepper_.accelerate(bodies_, block, {forces.x.data(), forces.y.data()});
@@ -257,9 +258,9 @@ void Island::move(std::size_t block) {
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
 }
 
-base::StateHash Island::feed_and_bury(const parameters::Parameters& parameters, std::uint32_t tick,
-                                      base::Executor& executor) {
-    // What happens to organisms, block by block; what happens to the items' grid, one after another.
+base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
+                                             base::Executor& executor) {
+    // Organisms are processed block by block; changes of the items' grid follow one after another.
     constexpr std::size_t events_worth_cutting = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
     for (const Block& block : blocks_) {
@@ -267,7 +268,7 @@ base::StateHash Island::feed_and_bury(const parameters::Parameters& parameters, 
     }
     executor.parallel_for(blocks_.size(), events < events_worth_cutting ? blocks_.size() : 8, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
-            feed_and_bury_in_block(parameters, tick, block);
+            feed_and_remove_dead_in_block(parameters, tick, block);
         }
     });
 
@@ -302,7 +303,8 @@ base::StateHash Island::feed_and_bury(const parameters::Parameters& parameters, 
     return organisms;
 }
 
-void Island::feed_and_bury_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index) {
+void Island::feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick,
+                                           std::size_t index) {
     Block& block = blocks_[index];
     block.food_hash_change = block.poison_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
@@ -316,7 +318,7 @@ void Island::feed_and_bury_in_block(const parameters::Parameters& parameters, st
         __builtin_prefetch(&bodies_.velocity_y[touch.body]);
         __builtin_prefetch(&living_.health[touch.body], 1);
     }
-    // All food before all poison; equal items, so that the order among each does not matter.
+    // All food before all poison. Items of one kind are equal, so their order does not matter.
     for (const Touch& touch : food_feeding_.touches(index)) {
         if (!touch.gets_it) {
             continue;
@@ -340,16 +342,17 @@ void Island::feed_and_bury_in_block(const parameters::Parameters& parameters, st
         ++fate_.poison_eaten[touch.id];
         ++block.poison_eaten;
     }
-    // Hunger comes at the beginning of a tick and poison at its end, so poison eaten now was the last loss.
+    // Living costs health at the beginning of a tick and poison at its end, so poison eaten in this tick was the last
+    // loss.
     for (const Touch& touch : poison_feeding_.touches(index)) {
         if (touch.gets_it && is_dying(touch.body)) {
-            bury(block, touch.body, tick, CauseOfDeath::Poisoned);
+            record_death(block, touch.body, tick, CauseOfDeath::Poisoned);
             ++block.poisoned;
         }
     }
     for (const std::uint32_t body : block.dying) {
         if (is_dying(body)) {
-            bury(block, body, tick, CauseOfDeath::Starved);
+            record_death(block, body, tick, CauseOfDeath::Starved);
             ++block.starved;
         }
     }
@@ -366,14 +369,14 @@ bool Island::is_dying(std::uint32_t body) const {
     return !bodies_.is_void(body) && living_.health[body] <= 0;
 }
 
-void Island::bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
+void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
     const std::uint32_t id = bodies_.id[body];
     fate_.cause[id] = cause;
     fate_.lived_ticks[id] = tick;
     block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = no_body;
     bodies_.remove(body);
-    sight_.remove(body);
+    perception_.remove(body);
     stepper_.near().remove(body);
     living_.health[body] = -std::numeric_limits<float>::infinity();
 }
@@ -429,10 +432,10 @@ IslandState Island::state(base::Executor& executor) const {
     return state;
 }
 
-base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) const {
+base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) const {
     const auto wrong = [this](const std::string& what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "island " + std::to_string(index_) + " cannot be so: " + what,
+                             .message = "island " + std::to_string(index_) + ": impossible state: " + what,
                              .violations = {}};
     };
     const Fate& fate = state.fate;
@@ -440,13 +443,13 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
     if (fate.cause.size() != own.organisms || fate.lived_ticks.size() != own.organisms ||
         fate.food_eaten.size() != own.organisms || fate.poison_eaten.size() != own.organisms ||
         state.organisms.size() != body_of_.size()) {
-        return wrong("the number of its organisms");
+        return wrong("number of organisms");
     }
     if (state.crates.size() != own.crates) {
-        return wrong("the number of its crates");
+        return wrong("number of crates");
     }
 
-    // Limited when the tick ended, give or take some rounding.
+    // Speeds were limited when the tick ended, except for rounding.
     const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
     const auto can_move = [&](const auto& body) {
         return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&
@@ -454,10 +457,10 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
     };
     std::uint32_t alive = 0, starved = 0, poisoned = 0;
     for (std::size_t id = 0; id < own.organisms; ++id) {
-        const auto which = [&](const char* what) { return wrong(what + (" organism " + std::to_string(id))); };
+        const auto which = [&](const char* what) { return wrong(what + (" of organism " + std::to_string(id))); };
         if (fate.cause[id] == CauseOfDeath::Alive) {
             if (fate.lived_ticks[id] != 0) {
-                return which("when it lost");
+                return which("lived_ticks");
             }
             if (!own.has_bodies) {
                 continue;
@@ -465,10 +468,10 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
             ++alive;
             const IslandState::Organism& organism = state.organisms[id];
             if (!can_move(organism)) {
-                return which("where it has, or how fast it is, its");
+                return which("position or speed");
             }
             if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0)) {
-                return which("the health of its");
+                return which("health");
             }
             continue;
         }
@@ -476,23 +479,23 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
         poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
         if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Poisoned || fate.lived_ticks[id] == 0 ||
             fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
-            return which("how it lost");
+            return which("death");
         }
     }
     if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
-        return wrong("the number of its dead");
+        return wrong("number of the dead");
     }
     if (!std::ranges::all_of(state.crates, can_move)) {
-        return wrong("where a crate is, or how fast it is");
+        return wrong("position or speed of a crate");
     }
     if (!own.has_bodies) {
-        return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("its items");
+        return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("items without bodies");
     }
     if (const char* fault = food_.fault_of(state.food, tick, alive == 0)) {
-        return wrong(std::string{"of its food, "} + fault);
+        return wrong(std::string{"food: "} + fault);
     }
     if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0)) {
-        return wrong(std::string{"of its poison, "} + fault);
+        return wrong(std::string{"poison: "} + fault);
     }
     return {};
 }
@@ -511,7 +514,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     }
     food_.restore(state.food, executor);
     poison_.restore(state.poison, executor);
-    // A generation begins with every organism in the place of its id.
+    // At the beginning of a generation every organism has its id as index.
     base::StateHash organisms;
     std::vector<std::uint32_t> gone;
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
@@ -527,11 +530,11 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
         living_.health[id] = organism.health;
         organisms += hash_of_organism(bodies_, living_, id);
     }
-    sight_.begin(bodies_, living_, food_, poison_);
+    perception_.begin(bodies_, living_, food_, poison_);
     for (const std::uint32_t id : gone) {
         body_of_[id] = no_body;
         bodies_.remove(id);
-        sight_.remove(id);
+        perception_.remove(id);
         living_.health[id] = -std::numeric_limits<float>::infinity();
     }
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
@@ -563,17 +566,18 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
 
 std::vector<Intention> Island::intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                           base::Range ids) const {
-    std::vector<std::uint32_t> who;
+    std::vector<std::uint32_t> asked_bodies;
     for (std::size_t id = ids.begin; id < ids.end; ++id) {
         if (const auto body = body_of(static_cast<std::uint32_t>(id))) {
-            who.push_back(static_cast<std::uint32_t>(*body));
+            asked_bodies.push_back(static_cast<std::uint32_t>(*body));
         }
     }
-    std::vector<Intention> of_living(who.size());
-    foresee(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick, who, of_living);
+    std::vector<Intention> of_living(asked_bodies.size());
+    predict_intentions(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick,
+                       asked_bodies, of_living);
     std::vector<Intention> intentions(ids.end - ids.begin);
-    for (std::size_t k = 0; k < who.size(); ++k) {
-        intentions[bodies_.id[who[k]] - ids.begin] = of_living[k];
+    for (std::size_t k = 0; k < asked_bodies.size(); ++k) {
+        intentions[bodies_.id[asked_bodies[k]] - ids.begin] = of_living[k];
     }
     return intentions;
 }

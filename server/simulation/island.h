@@ -4,12 +4,13 @@
 // positions at the start of the tick → forces, damping, collisions, positions (physics/step.h) → feeding at the new
 // positions → deaths → hash.
 //
-// Organisms lie in memory as they lie on the island, strip by strip, so that neighbours share cache lines; as they move
-// they are put in order again now and then. The dead leave void places until then.
+// Organisms are stored strip by strip, in the order of their positions, so that neighbours share cache lines. They are
+// sorted again from time to time as they move. Dead organisms leave void bodies until the next sorting.
 //
-// Owner        World. Islands share nothing, so a world advances them side by side.
-// Threads      a tick is two loops over blocks of organisms, with what concerns single ones between them and after
-// them. Determinism  decisions go by ids; the order of arrays is no part of the state.
+// Owner        World. Islands share nothing, so a world advances them in parallel.
+// Threads      a tick is two loops over blocks of organisms. Work that concerns single organisms runs between and after
+//              the loops.
+// Determinism  decisions are made by ids; the order of arrays is not part of the state.
 #pragma once
 
 #include "server/base/executor.h"
@@ -26,8 +27,8 @@
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
+#include "server/simulation/perception.h"
 #include "server/simulation/placement.h"
-#include "server/simulation/sight.h"
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
@@ -41,60 +42,61 @@ class Island {
   public:
     Island(base::Seed seed, std::uint32_t index) : seed_{seed}, index_{index} {}
 
-    /// Replaces everything: fresh organisms grown from `bred`, food, poison, obstacles and crates.
+    /// Replaces everything: new organisms grown from `bred`, food, poison, obstacles and crates.
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
-    /// tick  of the generation, 1 for its first.
+    /// tick  of the generation, 1 for the first.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
     IslandShape shape() const;
     IslandState state(base::Executor& executor) const;
-    /// What is wrong with the state of an island that is like this one at its generation's beginning, after `tick`.
-    base::Result<void> judge(const IslandState& state, std::uint32_t tick) const;
-    /// Takes a state that judge() has found nothing wrong with.
+    /// Checks whether `state`, after `tick`, is possible for this island, which is at the beginning of its generation.
+    base::Result<void> check(const IslandState& state, std::uint32_t tick) const;
+    /// Sets the island to a state that check() has accepted.
     void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
 
-    /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end,
-    /// or the function of the chromosome.
+    /// Fitness of every organism, by id, at the end of tick `tick` of the generation: seconds lived + health at the
+    /// end, or the function of the chromosome.
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
-    /// What organisms [ids.begin, ids.end) would do in `tick` of the generation, if nothing reappeared before it; None
-    /// for the dead and where there are no bodies.
+    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. None for
+    /// dead organisms and on islands without bodies.
     std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                       base::Range ids) const;
 
     /// The index in bodies() of a living organism; nullopt if it is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
-    /// The same of all who were born in this generation, by id; no_body of the dead. Empty where there are no bodies.
+    /// The index in bodies() of every organism born in this generation, by id; no_body for the dead. Empty if there are
+    /// no bodies.
     std::span<const std::uint32_t> bodies_by_id() const { return body_of_; }
     static constexpr std::uint32_t no_body = ~0U;
 
-    /// How the living and the crates move and overlap; all zeros where there are no bodies.
+    /// How living organisms and crates move and overlap; all zeros if there are no bodies.
     physics::MotionReport motion_report(const parameters::Parameters& parameters) const;
 
     std::uint32_t index() const { return index_; }
     base::Seed seed() const { return seed_; }
-    /// Of everything on the island, as of the last tick.
+    /// The hash of everything on the island after the last tick.
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
     const Living& living() const { return living_; } // by body
     const physics::Circles& bodies() const {
         return bodies_;
-    }                                                      // of the living, in any order; those of the dead are void
+    }                                                      // of the living, in any order; bodies of the dead are void
     const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
     const Items& poison() const { return poison_; }
     const physics::Area& area() const { return area_; }
 
-    const evolution::NextGeneration& born() const { return born_; } // chromosomes, parents, clampings; by id
+    const evolution::NextGeneration& born() const { return born_; } // chromosomes, parents, clamped genes; by id
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
-    /// All of it but health_mean, for which everybody would have to be looked at.
+    /// All of it except health_mean, which would need a loop over all organisms.
     LiveStatistics live_counts() const;
 
   private:
@@ -103,28 +105,28 @@ class Island {
     void reorder(base::Executor& executor);
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
     void move(std::size_t block);
-    /// Returns the hash of the living.
-    base::StateHash feed_and_bury(const parameters::Parameters& parameters, std::uint32_t tick,
-                                  base::Executor& executor);
+    /// Returns the hash of the living organisms.
+    base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
+                                         base::Executor& executor);
     base::StateHash hash_of_boxes() const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
-    OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
+    OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
-    /// What came of a tick in a block of organisms.
+    /// The results of a tick in one block of organisms.
     struct Block {
-        base::StateHash hash;             // of the living
-        std::vector<std::uint32_t> dying; // bodies without health, before meals
+        base::StateHash hash;             // of the living organisms
+        std::vector<std::uint32_t> dying; // bodies with no health left, before meals
         base::StateHash food_hash_change, poison_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
     template <class OfFood, class OfPoison>
     void for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison);
     void resize_blocks(std::size_t count);
-    void feed_and_bury_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
+    void feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>
     void change_health(Block& block, std::uint32_t body, Change&& change);
     bool is_dying(std::uint32_t body) const;
-    void bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause);
+    void record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause);
 
     base::Seed seed_;
     std::uint32_t index_;
@@ -136,10 +138,10 @@ class Island {
     Living living_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
-    BoxGrid obstacles_; // those of boxes_ that do not move: where no item may lie
+    BoxGrid obstacles_; // the boxes that do not move: no item may overlap them
     std::uint32_t crate_count_ = 0;
     Items food_, poison_;
-    Sight sight_;
+    Perception perception_;
     Feeding food_feeding_, poison_feeding_;
     Fate fate_;
     IslandCounts counts_;
@@ -148,9 +150,9 @@ class Island {
     base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
     base::StateHash hash_;
 
-    std::vector<Block> blocks_; // kept warm between ticks
+    std::vector<Block> blocks_; // kept between ticks
     base::Column<std::uint32_t> spare_column_;
-    std::uint32_t renewals_ = 0; // of the near pairs, in this generation
+    std::uint32_t renewals_ = 0; // number of renewals of the near pairs in this generation
 };
 
 } // namespace evod::simulation

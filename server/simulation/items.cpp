@@ -27,7 +27,7 @@ constexpr std::size_t prefetched_ahead = 8; // items
 constexpr ItemBucket empty_bucket() {
     ItemBucket bucket{};
     for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot) {
-        bucket.x[slot] = bucket.y[slot] = physics::elsewhere;
+        bucket.x[slot] = bucket.y[slot] = physics::void_position;
     }
     return bucket;
 }
@@ -88,18 +88,18 @@ void Items::put_all(base::Executor& executor, ItemOf&& item_of) {
 
 const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const {
     if (items.size() != all_.size()) {
-        return "their number";
+        return "number of items";
     }
     const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
     for (const Item& item : items) {
-        // Clear of the walls; sight relies on no item ever lying in the corner.
+        // Items are clear of the walls; Perception relies on no item ever being in the corner.
         if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height) {
-            return "where one is";
+            return "position of an item";
         }
         const bool possible =
             rules_.respawn ? item.due_tick <= last_due && (item.due_tick > tick || resting) : item.due_tick == none;
         if (item.due_tick != 0 && !possible) {
-            return "when one is due";
+            return "due tick of an item";
         }
     }
     return nullptr;
@@ -119,7 +119,7 @@ void Items::restore(std::span<const Item> items, base::Executor& executor) {
 }
 
 void Items::choose_cells(std::uint32_t count) {
-    // About four items to a cell: few buckets overflow, and a query within the cell's side looks at four of them.
+    // About four items per cell: few buckets overflow, and a query within the cell's side reads four of them.
     const double share = 4 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
     side_ = static_cast<std::int64_t>(std::clamp(std::sqrt(share), 4096.0, 1073741824.0));
     scale_ = (std::uint64_t{1} << ItemGrid::scale_bits) / static_cast<std::uint64_t>(side_);
@@ -129,7 +129,7 @@ void Items::choose_cells(std::uint32_t count) {
     columns_ = cells(area_.width);
     rows_ = cells(area_.height);
     const std::size_t cell_count = std::size_t{rows_} * columns_;
-    // Room for what does not fit: items are spread evenly, so a tick will not need more but where obstacles crowd them.
+    // Room for overflow: items are distributed evenly, so a tick needs no more, unless obstacles crowd them.
     const std::size_t room = cell_count + cell_count / 16 + 16;
     buckets_.reserve(room + 1);
     items_.reserve(room);
@@ -141,7 +141,7 @@ void Items::choose_cells(std::uint32_t count) {
     counts_.assign(cell_count, 0);
     spare_.clear();
     spare_.reserve(room - cell_count);
-    // So many come and go in a tick, or are away, at most but where nearly all are eaten at once.
+    // Enough for the items that come and go in a tick, or are absent, unless nearly all are eaten at once.
     const std::size_t events = count / 16 + 64;
     changes_.reserve(2 * events);
     due_.reserve(events);
@@ -159,7 +159,7 @@ ItemGrid Items::grid() const {
 }
 
 void Items::insert_all(base::Executor& executor) {
-    // Whoever comes first gets the first slot; what finds no slot waits until all are done.
+    // The first item to arrive gets the first slot. An item without a slot waits until all are done.
     std::vector<std::vector<std::uint32_t>> waiting((all_.size() + items_per_block - 1) / items_per_block);
     executor.parallel_for(all_.size(), items_per_block, [&](base::Range range) {
         std::vector<std::uint32_t>& no_slot = waiting[range.begin / items_per_block];
@@ -174,7 +174,7 @@ void Items::insert_all(base::Executor& executor) {
                 continue;
             }
             const std::uint32_t cell = cell_of(item);
-            if (base::look_at(counts_[cell]) >= slots) {
+            if (base::load_shared(counts_[cell]) >= slots) {
                 no_slot.push_back(item);
                 continue;
             }
@@ -222,7 +222,7 @@ void Items::insert(std::uint32_t item, std::uint32_t cell) {
 }
 
 void Items::take_out(std::uint32_t item, std::uint32_t place) {
-    // Others that have been taken out may have moved it.
+    // Other removals may have moved the item.
     std::uint32_t holder = place / slots, slot = place % slots;
     const std::uint32_t cell = holder < std::size_t{rows_} * columns_ ? holder : cell_of(item);
     if (items_[holder][slot] != item || slot >= counts_[holder]) {
@@ -243,7 +243,7 @@ void Items::take_out(std::uint32_t item, std::uint32_t place) {
     }
     --present_count_;
 
-    // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
+    // Only the last bucket of a cell is ever partly filled: its last item fills the gap.
     std::uint32_t last = cell, before_last = none;
     while (next_[last] != none) {
         before_last = std::exchange(last, next_[last]);
@@ -252,7 +252,7 @@ void Items::take_out(std::uint32_t item, std::uint32_t place) {
     bucket(holder).x[slot] = bucket(last).x[end];
     bucket(holder).y[slot] = bucket(last).y[end];
     items_[holder][slot] = items_[last][end];
-    bucket(last).x[end] = bucket(last).y[end] = physics::elsewhere;
+    bucket(last).x[end] = bucket(last).y[end] = physics::void_position;
     if (end == 0 && before_last != none) {
         next_[before_last] = none;
         spare_.push_back(last);
@@ -281,7 +281,7 @@ void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executo
     if (due_end == due_begin_) {
         return;
     }
-    // Places and hashes side by side, then into the buckets one by one.
+    // Places and hashes in parallel, then into the buckets one by one.
     constexpr std::size_t grain = 256;
     const std::size_t count = due_end - due_begin_;
     arrivals_.resize(count);

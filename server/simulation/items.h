@@ -1,11 +1,10 @@
-// Items: the food or the poison of an island, in a uniform grid of buckets, eight items to a bucket, updated in place
+// Items: the food or the poison of an island, in a uniform grid of buckets of eight items. The grid is updated in place
 // as items come and go.
 //
-// Threads      set_due() side by side for different items; consume(), take_out() and reappear() by one caller at a
-// time;
-//              queries by any number while nothing changes.
-// Determinism  where an item reappears depends on (seed, island, generation, item, tick) alone; queries answer by
-//              distance, then id, never by the order in a bucket.
+// Threads      set_due() in parallel for different items; consume(), take_out() and reappear() by one caller at a time;
+//              queries by any number of threads while nothing changes.
+// Determinism  the place where an item reappears depends on (seed, island, generation, item, tick) alone. Queries
+//              select by distance, then by id, never by the order in a bucket.
 #pragma once
 
 #include "server/base/column.h"
@@ -24,67 +23,68 @@
 
 namespace evod::simulation {
 
-/// How items come into the world; the same for a whole generation.
+/// The rules of items of one kind, constant during a generation.
 struct ItemRules {
-    base::Purpose placement, respawn_purpose; // which draws
-    std::uint32_t kind;                       // in the state hash
+    base::Purpose placement, respawn_purpose; // purposes of the draws
+    std::uint32_t kind;                       // kind of entity in the state hash
     std::uint32_t count;
     float radius_px;
     bool respawn;
-    std::uint32_t respawn_ticks; // from being eaten to the tick that begins with it there again, >= 1
+    std::uint32_t respawn_ticks; // ticks from being eaten until the tick that begins with the item present again, >= 1
 };
 
 class Items {
   public:
     static constexpr std::uint32_t none = no_item;
 
-    /// Fresh items at uniform random places clear of walls and obstacles.
+    /// Places new items uniformly at random, clear of walls and obstacles.
     void begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
                           const physics::Area& area, const BoxGrid& obstacles, base::Executor& executor);
 
-    /// The same at the given places, shape (rules.count), with the respawn draws of island 0, generation 1.
+    /// Places new items at the given places, shape (rules.count), with the respawn draws of island 0, generation 1.
     void begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
                   base::Executor& executor);
 
     struct Item {
-        physics::Coordinate x, y; // of one that is away, where it was
-        std::uint32_t due_tick;   // 0: there; else the tick at whose beginning it reappears
+        physics::Coordinate x, y; // of an absent item: where it was
+        std::uint32_t due_tick;   // 0: present; otherwise the tick at whose beginning it reappears
         friend bool operator==(const Item&, const Item&) = default;
     };
-    /// What is wrong with all() being so after `tick` of the generation; nothing if it can be. resting: nothing
-    /// reappears any more, due or not.
+    /// Why `items` cannot be the items after `tick` of the generation; nullptr if they can. resting: no item reappears
+    /// any more, due or not.
     const char* fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const;
-    /// Makes all() so; fault_of() has found nothing.
+    /// Sets the items; fault_of() must have accepted them.
     void restore(std::span<const Item> items, base::Executor& executor);
 
-    /// Puts back what is due at the beginning of `tick`.
+    /// Puts back the items that are due at the beginning of `tick`.
     void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
 
-    /// Takes away an item that is there, during `tick`.
+    /// Removes a present item during `tick`.
     void consume(std::uint32_t item, std::uint32_t tick);
 
-    // consume() in two parts, for many items.
-    /// From when on the item is there again; side by side for different items. Returns by how much the hash changes.
+    // The two parts of consume(), for many items.
+    /// Sets when the item is present again; in parallel for different items. Returns the change of the hash.
     base::StateHash set_due(std::uint32_t item, std::uint32_t tick);
-    /// Takes it out, one item after another. place: as of when nothing had been taken out.
+    /// Removes items from the grid, one after another. place: as of before the first of them was removed.
     void take_out(std::uint32_t item, std::uint32_t place);
     void add_to_hash(const base::StateHash& change) { hash_ += change; }
-    /// Asks for the memory that take_out() needs.
+    /// Prefetches the memory that take_out() reads.
     void prefetch_place(std::uint32_t place) const {
         __builtin_prefetch(&bucket(place / slots), 1);
         __builtin_prefetch(&items_[place / slots], 1);
         __builtin_prefetch(&counts_[place / slots], 1);
         __builtin_prefetch(&next_[place / slots]);
     }
-    /// Asks for the memory that set_due() needs.
+    /// Prefetches the item that set_due() writes.
     void prefetch_item(std::uint32_t item) const { __builtin_prefetch(&all_[item], 1); }
 
-    /// Asks for the memory that a look at (x, y) needs.
+    /// Prefetches the memory that a query at (x, y) reads.
     void prefetch(physics::Coordinate x, physics::Coordinate y) const {
         __builtin_prefetch(&bucket(row_at(y) * columns_ + column_at(x)));
     }
 
-    /// The nearest item whose centre is at most `radius` px from (x, y), and how far the others are.
+    /// The nearest item whose centre is at most `radius` px from (x, y), and a lower bound on the distance of the
+    /// others.
     TwoNearest two_nearest(physics::Coordinate x, physics::Coordinate y, float radius) const {
         TwoNearest found;
         const ItemQuery query{x, y, radius};
@@ -95,7 +95,7 @@ class Items {
     std::uint32_t item_at(std::uint32_t place) const {
         return place == none ? none : items_[place / slots][place % slots];
     }
-    /// For many queries: what items_kernels() take. Valid until an item comes.
+    /// The grid for items_kernels(), for many queries. Valid until an item is added.
     ItemGrid grid() const;
 
     /// Calls found(item, its place, square of the distance) for every item whose centre is at most `radius` px from (x,
@@ -108,9 +108,9 @@ class Items {
         for (std::uint32_t row = row_at(y - reach); row <= bottom; ++row) {
             for (std::uint32_t column = column_at(x - reach); column <= right; ++column) {
                 for (std::uint32_t b = row * columns_ + column; b != none;) {
-                    // Nothing but the places is read of most buckets.
+                    // Of most buckets only the places are read.
                     const ItemBucket& places = bucket(b);
-                    for (std::uint32_t slot = 0; slot < slots && places.x[slot] != physics::elsewhere; ++slot) {
+                    for (std::uint32_t slot = 0; slot < slots && places.x[slot] != physics::void_position; ++slot) {
                         const float dx = physics::distance_px(x, places.x[slot]),
                                     dy = physics::distance_px(y, places.y[slot]);
                         const float square = dx * dx + dy * dy;
@@ -118,13 +118,13 @@ class Items {
                             found(items_[b][slot], b * slots + slot, square);
                         }
                     }
-                    b = places.x[slots - 1] == physics::elsewhere ? none : next_[b];
+                    b = places.x[slots - 1] == physics::void_position ? none : next_[b];
                 }
             }
         }
     }
 
-    /// What has come and gone since forget_changes(), in order.
+    /// The items that came and went since forget_changes(), in order.
     struct Change {
         physics::Coordinate x, y;
         bool came;
@@ -132,12 +132,12 @@ class Items {
     const std::vector<Change>& changes() const { return changes_; }
     void forget_changes() { changes_.clear(); }
 
-    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // there or not
+    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
     const base::Column<Item>& all() const { return all_; } // by id
     float radius_px() const { return rules_.radius_px; }
-    /// Of all items; kept up to date as they come and go.
+    /// The hash of all items; updated as they come and go.
     base::StateHash hash() const { return hash_; }
 
   private:
@@ -146,7 +146,7 @@ class Items {
     template <class PlaceOf>
     void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
                base::Executor& executor, PlaceOf&& place_of);
-    /// item_of: each as it is now, by id.
+    /// item_of: each item as it is now, by id.
     template <class ItemOf>
     void put_all(base::Executor& executor, ItemOf&& item_of);
     void choose_cells(std::uint32_t count);
@@ -158,7 +158,7 @@ class Items {
     }
     ItemBucket& bucket(std::uint32_t b) { return buckets_[std::size_t{b} + 1]; }
     const ItemBucket& bucket(std::uint32_t b) const { return buckets_[std::size_t{b} + 1]; }
-    /// Those that are there.
+    /// Inserts all present items.
     void insert_all(base::Executor& executor);
     void insert(std::uint32_t item, std::uint32_t cell);
     std::uint32_t cell_of(std::uint32_t item) const {
@@ -178,12 +178,13 @@ class Items {
     std::int64_t side_ = 1; // as in ItemGrid
     std::uint64_t scale_ = 0;
     std::uint32_t rows_ = 0, columns_ = 0;
-    // Buckets as in ItemGrid, after an empty one. What every query reads lies close together, apart from the rest.
+    // Buckets as in ItemGrid, after an empty one. The data that every query reads is stored together, apart from the
+    // rest.
     base::Column<ItemBucket> buckets_;
     base::Column<std::array<std::uint32_t, slots>> items_;
     base::Column<std::uint32_t> next_;
     base::Column<std::uint8_t> counts_;
-    std::vector<std::uint32_t> spare_; // buckets beyond those of cells that are empty
+    std::vector<std::uint32_t> spare_; // empty buckets, besides the first bucket of each cell
     struct Arrival {
         std::uint32_t item, cell;
     };

@@ -1,4 +1,4 @@
-// A kernel: compiled once per set of instructions; see base/lanes.h for what it may include.
+// A kernel, compiled once per set of instructions; see base/lanes.h for what it may include.
 #include "server/simulation/items_kernels.h"
 
 #include "server/base/lanes.h"
@@ -8,7 +8,7 @@ namespace evod::simulation {
 namespace {
 
 using namespace evod::base; // lanes
-using physics::elsewhere;
+using physics::void_position;
 
 constexpr float px = physics::px_per_unit, units = physics::units_per_px;
 
@@ -21,7 +21,7 @@ T greatest(T a, T b) {
     return a < b ? b : a;
 }
 
-/// to − from; wraps around for slots that are elsewhere, which are far all the same.
+/// to − from. May wrap around for empty slots, whose position is far either way.
 Floats distances(std::int32_t from, const std::int32_t* to) {
     return to_floats((Integers)(load<Words>(to) - static_cast<std::uint32_t>(from)));
 }
@@ -38,10 +38,10 @@ float least_lane(Floats v) {
     return v[0];
 }
 
-/// The two nearest of the places looked at so far. Each lane keeps the two nearest of its own slots, so that nothing
-/// branches on what is found.
+/// The two nearest places found so far. Each lane keeps the two nearest of its own slots, so that no branch depends on
+/// the result.
 ///
-/// Squares are in units until the end, which are px times a power of two: not a bit differs.
+/// Squares are in units² until the end. They equal px² times a power of two, so the bits are the same.
 class Search {
   public:
     Search(const ItemGrid& grid, std::int32_t x, std::int32_t y) : grid_{grid}, x_{x}, y_{y} {}
@@ -59,9 +59,9 @@ class Search {
 
     /// The buckets of a cell after the first.
     void look_at_overflow(std::uint32_t cell) {
-        // A look at the places, which are at hand, saves one at what follows most buckets.
+        // The places are already loaded. Testing them avoids reading next_ for most buckets.
         for (std::uint32_t b = cell;
-             grid_.buckets[static_cast<std::int32_t>(b)].x[ItemBucket::slots - 1] != elsewhere;) {
+             grid_.buckets[static_cast<std::int32_t>(b)].x[ItemBucket::slots - 1] != void_position;) {
             b = grid_.next[b];
             if (b == no_item) {
                 break;
@@ -83,7 +83,7 @@ class Search {
         }
     }
 
-    /// Of the second nearest so far, units²; greater than any there can be if there is none.
+    /// The distance of the second nearest so far, units²; greater than any possible value if there is none.
     float others_square() const {
         const float best = least_lane(best_);
         const Floats without_best = best_ == best ? all_lanes(__FLT_MAX__) : best_;
@@ -96,7 +96,7 @@ class Search {
         const float best = least_lane(best_);
         const float others = least(others_square(), within) * (px * px);
         if (best > within) {
-            return {no_item, elsewhere, elsewhere, within * (px * px), within * (px * px)};
+            return {no_item, void_position, void_position, within * (px * px), within * (px * px)};
         }
         std::uint32_t place = place_[__builtin_ctz(bits_of(best_ == best))];
         if (others * (units * units) == best) {
@@ -108,7 +108,7 @@ class Search {
     }
 
   private:
-    /// Of several items at the same distance, which is rare: all cells within it, item by item.
+    /// Several items at the same distance, which is rare: searches all cells within it, item by item.
     std::uint32_t lowest_id_at(float square, std::uint32_t place) const;
 
 #if EVOD_LANES == 8
@@ -129,7 +129,7 @@ std::int64_t cell_at(std::int64_t position, std::uint64_t scale, std::uint32_t c
 }
 
 struct Cells {
-    std::int64_t left, right, top, bottom; // all included
+    std::int64_t left, right, top, bottom; // all inclusive
 };
 
 Cells cells_within(const ItemGrid& grid, std::int32_t x, std::int32_t y, std::int64_t reach) {
@@ -146,7 +146,7 @@ std::uint32_t Search::lowest_id_at(float square, std::uint32_t place) const {
             for (std::uint32_t b = static_cast<std::uint32_t>(row) * grid_.columns + static_cast<std::uint32_t>(column);
                  b != no_item; b = grid_.next[b]) {
                 for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot) {
-                    if (grid_.buckets[b].x[slot] == elsewhere) {
+                    if (grid_.buckets[b].x[slot] == void_position) {
                         break;
                     }
                     const auto dx = static_cast<float>(grid_.buckets[b].x[slot] - x_);
@@ -168,7 +168,7 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
     const Cells cells = cells_within(grid, x, y, static_cast<std::int64_t>(radius * units) + 1);
     const std::int64_t more_columns = cells.right - cells.left, more_rows = cells.bottom - cells.top;
     if (more_columns <= 1 && more_rows <= 1) {
-        // Nearly always: four buckets, an empty one in the place of what is not needed, so that nothing branches.
+        // The usual case: four buckets, with an empty one in place of an unneeded one, so that nothing branches.
         const std::uint32_t empty = ~0u;
         const auto first =
             static_cast<std::uint32_t>(cells.top) * grid.columns + static_cast<std::uint32_t>(cells.left);
@@ -188,9 +188,9 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
         search.look_at_cells(cells.top, cells.bottom, cells.left, cells.right);
         return search.result(radius);
     }
-    // Rings of cells around the own one, until the next is further away than both nearest.
+    // Rings of cells around the first, until the next ring is further away than both nearest.
     const std::int64_t column = cell_at(x, grid.scale, grid.columns), row = cell_at(y, grid.scale, grid.rows);
-    // From (x, y) to the nearest edge of the own cell, a little less, for the rounding of cells' edges.
+    // The distance from (x, y) to the nearest edge of its cell, slightly reduced, because cell edges are rounded.
     const std::int64_t from_left = x - column * grid.side, from_top = y - row * grid.side;
     const std::int64_t to_edge =
         least(least(from_left, grid.side - from_left), least(from_top, grid.side - from_top)) - (grid.side >> 12) - 1;

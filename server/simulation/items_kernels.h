@@ -1,6 +1,6 @@
-// Items kernels: the nearest items, eight places at a time.
+// Items kernels: find the nearest items, eight places at a time.
 //
-// Determinism  compiled for two sets of instructions, with the same bits (base/instructions.h).
+// Determinism  compiled for two sets of instructions, which give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@ namespace evod::simulation {
 
 constexpr std::uint32_t no_item = ~0u;
 
-/// Places of up to eight items that lie in one cell; one cache line. Empty slots, which come last, lie elsewhere
-/// (physics/bodies.h), so that all eight can be looked at at once.
+/// The places of up to eight items of one cell, in one cache line. Empty slots come last and have void_position
+/// (physics/units.h), so that all eight can be tested at once.
 struct alignas(64) ItemBucket {
     static constexpr std::uint32_t slots = 8;
     std::int32_t x[slots], y[slots];
 };
 
-/// A uniform grid of buckets, row by row: bucket c is that of cell c; then come those that took what did not fit.
+/// A uniform grid of buckets, row by row: bucket c is the first bucket of cell c. Overflow buckets follow.
 struct ItemGrid {
     const ItemBucket* buckets;                       // the one at [-1] is empty
     const std::uint32_t (*items)[ItemBucket::slots]; // per bucket
-    const std::uint32_t* next;                       // per bucket: the next of the same cell, or no_item
+    const std::uint32_t* next;                       // per bucket: the next bucket of the same cell, or no_item
     std::uint32_t rows, columns;
     std::int64_t side;   // of a cell, units
     std::uint64_t scale; // cells per unit, times 2^scale_bits
@@ -29,28 +29,28 @@ struct ItemGrid {
 };
 
 struct TwoNearest {
-    std::uint32_t place; // bucket and slot of the nearest, times ItemBucket::slots; of equally near ones, that of the
-                         // lowest id; no_item if there is none
-    std::int32_t x, y;   // where it lies; elsewhere if there is none
-    float square;        // of its distance, px²; radius² if there is none
+    std::uint32_t place; // bucket of the nearest item · ItemBucket::slots + its slot; of equally near items, that of
+                         // the lowest id; no_item if none
+    std::int32_t x, y;   // its position; void_position if there is none
+    float square;        // its squared distance, px²; radius² if there is none
     float others_square; // no other item is nearer than this, px²; at most radius²
 };
 
-/// Of the items at most `radius` px from (x, y), a distance equal to the radius included.
+/// Searches items at most `radius` px from (x, y); a distance equal to the radius is included.
 struct ItemQuery {
     std::int32_t x, y;
     float radius;
 };
 
 struct ItemsKernels {
-    /// Asks for the memory that two_nearest() will need.
+    /// Prefetches the memory that two_nearest() reads.
     void (*prefetch)(const ItemGrid& grid, const ItemQuery* queries, std::size_t count);
-    /// Answers queries. The cost of one grows with the number of cells that have to be looked at until both nearest are
-    /// known, whatever the radius.
+    /// Answers queries. The cost grows with the number of cells that must be searched to find the two nearest items,
+    /// whatever the radius.
     void (*two_nearest)(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count);
 };
 
-/// Those for the instructions in use.
+/// The kernels for the instructions in use.
 const ItemsKernels& items_kernels();
 
 } // namespace evod::simulation

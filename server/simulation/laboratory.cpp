@@ -12,7 +12,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-/// Generations of the run that are over.
+/// Ended generations of the run.
 std::uint64_t generations_over(const World& world) {
     return world.moment().generation - (world.generation_over() ? 0 : 1);
 }
@@ -40,20 +40,20 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
     }
     return refusal(RefusalCode::FailedPrecondition,
                    std::string{"the run has ended by "} + criterion(outcome) +
-                       ": change that parameter to go on, or reset the world",
+                       ": change that parameter to continue, or reset the world",
                    base::Reason::RunEnded);
 }
 
-/// What happened in the past happens again; only how it is looked at can be changed.
+/// A replay shows events that have happened. Only the way it is viewed can be changed.
 template <class C>
-std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
+std::optional<Refusal> refusal_if_replay(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
                                           std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
     if (!changes_what_happens || !entry.replay) {
         return std::nullopt;
     }
-    return refusal(RefusalCode::FailedPrecondition,
-                   "this world shows what has been, and that cannot be changed: fork it", base::Reason::WorldIsReplay);
+    return refusal(RefusalCode::FailedPrecondition, "this world is a replay, which cannot be changed: fork it",
+                   base::Reason::WorldIsReplay);
 }
 
 std::string ids_of(const std::vector<parameters::PlannedChange>& planned) {
@@ -64,7 +64,7 @@ std::string ids_of(const std::vector<parameters::PlannedChange>& planned) {
     return ids.empty() ? "none: nothing is planned" : ids;
 }
 
-/// Why it cannot be planned; nothing if it can.
+/// Why the change cannot be planned; nullopt if it can.
 std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& command) {
     std::vector<base::Violation> violations;
     const parameters::PlannedMoment& at = *command.at;
@@ -78,13 +78,13 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
         if (const auto* description = parameters::find_parameter(assignment.name);
             description != nullptr && !parameters::can_be_scheduled(*description)) {
             violations.push_back({"set_parameters." + assignment.name,
-                                  "to be set at once, for the next reset: while the world runs it cannot change",
+                                  "no moment: it takes effect only at a reset, so set it without one",
                                   parameters::to_text(assignment.value)});
         }
     }
     if (!violations.empty()) {
         return Refusal{.code = RefusalCode::InvalidArgument,
-                       .message = "this cannot be planned",
+                       .message = "invalid planned change",
                        .violations = std::move(violations)};
     }
     if (world.planned().size() >= parameters::planned_changes_max) {
@@ -104,15 +104,15 @@ bool has_goal(const RunControl& control) {
     return control.endless || control.until_generation;
 }
 
-/// Towards its goal, if it has one.
-void go_on(RunControl& control) {
+/// Resumes the run toward its goal, if it has one.
+void resume_run(RunControl& control) {
     control.paused = control.leased = false;
     control.until_tick.reset();
 }
 
 } // namespace
 
-bool mind_goals(RunControl& control, const World& world) {
+bool remove_reached_goals(RunControl& control, const World& world) {
     bool reached = false;
     if (control.until_tick && world.moment().tick >= *control.until_tick) {
         control.until_tick.reset();
@@ -150,7 +150,7 @@ RunState Entry::state() const {
 void Laboratory::advance(Entry& entry, base::Executor& executor) {
     entry.world.advance_tick(executor);
     collect_events(entry);
-    if (mind_goals(entry.control, entry.world)) {
+    if (remove_reached_goals(entry.control, entry.world)) {
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
     }
 }
@@ -165,9 +165,9 @@ Result<Entry*> Laboratory::find(std::string_view name) {
     const auto named = [&](std::string_view wanted) {
         return std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == wanted; });
     };
-    const auto looks_back = [](const auto& entry) { return entry->is_look_back(); };
-    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(looks_back)) == 1) {
-        return std::ranges::find_if_not(entries_, looks_back)->get();
+    const auto is_other_replay = [](const auto& entry) { return entry->replays_another_world(); };
+    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(is_other_replay)) == 1) {
+        return std::ranges::find_if_not(entries_, is_other_replay)->get();
     }
     const auto found = named(name.empty() ? "default" : name);
     if (found != entries_.end()) {
@@ -179,7 +179,7 @@ Result<Entry*> Laboratory::find(std::string_view name) {
 Refusal Laboratory::not_found(std::string_view name) const {
     std::string names;
     for (const auto& entry : entries_) {
-        if (!entry->is_look_back()) {
+        if (!entry->replays_another_world()) {
             names += (names.empty() ? "" : ", ") + entry->name;
         }
     }
@@ -187,10 +187,10 @@ Refusal Laboratory::not_found(std::string_view name) const {
         return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
     }
     if (name.empty()) {
-        return refusal(RefusalCode::NotFound, "say which world: there are " + names, base::Reason::WorldNotFound);
+        return refusal(RefusalCode::NotFound, "name a world: there are " + names, base::Reason::WorldNotFound);
     }
     return Refusal{.code = RefusalCode::NotFound,
-                   .message = "there is no world of that name",
+                   .message = "no world has that name",
                    .violations = {{"world", names, std::string{name}}},
                    .reason = base::Reason::WorldNotFound};
 }
@@ -213,7 +213,7 @@ Result<Applied> Laboratory::apply(const Command& command) {
                 if (!found) {
                     return found.error();
                 }
-                if (auto refused = refusal_if_recorded(**found, c)) {
+                if (auto refused = refusal_if_replay(**found, c)) {
                     return *refused;
                 }
                 return carry_out(**found, c);
@@ -226,8 +226,8 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
     for (const auto& entry : entries_) {
         if (entry->name == name) {
             return Refusal{.code = RefusalCode::AlreadyExists,
-                           .message = "there is a world of that name already",
-                           .violations = {{"name", "a name that is free", name}},
+                           .message = "a world with that name already exists",
+                           .violations = {{"name", "an unused name", name}},
                            .reason = base::Reason::WorldExists};
         }
     }
@@ -240,7 +240,7 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
 }
 
 bool Laboratory::is_full() const {
-    return std::ranges::count_if(entries_, [](const auto& entry) { return !entry->is_look_back(); }) >=
+    return std::ranges::count_if(entries_, [](const auto& entry) { return !entry->replays_another_world(); }) >=
            static_cast<std::ptrdiff_t>(worlds_max);
 }
 
@@ -260,7 +260,7 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
     if (found == entries_.end()) {
         return not_found(command.world);
     }
-    if (auto refused = refusal_if_recorded(**found, command)) {
+    if (auto refused = refusal_if_replay(**found, command)) {
         return *refused;
     }
     const Applied applied{.world = command.world, .tick = (*found)->world.moment().tick, .parameters = {}};
@@ -272,16 +272,15 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
     const Result<parameters::Parameters> beginning = entry.world.beginning();
     if (!beginning) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "the run cannot begin with what its schedule has in generation 1 and the parameters "
-                                  "asked for: change those that are not scheduled, or create another world",
+                       .message = "the run cannot begin with the schedule's values of generation 1 and the requested "
+                                  "parameters: change the unscheduled ones, or create another world",
                        .violations = beginning.error().violations,
                        .reason = base::Reason::ResetImpossible};
     }
     if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty()) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message =
-                           "the world was given its first population, with which a run with the parameters asked "
-                           "for cannot begin: change them back, or create another world",
+                       .message = "the requested parameters do not fit the first population that the world was "
+                                  "created with: change them back, or create another world",
                        .violations = std::move(faults),
                        .reason = base::Reason::ResetImpossible};
     }
@@ -303,10 +302,10 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
     entry.control.until_generation.reset();
     if (command.generations) {
         const std::uint64_t over = generations_over(entry.world);
-        // More than the counter holds is the same as without end.
+        // A number above the counter's range means without end.
         entry.control.until_generation = over + std::min(*command.generations, ~std::uint64_t{0} - over);
     }
-    go_on(entry.control);
+    resume_run(entry.control);
     return applied_now(entry);
 }
 
@@ -317,7 +316,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
             return *refused;
         }
     }
-    // One that shows the past belongs to who opened it.
+    // A replay belongs to the client that opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased) {
         ++entry.control.lease;
@@ -332,11 +331,11 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease& command) {
     if (command.lease && *command.lease != entry.control.lease) {
-        return refusal(RefusalCode::FailedPrecondition, "the world has been stepped since, and has another lease",
+        return refusal(RefusalCode::FailedPrecondition, "the lease is outdated: the world has been stepped since",
                        base::Reason::NoLease);
     }
     if (entry.control.leased) {
-        go_on(entry.control);
+        resume_run(entry.control);
     }
     return applied_now(entry);
 }
@@ -354,10 +353,10 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
     }
     if (!has_goal(entry.control)) {
         return refusal(RefusalCode::FailedPrecondition,
-                       "there is nothing to resume: tell the world how far to run with start or run",
+                       "nothing to resume: the world has no goal; set one with start or run",
                        base::Reason::NothingToResume);
     }
-    go_on(entry.control);
+    resume_run(entry.control);
     return applied_now(entry);
 }
 
@@ -370,7 +369,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     World& world = entry.world;
     if (command.expected_revision && *command.expected_revision != world.parameters().revision) {
         return Refusal{.code = RefusalCode::Aborted,
-                       .message = "the parameters have been changed by someone else since: read them again, and set "
+                       .message = "the parameters have changed since: read them again, and set "
                                   "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}},
@@ -412,7 +411,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
     applied.planned = entry.world.cancel(command.id);
     if (!applied.planned) {
         return Refusal{.code = RefusalCode::NotFound,
-                       .message = "no change waits under that id: it was made, dropped or cancelled, or never planned",
+                       .message =
+                           "no planned change has that id: it was applied, dropped or cancelled, or never planned",
                        .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}},
                        .reason = base::Reason::PlannedChangeNotFound};
     }
@@ -422,9 +422,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
     if (command.at_generation) {
         return refusal(RefusalCode::FailedPrecondition,
-                       "how a generation began is known to the file of a run only, "
-                       "and there is none: fork the world as it is now, or "
-                       "start the server without --keep-nothing",
+                       "the beginning of a generation is stored only in a run file, and there is none: "
+                       "fork the world as it is now, or start the server without --keep-nothing",
                        base::Reason::RunsNotKept);
     }
     return fork(command, entry.world);
@@ -434,7 +433,7 @@ Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
     if (auto refused = refusal_of(command.name)) {
         return *refused;
     }
-    (void)world.take_events(); // were told of its origin
+    (void)world.take_events(); // the events of the original have already been reported
     world.become_fork();
     return add(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
 }
@@ -442,7 +441,7 @@ Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
 Applied Laboratory::add(std::unique_ptr<Entry> entry) {
     entry->storage = storage_;
     Applied applied = applied_now(*entry);
-    entries_.push_back(std::move(entry)); // last: nothing is left undone where memory does not suffice
+    entries_.push_back(std::move(entry)); // last, so that nothing needs to be undone if memory does not suffice
     return applied;
 }
 

@@ -1,8 +1,8 @@
 // Laboratory: all worlds of a server, each with its run control. Commands are applied here, between two ticks.
 //
 // Owner        the simulation thread (or `evod run`), alone.
-// Determinism  run control (goals, pause, speed) decides when a world advances, never what happens when it does; it is
-//              no part of the state hash.
+// Determinism  run control (goals, pause, speed) decides when a world advances, never what happens in a tick. It is not
+//              part of the state hash.
 #pragma once
 
 #include "server/base/executor.h"
@@ -23,106 +23,106 @@ constexpr std::size_t worlds_max = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
-/// What a world has been told to do.
+/// How long and how fast a world is to run.
 struct RunControl {
-    bool endless = false;                          // run on; excludes until_generation
+    bool endless = false;                          // run without end; excludes until_generation
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended
-    std::optional<std::uint64_t> until_tick;       // step: run until this tick, then be paused
+    std::optional<std::uint64_t> until_tick;       // step: run until this tick, then pause
     bool paused = false;
-    bool leased = false;     // paused, or stepping, only until the lease is over
-    std::uint64_t lease = 0; // number of the last one since the server started
+    bool leased = false;     // paused or stepping only until the lease ends
+    std::uint64_t lease = 0; // number of the last lease since the server started
     Speed speed = 1.0;
 };
 
-/// Takes goals away that the world has reached; one reached by ticks pauses it. Whether there was one.
-bool mind_goals(RunControl& control, const World& world);
+/// Removes the goals that the world has reached; a goal in ticks also pauses it. Returns whether there was one.
+bool remove_reached_goals(RunControl& control, const World& world);
 
-/// What there is to be seen in a world that shows what a run file tells.
+/// The extent of a replay: a world that shows the run of a run file.
 struct Replay {
-    std::string replay_of; // the world that is looked back at; empty: the run of the file has no other world here
+    std::string replay_of; // the world whose run it shows; empty: the laboratory has no world with that run
     std::uint64_t first_generation = 1, last_generation = 1;
     std::uint64_t first_tick = 0, last_tick = 0;
 };
 
-/// How it stands with writing down what worlds do.
+/// Whether the storage thread keeps up with the worlds.
 enum class StorageState {
     KeepsUp,
-    Behind,  // it is slower than worlds, which wait for it
-    Failing, // nothing can be written: commands are refused, worlds go on
+    Behind,  // storage is slower than the worlds, which wait for it
+    Failing, // nothing can be written: commands are refused, worlds continue
     Stalled, // nothing can be written: commands are refused, worlds wait
 };
 struct Storage {
     StorageState state = StorageState::KeepsUp;
-    std::string reason; // empty while it keeps up
+    std::string reason; // empty for KeepsUp
 
     bool worlds_wait() const { return state == StorageState::Behind || state == StorageState::Stalled; }
     friend bool operator==(const Storage&, const Storage&) = default;
 };
 
-/// A world in its laboratory.
+/// A world and its run control.
 struct Entry {
     std::string name;
     RunId run_id;
     RunControl control;
     World world;
-    // Measured by whoever drives the laboratory; no part of the state.
+    // Measured by the simulation loop; not part of the state.
     double ticks_per_s = 0;
-    bool slowed = false;                           // its speed is more than the machine can do
-    std::optional<Replay> replay = std::nullopt;   // nothing: the world lives. What happens in others is past
-    std::optional<Storage> storage = std::nullopt; // nothing: what it does is not written down
+    bool slowed = false;                           // the machine cannot reach the requested speed
+    std::optional<Replay> replay = std::nullopt;   // nullopt: a live world; otherwise the world is a replay
+    std::optional<Storage> storage = std::nullopt; // nullopt: the world's run is not stored
 
-    /// Whether it shows the past of another: such worlds are there for those who ask for them by name.
-    bool is_look_back() const { return replay && !replay->replay_of.empty(); }
+    /// Whether it is a replay of another world's run. Such replays are found only by their own names.
+    bool replays_another_world() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
-    /// Whether a tick is due as far as goals and pause are concerned.
+    /// Whether a tick is due according to goals and pause.
     bool wants_tick() const;
 };
 
-/// The answer to a command.
+/// The result of a command.
 struct Applied {
     std::string world;
-    std::uint64_t tick = 0;                             // from which the change holds
+    std::uint64_t tick = 0;                             // the change holds from this tick on
     std::optional<parameters::ParameterSet> parameters; // SetParameters: the complete set, or what it would be
-    // SetParameters: what waits now, or with id 0 what would; CancelChange: what waits no more.
+    // SetParameters: the planned change, with id 0 after a dry run. CancelChange: the cancelled change.
     std::optional<parameters::PlannedChange> planned = std::nullopt;
 };
 
 class Laboratory {
   public:
-    /// Applies a command now, between two ticks; a refusal has changed nothing. CreateWorld, ResetWorld and ForkWorld
-    /// throw std::bad_alloc, having changed nothing, where memory does not suffice for the new world.
+    /// Applies a command now, between two ticks. A refused command has changed nothing. CreateWorld, ResetWorld and
+    /// ForkWorld throw std::bad_alloc, with nothing changed, if memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
 
-    /// Takes in a world that comes from elsewhere; its name is free.
+    /// Adds a world that was made outside; its name must be free.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
-    /// Lets go of one that was taken in.
+    /// Removes a world that was added by adopt().
     void dismiss(std::string_view name) {
         std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
     }
-    /// Takes in a world that a fork begins with. Refused as CreateWorld is.
+    /// Adds a world as a fork. Refused in the cases in which CreateWorld is.
     base::Result<Applied> fork(const ForkWorld& command, World world);
 
-    /// Every world that lives, and every one to come, is written down, and it stands so with that. Said by whoever
-    /// drives the laboratory, for those who look at its worlds.
+    /// Sets the storage state of every live world, present and future. The simulation loop calls it, for clients that
+    /// read it.
     void set_storage(const Storage& storage);
     const std::optional<Storage>& storage() const { return storage_; }
 
-    /// Advances a world that wants a tick by one, and minds its goals.
+    /// Advances a world that wants a tick by one tick, and removes the goals that it has reached.
     void advance(Entry& entry, base::Executor& executor);
 
-    /// The world named, or for an empty name the only one, or `default`. Refused with NOT_FOUND and the names there
-    /// are.
+    /// The world of that name. An empty name means the only world, or the world `default`. Refused with NOT_FOUND and
+    /// the existing names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 
-    /// Whether there are worlds_max worlds; looks at the past are not counted.
+    /// Whether there are worlds_max worlds; replays of other worlds do not count.
     bool is_full() const;
 
     /// In order of creation.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
 
-    /// What happened since this was last called, in order.
+    /// The events since the last call, in order.
     std::vector<Event> take_events() { return std::exchange(events_, {}); }
 
   private:
@@ -139,7 +139,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
-    /// Why there can be no new world of that name; nothing if there can.
+    /// Why no world of that name can be created; nullopt if one can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;
     void collect_events(Entry& entry);

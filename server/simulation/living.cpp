@@ -7,7 +7,7 @@
 namespace evod::simulation {
 namespace {
 
-/// visit(column, what a void organism has there).
+/// visit(column, the value of a void organism).
 template <class F>
 void for_each_column(Living& living, F&& visit) {
     visit(living.health, -std::numeric_limits<float>::infinity());
@@ -18,7 +18,7 @@ void for_each_column(Living& living, F&& visit) {
     visit(living.poison_radius, 0.0f);
 }
 
-/// Health lost in a tick: the rate times 1 + the costs of the genes, never below 0.
+/// Health lost per tick: the rate times 1 + the costs of the genes, never below 0.
 float loss_per_tick(const evolution::Chromosome& genes, const parameters::Parameters& p) {
     const auto share = [&](evolution::Gene gene) { return static_cast<double>(genes(gene)) / 100; };
     const auto square = [](double x) { return x * x; };

@@ -1,14 +1,15 @@
-// The model's version: what a run file names, so that no run is repeated by rules that are not its own.
+// The model's version, which a run file names, so that a run is never repeated under different rules.
 #pragma once
 
 #include <cstdint>
 
 namespace evod::simulation {
 
-/// Rises with every change of a rule after which a run could be another one, or be stored otherwise: whenever a golden
-/// hash changes (tests/determinism/golden_test.cpp), and where no scenario of theirs shows the change.
+/// Increases with every change of a rule that can change a run or its stored form: whenever a golden hash changes
+/// (tests/determinism/golden_test.cpp), and for changes that no golden scenario shows.
 ///
-/// 3: a child's first parent is the one that gave more of its genes; islands share their places among all that send
+/// 3: a child's first parent is the parent that gave more of its genes; an island shares its places among all islands
+/// that send
 ///    migrants.
 constexpr std::uint32_t model_version = 3;
 

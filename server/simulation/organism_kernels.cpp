@@ -1,4 +1,4 @@
-// A kernel: compiled once per set of instructions; see base/lanes.h for what it may include.
+// A kernel, compiled once per set of instructions; see base/lanes.h for what it may include.
 #include "server/simulation/organism_kernels.h"
 
 #include "server/base/hash_lanes.h"
@@ -43,12 +43,12 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
     return {dx, dy, dx * dx + dy * dy};
 }
 
-/// foretold: health is not lost, and choices are told.
-template <bool foretold>
+/// predict: health is not subtracted, and the choices are returned.
+template <bool predicting>
 inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                         float* force_x, float* force_y, std::int32_t* choices) {
     for (std::size_t i = begin; i < end; i += lanes) {
-        if constexpr (!foretold) {
+        if constexpr (!predicting) {
             prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.body_radius,
                            columns.id, columns.health, columns.loss_per_tick, columns.normal_speed, columns.impulse);
             prefetch_view_ahead(i, columns.food);
@@ -72,15 +72,15 @@ inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::
 
         const Floats ahead_x = food.x - load<Floats>(columns.velocity_x + i) * rules.lookahead_s;
         const Floats ahead_y = food.y - load<Floats>(columns.velocity_y + i) * rules.lookahead_s;
-        const Floats way_x = flees ? -poison.x : ahead_x, way_y = flees ? -poison.y : ahead_y;
-        const Floats square = way_x * way_x + way_y * way_y;
+        const Floats shift_x = flees ? -poison.x : ahead_x, shift_y = flees ? -poison.y : ahead_y;
+        const Floats square = shift_x * shift_x + shift_y * shift_y;
         const Integers to_or_from = flees | sees_food, straight = to_or_from & (square != 0.0f);
         const Floats size = (to_or_from ? impulse : load<Floats>(columns.normal_speed + i)) * rules.force_per_unit;
         const Floats share = size / square_root(square);
         const Directions random = directions(words.first);
-        store(force_x + (i - begin), straight ? way_x * share : random.x * size);
-        store(force_y + (i - begin), straight ? way_y * share : random.y * size);
-        if constexpr (foretold) {
+        store(force_x + (i - begin), straight ? shift_x * share : random.x * size);
+        store(force_y + (i - begin), straight ? shift_y * share : random.y * size);
+        if constexpr (predicting) {
             store(choices + (i - begin), flees       ? all_lanes(static_cast<std::int32_t>(Choice::Flee))
                                          : sees_food ? all_lanes(static_cast<std::int32_t>(Choice::Seek))
                                                      : all_lanes(static_cast<std::int32_t>(Choice::Wander)));
@@ -93,16 +93,16 @@ void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
     choose_each<false>(columns, begin, end, rules, force_x, force_y, nullptr);
 }
 
-void foretell(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
-              float* force_x, float* force_y, std::int32_t* choices) {
+void predict(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+             float* force_x, float* force_y, std::int32_t* choices) {
     choose_each<true>(columns, begin, end, rules, force_x, force_y, choices);
 }
 
-/// Whether the items of the view may be touched.
-Integers follow_view(const ViewColumns& view, std::size_t i, Integers x, Integers y, Floats way, Floats body_radius) {
+/// Returns whether the items of the view may be touched.
+Integers follow_view(const ViewColumns& view, std::size_t i, Integers x, Integers y, Floats shift, Floats body_radius) {
     const Offset nearest = offset_to_nearest(view, i, x, y);
     Floats others = load<Floats>(view.others + i);
-    others -= way + (others * 1e-6f + 0.002f); // a little more, for all rounding of distances and places
+    others -= shift + (others * 1e-6f + 0.002f); // slightly more, to allow for rounding of distances and positions
     const Floats reach = body_radius + view.item_radius, radius = load<Floats>(view.radius + i);
     const Integers good = (others > 0.0f) & (lesser(nearest.square, radius * radius) < others * others);
     store(view.others + i, good ? others : all_lanes(-1.0f));
@@ -116,16 +116,16 @@ void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
         prefetch_view_ahead(i, columns.food);
         prefetch_view_ahead(i, columns.poison);
         const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
-        const Floats way_x = distances(load<Integers>(columns.seen_x + i), x);
-        const Floats way_y = distances(load<Integers>(columns.seen_y + i), y);
-        const Floats way = square_root(way_x * way_x + way_y * way_y);
+        const Floats shift_x = distances(load<Integers>(columns.seen_x + i), x);
+        const Floats shift_y = distances(load<Integers>(columns.seen_y + i), y);
+        const Floats shift = square_root(shift_x * shift_x + shift_y * shift_y);
         store(columns.seen_x + i, x);
         store(columns.seen_y + i, y);
         const Floats body_radius = load<Floats>(columns.body_radius + i);
-        if (const unsigned bits = bits_of(follow_view(columns.food, i, x, y, way, body_radius)); bits != 0) {
+        if (const unsigned bits = bits_of(follow_view(columns.food, i, x, y, shift, body_radius)); bits != 0) {
             append(at_food, i, bits);
         }
-        if (const unsigned bits = bits_of(follow_view(columns.poison, i, x, y, way, body_radius)); bits != 0) {
+        if (const unsigned bits = bits_of(follow_view(columns.poison, i, x, y, shift, body_radius)); bits != 0) {
             append(at_poison, i, bits);
         }
     }
@@ -150,6 +150,6 @@ HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t b
 } // namespace
 
 extern const OrganismKernels EVOD_KERNEL(organism_kernels);
-const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, foretell, follow, hash};
+const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, predict, follow, hash};
 
 } // namespace evod::simulation

@@ -1,6 +1,7 @@
-// Organism kernels: what every organism does in every tick, several organisms at once.
+// Organism kernels: the steps of every tick for several organisms at once.
 //
-// Determinism  per organism; compiled for two sets of instructions, with the same bits (base/instructions.h).
+// Determinism  each organism is independent; compiled for two sets of instructions, which give the same bits
+//              (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -8,15 +9,15 @@
 
 namespace evod::simulation {
 
-/// What organisms know of the items of one kind; see Sight.
+/// What organisms perceive of the items of one kind; see Perception.
 struct ViewColumns {
     float* others;       // px
     std::int32_t *x, *y; // of the nearest item
-    const float* radius; // px; how far organisms see
+    const float* radius; // px; how far organisms perceive
     float item_radius;   // px
 };
 
-/// Columns by body index, padded to whole lanes; of void bodies too (physics::Circles).
+/// Columns by body index, padded to full vectors, void bodies included (physics::Circles).
 struct OrganismColumns {
     const std::int32_t *x, *y;
     const float *velocity_x, *velocity_y;
@@ -24,7 +25,7 @@ struct OrganismColumns {
     const std::uint32_t* id;
     float* health; // −infinity for void bodies
     const float *loss_per_tick, *normal_speed, *impulse;
-    std::int32_t *seen_x, *seen_y; // where the organism was when its views were last brought up to date
+    std::int32_t *seen_x, *seen_y; // where the organism was when its views were last updated
     ViewColumns food, poison;
 };
 
@@ -36,13 +37,13 @@ struct ChoiceRules {
     std::uint32_t pair_counter, pair_key; // of base::RandomKey, for the tick
 };
 
-/// Indices found in a range, in rising order; room for as many as the range holds.
+/// Indices found in a range, in ascending order; has room for the whole range.
 struct FoundIndices {
     std::uint32_t* indices;
     std::size_t count = 0;
 };
 
-/// What an organism does in a tick; the numbers are those of the protocol.
+/// What an organism does in a tick. The numbers are those of the protocol.
 enum class Choice : std::uint8_t { None, Wander, Seek, Flee };
 
 struct HashWords {
@@ -50,28 +51,29 @@ struct HashWords {
 };
 
 struct OrganismKernels {
-    // begin is a multiple of physics::lanes_max; up to lanes_max − 1 void bodies beyond `end` are gone through too.
+    // begin is a multiple of physics::lanes_max. Up to lanes_max − 1 void bodies beyond `end` are processed too.
 
-    /// Those whose view is not good any more: others < 0.
+    /// Finds the organisms whose view is stale: others < 0.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
-    /// The loss of health that living costs; then the choice, from views that are good: see behaviour.h.
+    /// Subtracts the health that a tick costs; then chooses forces from current views: see behaviour.h.
     /// force_x, force_y  of the organisms from `begin` on, padded; kg px/s².
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                    float* force_x, float* force_y);
-    /// The same choice without the loss, and which it was: nothing is changed.
-    /// choices  as the forces; a Choice each.
-    void (*foretell)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
-                     float* force_x, float* force_y, std::int32_t* choices);
-    /// Brings views up to date with where the organisms now are: their `others` become less by the way since, and −1
-    /// where the nearest item may be another. Finds who may touch items: all that do, and others.
+    /// Makes the same choice without the loss of health, and reports which choice it was. Changes nothing else.
+    /// choices  like the forces; a Choice each.
+    void (*predict)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+                    float* force_x, float* force_y, std::int32_t* choices);
+    /// Updates views to the present positions of the organisms: their `others` shrink by the distance moved, and become
+    /// −1 if another item may now be the nearest. Finds the organisms that may touch items: all that do, and some
+    /// others.
     void (*follow)(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
                    FoundIndices& at_poison);
-    /// The sum of base::hash_of() of the living, and those of them whose health is at most 0.
+    /// The sum of base::hash_of() of the living organisms, and those of them whose health is at most 0.
     HashWords (*hash)(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                       FoundIndices& dying);
 };
 
-/// Those for the instructions in use.
+/// The kernels for the instructions in use.
 const OrganismKernels& organism_kernels();
 
 } // namespace evod::simulation

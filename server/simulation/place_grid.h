@@ -1,11 +1,12 @@
-// PlaceGrid: what has been put down on an island, in square cells, so that asking what is near a place costs the same
-// however much there is.
+// PlaceGrid: the bodies already placed on an island, in square cells, so that a search near a place costs the same
+// however many there are.
 //
-// A cell is one cache line, and a place asks few of them, so that a caller with many places to try can fetch the lines
-// of all of them before it asks for the first.
+// A cell is one cache line, and a search reads few cells. A caller with many places to try can therefore prefetch the
+// cells of all of them before the first search.
 //
-// Threads      queries by any number while nothing is added.
-// Determinism  a query is whether anything fulfils a condition, so neither cells nor the order in them show.
+// Threads      any number of searches while nothing is added.
+// Determinism  a search returns whether any body fulfils a condition, so neither the cells nor their order affect the
+//              result.
 #pragma once
 
 #include "server/physics/bodies.h"
@@ -23,13 +24,13 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  is kept beside the place of each thing: 4 or 8 bytes that say how large it is.
+/// What  stored with the place of each body: 4 or 8 bytes that describe its size.
 template <class What>
 class PlaceGrid {
   public:
     PlaceGrid() = default;
 
-    /// expected_count  how many things will be put down; five to two cells.
+    /// expected_count  the number of bodies to be placed; there are about five per two cells.
     PlaceGrid(const physics::Area& area, std::size_t expected_count) {
         const double width = std::max(area.width, 1), height = std::max(area.height, 1);
         const double cells = std::max(static_cast<double>(expected_count) / 2.5, 1.0);
@@ -57,9 +58,9 @@ class PlaceGrid {
         ++count_;
     }
 
-    /// Whether condition(place, what) holds for anything whose centre is at most `reach` units from `place` along both
-    /// axes; it may be asked of things further away too, and must not hold for one of size 0 that is far away. The cell
-    /// of `place` itself is asked first: where it is crowded, that is where the answer most often lies.
+    /// Whether condition(place, what) is true for any body whose centre is at most `reach` units from `place` along
+    /// both axes. The condition may also be called for bodies further away, and must be false for a body of size 0 that
+    /// is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
     template <class Condition>
     bool any_near(Place place, physics::Coordinate reach, const Condition& condition) const {
         const Window window = window_of(place, reach);
@@ -78,7 +79,7 @@ class PlaceGrid {
         return false;
     }
 
-    /// Has the cells fetched that any_near would ask.
+    /// Prefetches the cells that any_near would search.
     void prefetch(Place place, physics::Coordinate reach) const {
         const Window window = window_of(place, reach);
         for (std::uint32_t row = window.top; row <= window.bottom; ++row) {
@@ -89,7 +90,7 @@ class PlaceGrid {
     }
 
   private:
-    // Where empty slots pretend to be: so far beyond the wall that no radius reaches them, so near that no difference
+    // The position of empty slots: so far beyond the wall that no radius reaches them, and so near that no difference
     // from a place on an island leaves 32 bits.
     static constexpr physics::Coordinate nowhere = -(1 << 26);
     struct Thing {
@@ -98,12 +99,12 @@ class PlaceGrid {
     };
     static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(Thing);
     struct alignas(64) Cell {
-        std::array<Thing, slots> things; // those that are there first
-        std::uint32_t next = 0;          // the cell that took what did not fit; 0: none
+        std::array<Thing, slots> things; // used slots come first
+        std::uint32_t next = 0;          // the overflow cell; 0: none
     };
     static_assert(sizeof(Cell) == 64);
 
-    /// The stripes into which one side of the area is cut.
+    /// The stripes that one side of the area is divided into.
     struct Stripes {
         std::uint32_t count = 1;
         physics::Coordinate length = 0;
@@ -115,14 +116,14 @@ class PlaceGrid {
         }
     };
     struct Window {
-        std::uint32_t left, right, top, bottom; // all included
+        std::uint32_t left, right, top, bottom; // all inclusive
     };
     Window window_of(Place place, physics::Coordinate reach) const {
         return {columns_.at(place.x - reach), columns_.at(place.x + reach), rows_.at(place.y - reach),
                 rows_.at(place.y + reach)};
     }
 
-    // All slots of a cell are asked, as a branch for each would be mispredicted too often.
+    // Tests all slots of a cell, because a branch for each would be mispredicted too often.
     template <class Condition>
     bool any_in(std::size_t cell, const Condition& condition) const {
         do {
@@ -139,7 +140,7 @@ class PlaceGrid {
     }
 
     Stripes columns_, rows_;
-    std::vector<Cell> cells_; // row by row; then those that took what did not fit
+    std::vector<Cell> cells_; // row by row; then the overflow cells
     std::size_t count_ = 0;
 };
 

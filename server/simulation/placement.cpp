@@ -12,7 +12,7 @@ namespace {
 using physics::Boxes;
 using physics::Coordinate;
 
-// Room is checked before a set of parameters is accepted, so that running out of tries means a defect.
+// A set of parameters is accepted only if there is room, so running out of attempts means a defect.
 constexpr int tries_max = 1'000'000;
 
 /// Uniform in margin … size − margin.
@@ -26,13 +26,13 @@ Place uniform_place(base::RandomStream& random, Coordinate margin, const physics
     return {x, uniform_coordinate(random, margin, area.height)};
 }
 
-/// How far from a place, along either axis, the centres of things may lie that touch one of `half_size_px` there. A few
-/// units more than that, as tests of shapes round.
+/// How far from a place, along either axis, the centres of bodies can be that touch a body of `half_size_px` there. A
+/// few units are added, because shape tests round.
 Coordinate reach_of(float half_size_px, float widest_px) {
     return physics::to_units(half_size_px + widest_px) + 2;
 }
 
-/// Circles already placed; the grid keeps their radii.
+/// Circles already placed; the grid stores their radii.
 class PlacedCircles {
   public:
     PlacedCircles(const std::vector<float>& radius, const physics::Area& area)
@@ -44,7 +44,7 @@ class PlacedCircles {
     bool clear(Place place, float radius) const {
         return grid_.empty() ||
                !grid_.any_near(place, reach_of(radius, widest_px_), [&](Place other, float other_radius) {
-                   // physics::circle_circle without depth and normal, for which nobody asks here.
+                   // physics::circle_circle without depth and normal, which are not needed here.
                    const float dx = physics::distance_px(other.x, place.x), dy = physics::distance_px(other.y, place.y);
                    const float touch = other_radius + radius;
                    return dx * dx + dy * dy <= touch * touch;
@@ -58,13 +58,13 @@ class PlacedCircles {
     float widest_px_;
 };
 
-// So many circles look for a place side by side, each clear of those before the batch, that few of them get into each
-// other's way. Batches are no part of the law.
+// This many circles search for a place in parallel, each clear of those before the batch. So few of them seldom collide
+// with each other. The size of batches does not affect the result.
 constexpr std::size_t batch_circles_min = 2048, batches = 64;
 constexpr std::size_t circles_per_piece = 256;
 constexpr std::size_t prefetched_ahead = 8;
 
-/// An organism's attempts, as far as they have been made.
+/// The attempts of an organism so far.
 struct Attempts {
     base::RandomStream random;
     Place last{};
@@ -157,7 +157,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
 
     for (std::size_t first = 0; first < count; first += batch_size) {
         const std::size_t batch = std::min(batch_size, count - first);
-        // What was placed stays there: an attempt that fails now would fail later too.
+        // Placed bodies stay there: an attempt that fails now would fail later too.
         executor.parallel_for(batch, circles_per_piece, [&](base::Range piece) {
             std::vector<std::size_t> looking(piece.end - piece.begin);
             std::iota(looking.begin(), looking.end(), piece.begin);
@@ -173,7 +173,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
                 std::erase_if(looking, [&](std::size_t i) { return succeeds(attempts[i], first + i); });
             }
         });
-        // Those of the batch that stand in a later one's way are all that is left to mind.
+        // Only conflicts with earlier organisms of the batch remain to be checked.
         for (std::size_t i = 0; i < batch; ++i) {
             const std::size_t id = first + i;
             if (i + prefetched_ahead < batch) {

@@ -1,7 +1,7 @@
-// Placement: uniform random places on an island that are clear of what must not be overlapped.
+// Placement: uniform random places on an island that do not overlap obstacles or bodies already placed.
 //
-// Determinism  a place depends on the stream handed over and on what is already there; organisms are placed in order of
-//              id, each at the first of its attempts that is clear of those before it, however many threads look.
+// Determinism  a place depends on the given stream and on the bodies already there. Organisms are placed in order of
+//              id, each at the first of its attempts that is clear of those before it, whatever the number of threads.
 #pragma once
 
 #include "server/base/executor.h"
@@ -14,13 +14,13 @@
 
 namespace evod::simulation {
 
-/// Boxes, to be asked whether a place is clear of them; costs the same for one box and for a thousand.
+/// Boxes in a grid, which tests whether a place is clear of them. The cost does not depend on the number of boxes.
 class BoxGrid {
   public:
     /// No boxes.
     BoxGrid() = default;
     BoxGrid(const physics::Area& area, std::size_t expected_count) : grid_{area, expected_count} {}
-    /// Those of `boxes`, where they are now.
+    /// The boxes at their present positions.
     BoxGrid(const physics::Area& area, const physics::Boxes& boxes);
 
     void add(Place place, float half_width_px, float half_height_px);
@@ -39,8 +39,8 @@ class BoxGrid {
 /// A uniform random place for a circle, inside the walls and clear of `boxes`.
 Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
 
-/// Adds obstacles, then crates clear of obstacles and of each other. The obstacles of a run stay where they are from
-/// generation to generation; crates start afresh.
+/// Adds obstacles, then crates clear of obstacles and of each other. The obstacles of a run stay in place from
+/// generation to generation; crates are placed again.
 struct BoxRules {
     std::uint32_t obstacle_count, crate_count;
     float obstacle_half_size_px, crate_half_size_px;
@@ -54,7 +54,8 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 
 /// Uniform random places for circles, one after another, clear of walls, `boxes` and each other.
 ///
-/// radius_px  shape (count). Room must have been checked: together at most 0.4 of the area (parameters.h, validate).
+/// radius_px  shape (count). The caller has checked that there is room: together at most 0.4 of the area (parameters.h,
+///            validate).
 /// returns    shape (count).
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,

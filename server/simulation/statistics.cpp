@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t organisms_per_block = 8192;
 
-/// Sums of the fitness and of each gene; first of the values, then of the squares of their differences from the mean.
+/// Sums of the fitness and of each gene: first of the values, then of the squared differences from the mean.
 struct Sums {
     double fitness = 0;
     std::array<double, evolution::gene_count> genes{};
@@ -40,13 +40,13 @@ struct Extremes {
     std::array<float, evolution::gene_count> gene_min, gene_max;
 };
 
-/// One population, gone through block by block.
+/// One population, processed block by block.
 struct Population {
     std::span<const double> fitness;
     const evolution::GeneMatrix& genes;
     base::Executor& executor;
 
-    /// What `of_block(range)` says of each block, in order.
+    /// The results of `of_block(range)`, in order of blocks.
     template <class Result, class OfBlock>
     std::vector<Result> each_block(const OfBlock& of_block) const {
         std::vector<Result> results((fitness.size() + organisms_per_block - 1) / organisms_per_block);
@@ -98,7 +98,7 @@ struct Population {
         Extremes all = blocks.front();
         for (const Extremes& e : blocks) {
             if (fitness[e.best_organism] > fitness[all.best_organism]) {
-                all.best_organism = e.best_organism; // the first of equals stays
+                all.best_organism = e.best_organism; // of equals, the first stays
             }
             all.worst = std::min(all.worst, e.worst);
             for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
@@ -163,8 +163,8 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
 }
 
 double mean_health(std::span<const float> health, std::uint32_t alive_count) {
-    // In whole numbers, so that the sum does not depend on the order of bodies; what is behind the point is summed
-    // apart, so that no health that can be reached overflows either sum.
+    // In integers, so that the sum does not depend on the order of bodies. The fractional part is summed separately, so
+    // that no reachable health overflows either sum.
     constexpr double parts = 1 << 16;
     std::int64_t whole = 0, rest = 0;
     for (const float of_one : health) {

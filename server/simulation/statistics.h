@@ -1,4 +1,4 @@
-// Statistics: what a generation came to on an island, and how an island is doing now.
+// Statistics: the results of a generation on an island, and the present state of an island.
 //
 // Determinism  sums are taken by id, over blocks of fixed size, whose sums are added in order.
 #pragma once
@@ -33,20 +33,21 @@ struct GenerationStatistics {
     double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene of zero width counts 0
     std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
     std::uint64_t food_eaten = 0, poison_eaten = 0;
-    std::uint64_t clamp_count = 0;       // genes put back to a bound when the generation was bred
+    std::uint64_t clamp_count = 0;       // genes that were clamped when the generation was bred
     std::uint64_t too_fast_count = 0;    // body-ticks that moved more than the body's radius
-    std::uint64_t speed_limit_count = 0; // times max_speed_px_s acted
+    std::uint64_t speed_limit_count = 0; // number of times that max_speed_px_s limited a speed
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;
-    // How the genes of this generation came from those of the one before. None in the first, and where nobody knows
-    // any more; it is known from the generation's beginning on, so a checkpoint does not have it.
+    // How the genes of this generation developed from those of the previous one. nullopt in the first generation, and
+    // if the previous one is not available. It is known from the generation's beginning on, so a checkpoint does not
+    // contain it.
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number but those of the account, in the order in which files have them as
-/// columns; those of the account come after them.
+/// Calls visit(name, value) for every number except those of the account, in the order of columns in files. The columns
+/// of the account follow them.
 ///
-/// Statistics  GenerationStatistics, or the same and const.
+/// Statistics  GenerationStatistics, or const GenerationStatistics.
 template <class Statistics, class Visit>
 void for_each_number(Statistics&& s, Visit&& visit) {
     visit("generation", s.generation);
@@ -80,7 +81,7 @@ void for_each_number(Statistics&& s, Visit&& visit) {
 
 class Island;
 
-/// What the generation that has just ended came to. fitness: shape (organisms), by id.
+/// The statistics of the generation that has just ended. fitness: shape (organisms), by id.
 GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
                                            std::span<const double> fitness, base::Executor& executor);
 
@@ -91,7 +92,7 @@ struct LiveStatistics {
     std::uint32_t starved_count = 0, poisoned_count = 0;
 };
 
-/// LiveStatistics::health_mean. health: in any order, −infinity for what is void; alive_count: how many are not.
+/// LiveStatistics::health_mean. health: in any order, −infinity for void bodies; alive_count: the number of others.
 double mean_health(std::span<const float> health, std::uint32_t alive_count);
 
 } // namespace evod::simulation

@@ -46,9 +46,9 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     EVOD_ASSERT(founders_.empty() || founders_.size() == islands_.size());
 }
 
-World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_since) const {
+World World::at_its_opening(base::Executor& executor, bool keep_requests) const {
     Opening opening = opening_;
-    if (with_what_was_asked_since && moment_.generation_tick == 0) {
+    if (keep_requests && moment_.generation_tick == 0) {
         opening.parameters = parameters_;
     }
     std::vector<evolution::NextGeneration> born;
@@ -97,7 +97,7 @@ void World::begin_run() {
                                        : evolution::initial_population(p.population_size, p, seed_, island);
         first.push_back(std::move(born));
     }
-    base::InlineExecutor executor; // a run is begun between two ticks, where none is at hand
+    base::InlineExecutor executor; // a run begins between two ticks, where no executor is available
     begin_generation(std::move(first), executor);
 }
 
@@ -157,7 +157,7 @@ std::vector<Intention> World::intentions(const Island& island, base::Range ids) 
     if (generation_over_) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
-    std::optional<parameters::Parameters> first; // as they are once the generation's first tick is taken
+    std::optional<parameters::Parameters> first; // as they will be in the generation's first tick
     if (moment_.generation_tick == 0) {
         first = parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
@@ -198,30 +198,30 @@ bool World::is_to_come(const parameters::PlannedMoment& moment) const {
     return moment.generation ? *moment.generation > moment_.generation : *moment.tick > moment_.tick;
 }
 
-void World::forget_what_was_due() {
+void World::drop_due_changes() {
     std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_to_come(change.at); });
 }
 
-void World::make_planned_for(std::uint64_t generation) {
+void World::apply_planned_for(std::uint64_t generation) {
     if (const auto scheduled = schedule_.at(generation); !scheduled.empty()) {
-        make_planned(scheduled, parameters::request_at_generation(parameters_, scheduled), 0, {});
+        apply_planned(scheduled, parameters::request_at_generation(parameters_, scheduled), 0, {});
     }
     const auto is_due = [&](const parameters::PlannedChange& change) { return change.at.generation == generation; };
     for (const parameters::PlannedChange& change : planned_) {
         if (is_due(change)) {
-            make_planned(change.assignments, parameters::request_at_generation(parameters_, change.assignments),
-                         change.id, change.by);
+            apply_planned(change.assignments, parameters::request_at_generation(parameters_, change.assignments),
+                          change.id, change.by);
         }
     }
     std::erase_if(planned_, is_due);
 }
 
-void World::make_planned_now() {
+void World::apply_planned_now() {
     const auto is_due = [&](const parameters::PlannedChange& change) { return change.at.tick == moment_.tick; };
     for (const parameters::PlannedChange& change : planned_) {
         if (is_due(change)) {
-            make_planned(change.assignments, parameters::request_of(parameters_, change.assignments), change.id,
-                         change.by);
+            apply_planned(change.assignments, parameters::request_of(parameters_, change.assignments), change.id,
+                          change.by);
             parameters_.active =
                 parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
         }
@@ -229,9 +229,9 @@ void World::make_planned_now() {
     std::erase_if(planned_, is_due);
 }
 
-void World::make_planned(std::span<const parameters::Assignment> changes,
-                         const base::Result<parameters::Parameters>& requested, std::uint64_t id,
-                         const std::string& by) {
+void World::apply_planned(std::span<const parameters::Assignment> changes,
+                          const base::Result<parameters::Parameters>& requested, std::uint64_t id,
+                          const std::string& by) {
     std::vector<std::string> names;
     for (const parameters::Assignment& change : changes) {
         names.push_back(change.name);
@@ -251,7 +251,7 @@ void World::turn_over(base::Executor& executor) {
     if (!generation_over_) {
         return;
     }
-    make_planned_for(moment_.generation + 1);
+    apply_planned_for(moment_.generation + 1);
     parameters_.active = parameters::breeding_with(parameters_.active, parameters_.requested);
     const parameters::Parameters& p = parameters_.active;
     const auto key_of = [&](std::size_t island) -> evolution::BreedingKey {
@@ -302,7 +302,7 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
     }
     evolution::migrate(migrants, populations);
     if (!founders_.empty()) {
-        std::vector<std::uint32_t> of_migrants; // all leave before anybody arrives
+        std::vector<std::uint32_t> of_migrants; // all emigrants are copied before any arrives
         of_migrants.reserve(migrants.size());
         for (const evolution::Migrant& migrant : migrants) {
             of_migrants.push_back(founders_[migrant.from][migrant.organism]);
@@ -338,7 +338,7 @@ void World::advance_tick(base::Executor& executor) {
     if (!has_bodies()) {
         end_generation(executor);
         update_hash();
-        make_planned_now();
+        apply_planned_now();
         return;
     }
 
@@ -348,7 +348,7 @@ void World::advance_tick(base::Executor& executor) {
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (islands_[i].alive_count() == 0) {
-                continue; // an island that has died out waits
+                continue; // an island without living organisms waits
             }
             islands_[i].advance_tick(p, tick, executor);
             died_out_[i] = islands_[i].alive_count() == 0;
@@ -364,7 +364,7 @@ void World::advance_tick(base::Executor& executor) {
     if (ends(moment_.generation_tick, alive)) {
         end_generation(executor);
     }
-    make_planned_now();
+    apply_planned_now();
 }
 
 bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
@@ -372,7 +372,7 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     if (generation_tick == 0) {
         return false;
     }
-    // Half a tick of slack, so that 40 s are 2,400 sixtieths however they are rounded.
+    // Half a tick of slack, so that 40 s are 2,400 sixtieths despite rounding.
     return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
 }
 
@@ -438,7 +438,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     EVOD_ASSERT(moment_.generation_tick == 0);
     const auto wrong = [](const char* what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = std::string{"no world of this generation can be so: "} + what,
+                             .message = std::string{"impossible state in this generation: "} + what,
                              .violations = {}};
     };
     const Moment& moment = state.moment;
@@ -446,41 +446,41 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
         moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
         moment.simulated_s < moment_.simulated_s) {
-        return wrong("its moment");
+        return wrong("moment");
     }
-    // What takes effect with a generation is as it was when this one began.
+    // Parameters that take effect with a generation are as they were when this one began.
     if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
         !parameters::validate(set.active).empty() ||
         !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
              .empty()) {
-        return wrong("its parameters");
+        return wrong("parameters");
     }
     if (state.islands.size() != islands_.size()) {
-        return wrong("the number of its islands");
+        return wrong("number of islands");
     }
-    // No tick after the last.
+    // No tick follows the last one.
     if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
-        return wrong("its moment");
+        return wrong("moment");
     }
     const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
     std::uint64_t alive = 0;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
-        if (auto judged = islands_[i].judge(state.islands[i], tick); !judged) {
-            return judged;
+        if (auto checked = islands_[i].check(state.islands[i], tick); !checked) {
+            return checked;
         }
         if (tick == 0 && !(state.islands[i] == islands_[i].state(executor))) {
-            return wrong("its beginning");
+            return wrong("beginning of the generation");
         }
         alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
     }
     const bool over = ends(tick, alive);
     if (state.ended.size() != (over ? islands_.size() : 0)) {
-        return wrong("whether it is over");
+        return wrong("end of the generation");
     }
     for (std::size_t i = 0; i < state.ended.size(); ++i) {
         if (state.ended[i].generation != moment.generation || state.ended[i].island != i ||
             !std::isfinite(state.ended[i].fitness_best)) {
-            return wrong("its statistics");
+            return wrong("statistics");
         }
     }
 
@@ -495,7 +495,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         find_fitness(executor);
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {
-            ended[i].account = islands_[i].born().account; // follows from the beginning
+            ended[i].account = islands_[i].born().account; // can be derived from the beginning
         }
         close_generation(ended);
     }

@@ -1,4 +1,4 @@
-// World names: what a world may be called, wherever a name is read.
+// World names: which names a world may have, wherever a name is read.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,10 @@
-// World state: a world within a generation, as far as it does not follow from how that generation began: what is laid
-// over a world that stands at the beginning to have it go on from there, bit for bit.
+// World state: a world within a generation, without the parts that follow from the generation's beginning. Applied to a
+// world at that beginning, it lets the world continue bit for bit.
 //
-// Left out is what follows (bodies, boxes, sizes, chromosomes: from seed, parameters and who was born), and what is
-// known only so that it need not be looked for again (near pairs, views of items, the order in memory).
+// It omits data that can be derived (bodies, boxes, sizes, chromosomes: from seed, parameters and the bred organisms),
+// and caches (near pairs, views of items, the order in memory).
 //
-// Determinism  columns are by id, so that equal worlds have equal states, whatever was done to them before.
+// Determinism  columns are by id, so that equal worlds have equal states, whatever happened before.
 #pragma once
 
 #include "server/base/column.h"
@@ -28,7 +28,7 @@ struct Moment {
     friend bool operator==(const Moment&, const Moment&) = default;
 };
 
-/// Numbers of the generation that do not follow from Fate.
+/// Counters of the generation that cannot be derived from Fate.
 struct IslandCounts {
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
@@ -37,10 +37,10 @@ struct IslandCounts {
     friend bool operator==(const IslandCounts&, const IslandCounts&) = default;
 };
 
-/// How many of each kind an island has; with it goes the shape of its state.
+/// The number of entities of each kind on an island. It determines the shape of the island's state.
 struct IslandShape {
     std::uint32_t organisms = 0; // that were born
-    bool has_bodies = true;      // else there is nothing of the rest
+    bool has_bodies = true;      // if false, the other parts are empty
     std::uint32_t crates = 0, food = 0, poison = 0;
 
     friend bool operator==(const IslandShape&, const IslandShape&) = default;
@@ -60,7 +60,7 @@ struct IslandState {
     };
     Fate fate;
     IslandCounts counts;
-    base::Column<Organism> organisms; // all zeros for the dead; none where there are no bodies
+    base::Column<Organism> organisms; // all zeros for dead organisms; empty if there are no bodies
     std::vector<Crate> crates;
     base::Column<Items::Item> food, poison;
 
@@ -71,7 +71,7 @@ struct WorldState {
     Moment moment;
     parameters::ParameterSet parameters;
     std::vector<IslandState> islands;
-    std::vector<GenerationStatistics> ended; // once the generation is over: one per island
+    std::vector<GenerationStatistics> ended; // at the end of the generation: one per island
 };
 
 } // namespace evod::simulation

@@ -44,9 +44,18 @@ enum Phase : std::size_t {
     WholeTick,
     phase_count
 };
-constexpr std::array<const char*, phase_count> phase_names = {
-    "near pairs",       "items reappear", "notice changes",   "look", "choose",        "accelerate and find contacts",
-    "resolve contacts", "move",           "follow and touch", "hash", "feed and bury", "whole tick"};
+constexpr std::array<const char*, phase_count> phase_names = {"near pairs",
+                                                              "items reappear",
+                                                              "notice changes",
+                                                              "look",
+                                                              "choose",
+                                                              "accelerate and find contacts",
+                                                              "resolve contacts",
+                                                              "move",
+                                                              "follow and touch",
+                                                              "hash",
+                                                              "feed and record_death",
+                                                              "whole tick"};
 
 constexpr std::uint32_t warm_up_ticks = 60, measured_ticks = 60; // as in workload_bench
 
@@ -87,8 +96,8 @@ class OpenIsland {
         , alive_count_{start.alive_count()} {
         body_of_.resize(bodies_.size());
         fate_.begin_generation(bodies_.size());
-        sight_.begin(bodies_, living_, food_, poison_);
-        stepper_.near().forget();
+        perception_.begin(bodies_, living_, food_, poison_);
+        stepper_.near().invalidate();
     }
 
     base::StateHash hash() const { return hash_; }
@@ -97,15 +106,15 @@ class OpenIsland {
         ++tick_;
         times.organism_ticks += alive_count_;
         Laps laps{times};
-        if (stepper_.near().worn(bodies_, boxes_)) {
+        if (stepper_.near().stale(bodies_, boxes_)) {
             renew_near_pairs();
         }
         laps.lap(NearPairsRenewed);
         food_.reappear(tick_, {}, executor_);
         poison_.reappear(tick_, {}, executor_);
         laps.lap(ItemsReappear);
-        sight_.notice_food(bodies_, stepper_.near(), living_, food_, executor_);
-        sight_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor_);
+        perception_.notice_food(bodies_, stepper_.near(), living_, food_, executor_);
+        perception_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor_);
         laps.lap(ChangesNoticed);
 
         const BehaviourRules rules{.flee_rule = parameters_.flee_rule,
@@ -133,13 +142,13 @@ class OpenIsland {
         }
         stepper_.finish(boxes_);
         laps.lap(Move);
-        feed_and_bury(block_count);
+        feed_and_remove_dead(block_count);
         hash_ += born_hash_ + food_.hash() + poison_.hash();
         laps.lap(FeedAndBury);
     }
 
   private:
-    OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
+    OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
     void renew_near_pairs() {
         physics::NearPairs& near = stepper_.near();
@@ -148,7 +157,7 @@ class OpenIsland {
             const physics::Reordering reordering{near.strips().order(), spare_column_, executor_};
             bodies_.reorder(reordering);
             living_.reorder(reordering);
-            sight_.reorder(reordering);
+            perception_.reorder(reordering);
             near.follow_reordering(bodies_, executor_);
             for (std::size_t i = 0; i < bodies_.size(); ++i) {
                 body_of_[bodies_.id[i]] = static_cast<std::uint32_t>(i);
@@ -159,7 +168,7 @@ class OpenIsland {
 
     void act(const BehaviourRules& rules, std::size_t block, Laps& laps) {
         const base::Range range = physics::circles_of_block(bodies_.size(), block);
-        sight_.look(bodies_, living_, food_, poison_, range);
+        perception_.search(bodies_, living_, food_, poison_, range);
         laps.lap(Look);
         ChosenForces forces;
         live_and_choose(columns(), rules, key_, tick_, range, forces);
@@ -186,7 +195,7 @@ class OpenIsland {
         laps.lap(Hash);
     }
 
-    void feed_and_bury(std::size_t block_count) {
+    void feed_and_remove_dead(std::size_t block_count) {
         food_feeding_.award();
         poison_feeding_.award();
         for (std::size_t block = 0; block < block_count; ++block) {
@@ -249,7 +258,7 @@ class OpenIsland {
         hash_ -= hash_of_organism(bodies_, living_, body);
         body_of_[id] = ~0u;
         bodies_.remove(body);
-        sight_.remove(body);
+        perception_.remove(body);
         stepper_.near().remove(body);
         living_.health[body] = -std::numeric_limits<float>::infinity();
         --alive_count_;
@@ -264,7 +273,7 @@ class OpenIsland {
     Living living_;
     Items food_, poison_;
     base::RandomKey key_;
-    Sight sight_;
+    Perception perception_;
     physics::Stepper stepper_;
     Feeding food_feeding_, poison_feeding_;
     Fate fate_;

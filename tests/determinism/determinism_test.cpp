@@ -1,4 +1,4 @@
-// Equal (parameters, seed, commands) give equal bits after every tick, whatever works on them and whoever looks on.
+// Equal (parameters, seed, commands) give equal bits after every tick, on any number of threads and with any observers.
 
 #include "server/base/inline_executor.h"
 #include "tests/determinism/scenarios.h"
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, SameStateOnAnyThreadCount,
 class AnyScenario : public testing::TestWithParam<Scenario> {};
 INSTANTIATE_TEST_SUITE_P(All, AnyScenario, testing::ValuesIn(all()), testing::PrintToStringParamName());
 
-TEST_P(AnyScenario, WithTheSameSeedGivesTheSameHashesAndWithAnotherNone) {
+TEST_P(AnyScenario, HasTheSameHashesOnlyWithTheSameSeed) {
     const Scenario& scenario = GetParam();
     Play first{scenario}, again{scenario}, other{scenario, base::Seed{scenario.seed.value + (1ull << 32)}};
     base::InlineExecutor executor;
@@ -62,7 +62,7 @@ TEST_P(AnyScenario, ChangesItsHashWithEveryTick) {
     }
 }
 
-TEST_P(AnyScenario, DoesNotDependOnWhoLooksOn) {
+TEST_P(AnyScenario, DoesNotDependOnObservers) {
     const Scenario& scenario = GetParam();
     Play alone{scenario}, watched{scenario};
     base::InlineExecutor executor;
@@ -119,7 +119,7 @@ TEST(AWorld, DoesNotDependOnTheOthersOfItsLaboratory) {
 TEST_P(AnyScenario, ResetGivesTheFirstRunsHashesAgain) {
     const Scenario& scenario = GetParam();
     if (!scenario.changes.empty()) {
-        return; // a reset keeps the parameters last asked for
+        return; // a reset keeps the requested parameters
     }
     Play fresh{scenario}, used{scenario};
     base::InlineExecutor executor;

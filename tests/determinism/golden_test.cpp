@@ -1,6 +1,6 @@
-// Golden hashes: the state of every scenario after its last tick, equal for every compiler and optimisation.
+// Golden hashes: the state of every scenario after its last tick, equal for every compiler and optimisation level.
 //
-// They change only on purpose: with a change of the model, whose commit says so.
+// They change only with a deliberate change of the model; the commit gives the reason.
 
 #include "server/base/inline_executor.h"
 #include "server/base/instructions.h"
@@ -62,7 +62,7 @@ TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) {
     EXPECT_EQ(golden_hashes.size(), all().size());
 }
 
-TEST(TheScenarios, UseWhatTheyAreFor) {
+TEST(TheScenarios, UseTheFeaturesTheyAreNamedAfter) {
     base::InlineExecutor executor;
     std::uint64_t limited = 0, deaths = 0, poisoned = 0, clamped = 0, generations = 0, extinct = 0;
     for (const Scenario& scenario : all()) {

@@ -29,7 +29,7 @@ const std::vector<Scenario>& all() {
          700,
          {}},
 
-        {"dense_backward_euler", // organisms touch all the time, at another tick length
+        {"dense_backward_euler", // organisms touch all the time; another tick length
          R"({"integrator": "backward_euler", "population_size": 160, "island_width_px": 960, "island_height_px": 660,
              "damping": 0.98, "restitution": 1, "tick_s": 0.025, "food_count": 60, "poison_count": 60,
              "crate_count": 5, "generation_s": 6, "selection": "truncation", "max_speed_px_s": 60})",
@@ -77,8 +77,7 @@ const std::vector<Scenario>& all() {
          150,
          {}},
 
-        {"twenty_thousand", // one island is cut into pieces: every loop of a tick, meals, deaths and the order in
-                            // memory
+        {"twenty_thousand", // one island is divided: every loop of a tick, meals, deaths and the order in memory
          R"({"population_size": 20000, "scale_with_population": true, "reference_population": 50, "generation_s": 0.75,
              "item_radius_px": 20, "food_count": 100, "poison_harm": 100, "base_health_min": 20, "crate_count": 40,
              "health_loss_per_s": 60})",
@@ -86,14 +85,14 @@ const std::vector<Scenario>& all() {
          75,
          {}},
 
-        {"far_corner", // coordinates near the greatest there are
+        {"far_corner", // coordinates near the maximum
          R"({"island_width_px": 500000, "island_height_px": 500000, "population_size": 400, "food_count": 3000,
              "poison_count": 3000, "generation_s": 2})",
          base::Seed{50},
          200,
          {}},
 
-        {"rastrigin", // a generation is a tick
+        {"rastrigin", // a generation is one tick
          R"({"fitness": "rastrigin", "population_size": 2500, "island_count": 3, "migration": "ring",
              "fitness_scaling": "exponential_ranking", "creep": "gaussian", "mutation_step": 4,
              "rearranging": "swap", "reset_chance": 0.01, "bit_flip_chance": 0.01, "crossover": "multi_point",
@@ -102,7 +101,7 @@ const std::vector<Scenario>& all() {
          40,
          {}},
 
-        {"shuffled_fitness", // decides who stays, breeds, migrates and makes room
+        {"shuffled_fitness", // decides which organisms survive, breed, migrate and are replaced
          R"({"island_count": 3, "population_size": 30, "generation_s": 2, "shuffle_fitness": true, "elite_count": 2,
              "migration": "ring", "migration_epoch": 1, "migrant_count": 2, "selection": "tournament"})",
          base::Seed{53},
@@ -141,7 +140,7 @@ void Play::advance(base::Executor& executor) {
         if (change.tick != entry.world.moment().tick + 1) {
             continue;
         }
-        // What the text names is what is assigned, whatever value it has by default.
+        // Assigns the parameters that the text names, even those with their default value.
         std::vector<parameters::Assignment> assignments;
         const parameters::Parameters values = parameters_of(change.parameters);
         for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {

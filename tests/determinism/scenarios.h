@@ -1,6 +1,6 @@
-// Scenarios: worlds that between them use everything the model has, with the commands given while they run.
+// Scenarios: worlds that together use every feature of the model, with the commands given while they run.
 //
-// Determinism  a scenario is data: equal runs of it give equal hashes after every tick.
+// Determinism  a scenario is data: repeated runs give equal hashes after every tick.
 #pragma once
 
 #include "server/simulation/laboratory.h"
@@ -12,7 +12,7 @@
 
 namespace evod::scenarios {
 
-/// Assignments given before the tick with this number is taken; tick 1 is the first of a run.
+/// Assignments made before the tick with this number; tick 1 is the first of a run.
 struct Change {
     std::uint64_t tick;
     std::string_view parameters; // as in an experiment file
@@ -30,16 +30,16 @@ void PrintTo(const Scenario& scenario, std::ostream* out); // for the names of t
 
 const std::vector<Scenario>& all();
 
-/// The parameters of a text as in an experiment file; the text must be right.
+/// Parses parameters as in an experiment file; the text must be valid.
 parameters::Parameters parameters_of(std::string_view experiment);
 
-/// A scenario under way, as the only world of a laboratory.
+/// A running scenario, as the only world of a laboratory.
 class Play {
   public:
     explicit Play(const Scenario& scenario) : Play{scenario, scenario.seed} {}
     Play(const Scenario& scenario, base::Seed seed);
 
-    /// One tick, with the commands that come before it.
+    /// Performs one tick, after the commands that precede it.
     void advance(base::Executor& executor);
 
     const simulation::World& world() const { return laboratory_.entries().front()->world; }

@@ -1,4 +1,4 @@
-// Pearson's chi-square test, for tests that check the law of an operator.
+// Pearson's chi-square test, for tests that check the distribution of an operator's results.
 #pragma once
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -11,7 +11,7 @@ namespace evod::support {
 
 constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail a statistical test
 
-/// Σ (observed − expected)² / expected; `expected` are counts > 0 of the same total as `observed`.
+/// Σ (observed − expected)² / expected. `expected` are counts > 0 with the same total as `observed`.
 inline double chi_square(std::span<const std::uint64_t> observed, std::span<const double> expected) {
     double sum = 0;
     for (std::size_t i = 0; i < observed.size(); ++i) {
@@ -21,13 +21,13 @@ inline double chi_square(std::span<const std::uint64_t> observed, std::span<cons
     return sum;
 }
 
-/// The chance that a correct program gives a statistic at least as large.
+/// The probability that a correct program gives a statistic at least this large.
 inline double p_value(double statistic, std::size_t degrees_of_freedom) {
     return boost::math::cdf(
         boost::math::complement(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)), statistic));
 }
 
-/// The same for cells that are all equally likely.
+/// The same for equally likely cells.
 inline double p_value_of_equal_cells(std::span<const std::uint64_t> observed) {
     std::uint64_t total = 0;
     for (const std::uint64_t count : observed) {

@@ -254,7 +254,7 @@ class Check(Folder):
             '{\n "food_count": -3}': "food_count (line 2): got -3",
             '{\n "seed": 1.5}': "seed (line 2): got 1.5E0",
             '{\n "food_count": [3]}': "food_count (line 2): got [3]",
-            "[1]": "a JSON object of parameters is needed",
+            "[1]": "expected a JSON object of parameters",
             '{"body_size_min": 300}': "body_size_max (line 1): got 200, allowed at least body_size_min (300)",
             '{"population_size": 100000}': "population_size (line 1)",
         }.items():

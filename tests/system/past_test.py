@@ -161,7 +161,7 @@ class OpenReplay(Case):
         for request in ({"set_parameters": plain.set_parameters(past, food_health=3.0)},
                         {"reset_world": c.ResetWorld(world=past)}, {"delete_world": c.DeleteWorld(world=past)}):
             refused = viewer.call(c.CODE_FAILED_PRECONDITION, **request)
-            self.assertIn("what has been", refused.status.message)
+            self.assertIn("is a replay", refused.status.message)
         viewer.call(c.CODE_FAILED_PRECONDITION, seek=c.Seek(world="w", to=at(tick=1)))
         viewer.call(c.CODE_INVALID_ARGUMENT, seek=c.Seek(world=past))
         viewer.call(c.CODE_INVALID_ARGUMENT, close_replay=c.CloseReplay())

@@ -54,7 +54,7 @@ class ResourceLimits(unittest.TestCase):
             self.allow_memory(server, 100 << 20)
             refused = client.call(2, **self.crowd("crowd", 4_000_000))
             self.assertEqual(refused.status.code, RESOURCE_EXHAUSTED, refused)
-            self.assertIn("there is not enough memory for that", refused.status.message)
+            self.assertIn("not enough memory: nothing was changed", refused.status.message)
             self.assertIsNone(client.world("crowd"))
             now = client.world()
             self.assertEqual((now.tick, now.state_hash), (before.tick, before.state_hash))

@@ -209,7 +209,7 @@ class Planned(access.Access):
         reported = self.evoctl("changes", server=server)
         self.assertRegex(reported, r"^change 1, from .*\nchange 2, after tick 9: food_health=3 food_count=1, by .*\n$")
         self.assertIn("cancelled: change 1,", self.evoctl("cancel", "1", server=server))
-        self.assertIn("no change waits", self.evoctl("cancel", "1", server=server, status=1))
+        self.assertIn("no planned change has that id", self.evoctl("cancel", "1", server=server, status=1))
         self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server, status=2))
 
 

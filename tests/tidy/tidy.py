@@ -122,7 +122,7 @@ def torn_comments(path, text):
     if path.suffix not in (".cpp", ".h"):
         return
     for number, line in enumerate(text.splitlines(), 1):
-        if re.match(r"\s*//.*\S\s(Owner|Threads|Determinism|Source)\s{2,}\S", line):
+        if re.match(r"\s*//+\s*[^\s/].*\s(Owner|Threads|Determinism|Source)\s{2,}\S", line):
             yield path, number, "a comment block is torn: begin Owner, Threads, Determinism and Source on a line of their own"
 
 

@@ -28,7 +28,7 @@ class Error(Exception):
     ...         lab.world().set(mutation_chance=1.5, survivors=-1)
     ...     except evod.Error as error:
     ...         print(error)
-    INVALID_ARGUMENT: some parameters cannot have these values
+    INVALID_ARGUMENT: invalid parameter values
       set_parameters.mutation_chance: got 1.5, allowed 0 to 1
       set_parameters.survivors: got -1, allowed 0 to 1
     """

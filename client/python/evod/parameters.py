@@ -166,7 +166,7 @@ class Registry(Mapping[str, Description]):
                 made.append(world_pb2.ParameterAssignment(name=name, value=message))
         if violations:
             raise Error(
-                "some parameters cannot have these values", commands_pb2.CODE_INVALID_ARGUMENT, violations
+                "invalid parameter values", commands_pb2.CODE_INVALID_ARGUMENT, violations
             )
         return made
 
@@ -207,7 +207,7 @@ class Registry(Mapping[str, Description]):
         except Error as error:
             raise Error(error.message, error.code, [*error.violations, *violations]) from None
         if violations:
-            raise Error("some parameters cannot have these values", commands_pb2.CODE_INVALID_ARGUMENT, violations)
+            raise Error("invalid parameter values", commands_pb2.CODE_INVALID_ARGUMENT, violations)
         return assignments, later
 
     def _allowed_instead_of(self, name: str) -> str:

@@ -1,5 +1,5 @@
-// Kernels compute lane for lane what the functions for one entity do. Four lanes here; that eight give the same is
-// shown by the golden hashes, which hold for both.
+// Kernels compute in every lane what the functions for one entity compute. Tested with four lanes; the golden hashes,
+// which hold for four and eight lanes, show that eight give the same.
 #include "server/base/elementary.h"
 #include "server/base/hash_lanes.h"
 #include "server/base/random.h"
@@ -21,7 +21,7 @@ Words some_words(RandomStream& random) {
     return words;
 }
 
-TEST(Lanes, DrawWhatSingleDrawsGive) {
+TEST(Lanes, DrawsEqualSingleDraws) {
     RandomStream random{RandomKey{Seed{1}, Purpose::ScenarioTest, 0, 0}, 0};
     for (int trial = 0; trial < 2000; ++trial) {
         const RandomKey key{Seed{random.long_word()}, Purpose::Behaviour, 3, 7};
@@ -41,7 +41,7 @@ TEST(Lanes, DrawWhatSingleDrawsGive) {
     }
 }
 
-TEST(Lanes, FindTheDirectionsOfQuartersAndTheirNeighbours) {
+TEST(Lanes, DirectionsNearQuarterTurnsEqualSingleOnes) {
     for (std::uint32_t eighth = 0; eighth < 8; ++eighth) {
         for (const std::int32_t step : {-1, 0, 1}) {
             const std::uint32_t word = (eighth << 29) + static_cast<std::uint32_t>(step);
@@ -52,7 +52,7 @@ TEST(Lanes, FindTheDirectionsOfQuartersAndTheirNeighbours) {
     }
 }
 
-TEST(Lanes, SumTheHashesOfThoseThatCount) {
+TEST(Lanes, HashSumsIncludeOnlyUsedLanes) {
     RandomStream random{RandomKey{Seed{2}, Purpose::ScenarioTest, 0, 0}, 0};
     HashSums sums;
     StateHash expected;
@@ -72,7 +72,7 @@ TEST(Lanes, SumTheHashesOfThoseThatCount) {
     }
 }
 
-TEST(Lanes, RoundHalvesToEvenAndTakeExactRoots) {
+TEST(Lanes, RoundHalvesToEvenAndRootsAreExact) {
     const Floats values{0.5f, 1.5f, -2.5f, 1234567.5f};
     const Integers rounded = round_to_integers(values);
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -24,7 +24,7 @@ struct Vector {
     r123::Philox4x32::ctr_type result;
 };
 
-TEST(Philox, GivesThePublishedVectors) { // the known-answer tests of Random123, philox4x32 with 10 rounds
+TEST(Philox, GivesThePublishedVectors) { // known-answer tests of Random123: philox4x32 with 10 rounds
     const Vector vectors[] = {
         {{{0, 0, 0, 0}}, {{0, 0}}, {{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}}},
         {{{0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}},
@@ -65,7 +65,7 @@ TEST(RandomStream, BelowIsUniform) {
 }
 
 TEST(RandomStream, BelowHasNoBiasForBoundsNearTheWordSize) {
-    // With bound 3·2^30 the plain product would give every third value twice as often.
+    // With a bound of 3·2^30 a plain product would give every third value twice as often.
     RandomStream random = stream(12);
     std::vector<std::uint64_t> counts(3);
     for (int i = 0; i < 300'000; ++i) {
@@ -118,7 +118,7 @@ TEST(RandomStream, ShuffleGivesEveryOrderEquallyOften) {
 }
 
 TEST(Pair, IsPhilox2x32WithTenRounds) {
-    // Known answers of the generator's authors for counter and key of zeros, of ones, and of digits of π.
+    // Known answers of the generator's authors for counter and key of all zeros, all ones, and digits of π.
     const auto out = [](std::uint32_t c0, std::uint32_t c1, std::uint32_t key) {
         const auto words = r123::Philox2x32{}({{c0, c1}}, {{key}});
         return std::array<std::uint32_t, 2>{words[0], words[1]};

@@ -22,13 +22,13 @@ TEST(StateHash, DoesNotDependOnTheOrderOfEntities) {
     EXPECT_EQ(forward, backward);
 }
 
-TEST(StateHash, TellsApartWhoHasWhichFields) {
+TEST(StateHash, DependsOnWhichEntityHasWhichFields) {
     EXPECT_NE(entity(1, 1, 10) + entity(1, 2, 20), entity(1, 1, 20) + entity(1, 2, 10));
     EXPECT_NE(entity(1, 1, 10), entity(2, 1, 10));
     EXPECT_NE(entity(1, 1, 0.0f), entity(1, 1, -0.0f));
 }
 
-TEST(StateHash, AnEntityCanBeTakenOutAgain) {
+TEST(StateHash, AnEntityCanBeSubtracted) {
     StateHash hash = entity(1, 1, 10) + entity(1, 2, 20);
     hash -= entity(1, 2, 20);
     EXPECT_EQ(hash, entity(1, 1, 10));
@@ -76,8 +76,8 @@ TEST(HashOfWords, ChangesNearlyHalfOfItsBitsWithAnyBitOfAnyField) {
     }
 }
 
-TEST(HashOfWords, DiffersForAMillionEntitiesThatAreNearlyAlike) {
-    // As organisms are: small ids, fields that are often 0 or equal to each other's.
+TEST(HashOfWords, DiffersForAMillionSimilarEntities) {
+    // Similar to organisms: small ids, and fields that are often 0 or equal to those of others.
     std::set<std::uint64_t> low, high;
     for (std::uint32_t i = 0; i < 1'000'000; ++i) {
         const StateHash hash =
@@ -89,7 +89,7 @@ TEST(HashOfWords, DiffersForAMillionEntitiesThatAreNearlyAlike) {
     EXPECT_EQ(high.size(), 1'000'000u);
 }
 
-TEST(HashOfWords, TellsApartWhoHasWhichFields) {
+TEST(HashOfWords, DependsOnWhichEntityHasWhichFields) {
     RandomStream random{RandomKey{Seed{2}, Purpose::ScenarioTest, 0, 0}, 0};
     for (int trial = 0; trial < 10'000; ++trial) {
         HashedWords first = some_words(random), second = some_words(random);

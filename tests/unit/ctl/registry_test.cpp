@@ -122,7 +122,7 @@ TEST(ExperimentFile, MayHaveValuesByGeneration) {
     *at_reset.add_parameters() = parameter("island_count", v1::PARAMETER_KIND_COUNT, 1, 9);
     at_reset.mutable_parameters(0)->set_effect(v1::PARAMETER_EFFECT_RESET);
     EXPECT_THAT(parse_experiment(R"({"island_count": {"2": 3}})", Registry{at_reset}).error().lines,
-                ElementsAre(HasSubstr("can only change when a world is reset")));
+                ElementsAre(HasSubstr("it can change only at a reset")));
 }
 
 TEST(ExperimentFile, ErrorsAreNamed) {

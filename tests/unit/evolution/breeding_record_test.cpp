@@ -19,7 +19,7 @@ namespace {
 
 constexpr WantedRows all_rows{.count_max = ~0u};
 
-/// What went into a breeding, and what came of it.
+/// The input and the result of a breeding.
 struct Case {
     std::vector<double> fitness;
     GeneMatrix genes;
@@ -34,7 +34,7 @@ struct Case {
         , key{.seed = base::Seed{seed}, .island = 3, .generation = 7} {
         base::RandomStream random = stream_of(seed);
         for (std::uint32_t i = 0; i < present; ++i) {
-            fitness.push_back(random.below(100) / 4.0 - 5); // with ties, and some of it negative
+            fitness.push_back(random.below(100) / 4.0 - 5); // with ties and negative values
         }
     }
     NextGeneration next() const {
@@ -47,16 +47,17 @@ struct Case {
     }
 };
 
-/// The genes of a descendant, made of those of its parents by what the record tells and nothing else.
-std::array<float, gene_count> made_of(const BreedingRecord::Descendant& told) {
+/// The genes of a descendant, computed from its parents' genes and the record alone.
+std::array<float, gene_count> made_of(const BreedingRecord::Descendant& descendant) {
     std::array<float, gene_count> mixed{}, genes{};
     for (unsigned gene = 0; gene < gene_count; ++gene) {
-        mixed[gene] = (told.from_second >> gene & 1) != 0 ? told.second_genes[gene] : told.first_genes[gene];
+        mixed[gene] =
+            (descendant.from_second >> gene & 1) != 0 ? descendant.second_genes[gene] : descendant.first_genes[gene];
     }
     for (unsigned gene = 0; gene < gene_count; ++gene) {
-        genes[gene] = mixed[told.order ? (*told.order)[gene] : gene];
+        genes[gene] = mixed[descendant.order ? (*descendant.order)[gene] : gene];
     }
-    for (const GeneChange& change : told.changes) {
+    for (const GeneChange& change : descendant.changes) {
         EXPECT_EQ(genes[change.gene], change.before);
         genes[change.gene] = change.after;
     }
@@ -65,7 +66,7 @@ std::array<float, gene_count> made_of(const BreedingRecord::Descendant& told) {
 
 class EveryChoice : public testing::TestWithParam<StageChoice> {};
 
-TEST_P(EveryChoice, HasTheDescendantsOfTheNextGenerationBitForBit) {
+TEST_P(EveryChoice, RecordsTheNextGenerationBitForBit) {
     for (const auto& [present, wanted] :
          {std::pair{1u, 1u}, {1u, 4u}, {2u, 3u}, {7u, 20u}, {150u, 150u}, {301u, 40u}}) {
         const Case bred{GetParam(), present, wanted, 881 + present};
@@ -77,21 +78,21 @@ TEST_P(EveryChoice, HasTheDescendantsOfTheNextGenerationBitForBit) {
         ASSERT_EQ(record.descendants.size(), wanted);
         std::uint64_t clamped = 0;
         for (std::uint32_t id = 0; id < wanted; ++id) {
-            const auto& told = record.descendants[id];
-            ASSERT_EQ(told.id, id);
-            ASSERT_EQ(told.parents, next.parents[id]);
-            ASSERT_TRUE((told.first_genes == bred.genes.col(told.parents.first)).all());
-            ASSERT_TRUE((told.second_genes == bred.genes.col(told.parents.second)).all());
-            ASSERT_TRUE(std::ranges::equal(told.genes, column(next.genes, id))) << "descendant " << id;
-            ASSERT_TRUE(std::ranges::equal(made_of(told), column(next.genes, id))) << "descendant " << id;
-            clamped +=
-                static_cast<std::uint64_t>(std::ranges::count(told.changes, ChangeKind::Clamp, &GeneChange::kind));
+            const auto& descendant = record.descendants[id];
+            ASSERT_EQ(descendant.id, id);
+            ASSERT_EQ(descendant.parents, next.parents[id]);
+            ASSERT_TRUE((descendant.first_genes == bred.genes.col(descendant.parents.first)).all());
+            ASSERT_TRUE((descendant.second_genes == bred.genes.col(descendant.parents.second)).all());
+            ASSERT_TRUE(std::ranges::equal(descendant.genes, column(next.genes, id))) << "descendant " << id;
+            ASSERT_TRUE(std::ranges::equal(made_of(descendant), column(next.genes, id))) << "descendant " << id;
+            clamped += static_cast<std::uint64_t>(
+                std::ranges::count(descendant.changes, ChangeKind::Clamp, &GeneChange::kind));
         }
         EXPECT_EQ(clamped, next.clamped_count);
     }
 }
 
-TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
+TEST_P(EveryChoice, RecordsThePicksAndTheirOrigin) {
     const Case bred{GetParam(), 150, 130, 882};
     const BreedingRecord record = bred.record();
     const Parameters& p = bred.parameters;
@@ -105,7 +106,7 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         ASSERT_EQ(pick.turns.has_value(), wheel);
         ASSERT_EQ(pick.tournament.has_value(), p.selection == SelectionMethod::Tournament);
         if (wheel) {
-            // Places on the wheel are products there and quotients here, so they may differ by a rounding.
+            // Positions on the wheel are products there and quotients here, so they may differ by rounding.
             ASSERT_GE(*pick.turns, contender.slot_begin - 1e-12);
             ASSERT_LE(*pick.turns, contender.slot_end + 1e-12);
         }
@@ -134,16 +135,16 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         }
     }
     EXPECT_NEAR(expected, record.pick_count, 1e-6);
-    // All that bred were picked, or were kept for being among the best.
-    for (const auto& told : record.descendants) {
-        if (told.id >= record.places.elite && p.population_model == PopulationModel::Hybrid) {
+    // All parents were picked, or survived as the best.
+    for (const auto& descendant : record.descendants) {
+        if (descendant.id >= record.places.elite && p.population_model == PopulationModel::Hybrid) {
             const auto was_elite = [&](std::uint32_t organism) {
                 return record.contenders[organism].rank < record.places.elite;
             };
-            EXPECT_TRUE(copies[told.parents.first] > 0 || was_elite(told.parents.first));
-            EXPECT_TRUE(copies[told.parents.second] > 0 || was_elite(told.parents.second));
-        } else if (told.id >= record.places.survivors) {
-            EXPECT_TRUE(copies[told.parents.first] > 0 && copies[told.parents.second] > 0);
+            EXPECT_TRUE(copies[descendant.parents.first] > 0 || was_elite(descendant.parents.first));
+            EXPECT_TRUE(copies[descendant.parents.second] > 0 || was_elite(descendant.parents.second));
+        } else if (descendant.id >= record.places.survivors) {
+            EXPECT_TRUE(copies[descendant.parents.first] > 0 && copies[descendant.parents.second] > 0);
         }
     }
 }
@@ -155,15 +156,15 @@ INSTANTIATE_TEST_SUITE_P(BreedingRecord, EveryChoice, testing::ValuesIn(stage_ch
     return name;
 });
 
-TEST(BreedingRecord, OfGenesOutsideTheirBoundsTellsOfTheEliteToo) {
+TEST(BreedingRecord, ContainsTheClampedGenesOfTheElite) {
     StageChoice choice;
     choice.elite_count = 3;
-    choice.impulse_max = 90; // those of the population go up to 120
+    choice.impulse_max = 90; // those of the population reach 120
     const Case bred{choice, 40, 40, 883};
     const BreedingRecord record = bred.record();
-    const auto clamps =
-        std::accumulate(record.descendants.begin(), record.descendants.begin() + record.places.survivors,
-                        std::size_t{0}, [](std::size_t sum, const auto& told) { return sum + told.changes.size(); });
+    const auto clamps = std::accumulate(
+        record.descendants.begin(), record.descendants.begin() + record.places.survivors, std::size_t{0},
+        [](std::size_t sum, const auto& descendant) { return sum + descendant.changes.size(); });
     EXPECT_GT(clamps, 0u);
     for (std::uint32_t id = 0; id < record.places.survivors; ++id) {
         for (const GeneChange& change : record.descendants[id].changes) {
@@ -174,7 +175,7 @@ TEST(BreedingRecord, OfGenesOutsideTheirBoundsTellsOfTheEliteToo) {
     }
 }
 
-RC_GTEST_PROP(BreedingRecord, APartIsThatPartOfTheWhole, ()) {
+RC_GTEST_PROP(BreedingRecord, OfSomeRowsEqualsThatPartOfTheWhole, ()) {
     const auto choices = stage_choices();
     const Parameters choice = *rc::gen::elementOf(choices);
     const auto present = *rc::gen::inRange(1u, 60u), wanted = *rc::gen::inRange(1u, 60u);
@@ -201,14 +202,14 @@ RC_GTEST_PROP(BreedingRecord, APartIsThatPartOfTheWhole, ()) {
         RC_ASSERT(part.picks[i].contestants == whole.picks[rows.first_pick + i].contestants);
     }
     for (std::size_t i = 0; i < part.descendants.size(); ++i) {
-        const auto &told = part.descendants[i], &of_whole = whole.descendants[rows.first_descendant + i];
-        RC_ASSERT(told.id == of_whole.id);
-        RC_ASSERT(told.parents == of_whole.parents);
-        RC_ASSERT(told.from_second == of_whole.from_second);
-        RC_ASSERT(told.crossed == of_whole.crossed);
-        RC_ASSERT(told.order == of_whole.order);
-        RC_ASSERT(told.changes == of_whole.changes);
-        RC_ASSERT((told.genes == of_whole.genes).all());
+        const auto &descendant = part.descendants[i], &of_whole = whole.descendants[rows.first_descendant + i];
+        RC_ASSERT(descendant.id == of_whole.id);
+        RC_ASSERT(descendant.parents == of_whole.parents);
+        RC_ASSERT(descendant.from_second == of_whole.from_second);
+        RC_ASSERT(descendant.crossed == of_whole.crossed);
+        RC_ASSERT(descendant.order == of_whole.order);
+        RC_ASSERT(descendant.changes == of_whole.changes);
+        RC_ASSERT((descendant.genes == of_whole.genes).all());
     }
 }
 
@@ -238,8 +239,9 @@ TEST(SelectionLaw, OfASingleWinnerIsTheClosedForm) {
 }
 
 TEST(SelectionLaw, IsTheMeanOfManySelections) {
-    // Copies of each organism over many selections against the law: chi-square over the organisms. Picks of one
-    // selection exclude each other where nobody is drawn twice, which makes the statistic smaller, never larger.
+    // Compares the copies of each organism over many selections with the law: chi-square over the organisms. If no
+    // organism can be drawn twice, the picks of one selection exclude each other, which makes the statistic smaller,
+    // never larger.
     constexpr std::uint32_t population = 12, rounds = 4000;
     for (const StageChoice& choice : stage_choices()) {
         if (choice.selection == SelectionMethod::Truncation) {
@@ -268,7 +270,7 @@ TEST(SelectionLaw, IsTheMeanOfManySelections) {
     }
 }
 
-TEST(SelectionLaw, OfTournamentsWithSeveralWinnersAddsUpAtAnySize) {
+TEST(SelectionLaw, OfSeveralWinnersAddsUpForAnyTournamentSize) {
     for (const bool replacement : {true, false}) {
         for (const std::uint32_t size : {5u, 64u, 1000u, 1'000'000u}) {
             for (const std::uint32_t winners : {1u, 3u, size / 2}) {

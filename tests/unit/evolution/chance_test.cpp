@@ -7,7 +7,7 @@
 namespace evod::evolution {
 namespace {
 
-TEST(Chance, EveryPatternOfThreeBitsIsAsLikelyAsIndependenceSays) {
+TEST(Chance, BitsAreIndependent) {
     // Law: p^k (1−p)^(3−k) for a pattern of k ones. Chi-square over 8 patterns, 7 degrees of freedom.
     for (const double p : {0.15, 0.5, 0.9, 1.0 / 3}) {
         const Chance chance{p};
@@ -41,7 +41,7 @@ TEST(Chance, SmallProbabilitiesAreKept) {
     EXPECT_GT(p_value_of_law(counts, std::vector{1 - 1e-4, 1e-4}), alpha);
 }
 
-TEST(Chance, ZeroAndOneAreCertaintiesThatDrawNothing) {
+TEST(Chance, ZeroAndOneDrawNoWord) {
     base::RandomStream random = stream_of(103), untouched = stream_of(103);
     EXPECT_EQ(Chance{0}.draw_bits(32, random), 0u);
     EXPECT_EQ(Chance{1}.draw_bits(32, random), 0xffffffffu);

@@ -7,7 +7,7 @@
 namespace evod::evolution {
 namespace {
 
-TEST(GeneBounds, AreThoseOfTheParametersInChromosomeOrder) {
+TEST(GeneBounds, FollowTheParametersInChromosomeOrder) {
     Parameters parameters;
     parameters.impulse_max = 300;
     parameters.body_size_min = 41;
@@ -35,7 +35,7 @@ TEST(InitialPopulation, GenesAreUniformInTheirRange) {
     }
 }
 
-TEST(InitialPopulation, DependsOnSeedAndIslandAndASmallerOneIsTheBeginningOfALarger) {
+TEST(InitialPopulation, DoesNotDependOnThePopulationSize) {
     const GeneMatrix genes = initial_population(50, {}, base::Seed{112}, 3);
     EXPECT_TRUE((genes == initial_population(50, {}, base::Seed{112}, 3)).all());
     EXPECT_FALSE((genes == initial_population(50, {}, base::Seed{113}, 3)).any());
@@ -54,7 +54,7 @@ TEST(InitialPopulation, StaysWithinTheBounds) {
     EXPECT_TRUE((genes.row(FoodRadius) >= 110).all());
 }
 
-TEST(Clamp, CountsEveryGeneItPutsOntoABound) {
+TEST(Clamp, CountsEveryGeneThatItMoves) {
     const GeneBounds bounds = gene_bounds({});
     std::array<float, gene_count> genes = {19, 250, 200, 201, 20, 1e30f};
     EXPECT_EQ(clamp(genes, bounds), 3u);

@@ -29,7 +29,7 @@ std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t dra
     return counts;
 }
 
-/// The masks that can be reached with `cuts` changes of side and side 0 first, each with the same probability.
+/// The masks with `cuts` changes of parent that begin with parent 0, each with the same probability.
 std::vector<double> law_of_cuts(int cuts) {
     std::vector<double> law(64);
     double reached = 0;
@@ -46,12 +46,12 @@ std::vector<double> law_of_cuts(int cuts) {
     return law;
 }
 
-TEST(Crossover, UniformMakesEachOfThe64MasksEquallyLikely) {
+TEST(Crossover, UniformDrawsEachOfThe64MasksEquallyOften) {
     // Chi-square, 63 degrees of freedom.
     EXPECT_GT(support::p_value_of_equal_cells(masks(with(CrossoverMethod::Uniform), 640'000, 181)), alpha);
 }
 
-TEST(Crossover, SinglePointCutsAtEachOfTheFiveInnerPlacesEquallyOften) {
+TEST(Crossover, SinglePointDrawsEachCutEquallyOften) {
     // Law: 1/5 for each of 000001 … 011111 read from the last gene. Chi-square, 4 degrees of freedom.
     std::vector<double> law(64);
     for (const GeneMask mask : {0b111110, 0b111100, 0b111000, 0b110000, 0b100000}) {
@@ -60,7 +60,7 @@ TEST(Crossover, SinglePointCutsAtEachOfTheFiveInnerPlacesEquallyOften) {
     EXPECT_GT(p_value_of_law(masks(with(CrossoverMethod::SinglePoint), 200'000, 182), law), alpha);
 }
 
-TEST(Crossover, MultiPointChoosesEverySetOfDifferentCutsEquallyOften) {
+TEST(Crossover, MultiPointDrawsEachSetOfCutsEquallyOften) {
     // Law: 1/C(5, k) for each of the C(5, k) masks; 10 for the default of two cuts. Chi-square.
     for (std::uint32_t cuts = 1; cuts <= 4; ++cuts) {
         const auto law = law_of_cuts(static_cast<int>(cuts));
@@ -85,7 +85,7 @@ TEST(Crossover, HappensWithItsChance) {
     EXPECT_EQ(masks(with(CrossoverMethod::SinglePoint, 2, 0), 1000, 187)[0], 1000u);
 }
 
-TEST(Crossover, GenesChangeSidesAtEveryCut) {
+TEST(Crossover, TheParentChangesAtEveryCut) {
     EXPECT_EQ(mask_of_cuts(0b000100), 0b111100u);
     EXPECT_EQ(mask_of_cuts(0b100010), 0b011110u);
     EXPECT_EQ(mask_of_cuts(0b111110), 0b101010u);

@@ -1,4 +1,4 @@
-// What the tests of the genetic algorithm share: streams by seed, and counting how often things happen.
+// Shared by the tests of the genetic algorithm: streams by seed, and counts of events.
 #pragma once
 
 #include "server/base/inline_executor.h"
@@ -20,8 +20,8 @@ inline base::RandomStream stream_of(std::uint64_t seed, std::uint32_t entity = 0
     return {key_of(seed), entity};
 }
 
-/// Pearson's test of `counts` against a law: probabilities of the same cells, summing to 1. Cells of probability 0 must
-/// be empty and do not count.
+/// Pearson's test of `counts` against a law: the probabilities of the same cells, with sum 1. Cells of probability 0
+/// must be empty and do not count.
 inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<const double> law) {
     std::uint64_t total = 0;
     for (const std::uint64_t count : counts) {
@@ -40,7 +40,7 @@ inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<co
     return support::p_value(support::chi_square(observed, expected), observed.size() - 1);
 }
 
-/// How often each of 0 … cells − 1 occurs.
+/// The number of occurrences of each of 0 … cells − 1.
 inline std::vector<std::uint64_t> count_each(std::span<const std::uint32_t> values, std::size_t cells) {
     std::vector<std::uint64_t> counts(cells);
     for (const std::uint32_t value : values) {

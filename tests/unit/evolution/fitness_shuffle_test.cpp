@@ -12,7 +12,7 @@
 namespace evod::evolution {
 namespace {
 
-/// 0, 1, 2, … after the shuffle: whose fitness each has got.
+/// 0, 1, 2, … after the shuffle: whose fitness each organism received.
 std::vector<double> dealt(std::size_t count, const BreedingKey& key, base::Executor& executor) {
     std::vector<double> fitness(count);
     std::iota(fitness.begin(), fitness.end(), 0.0);
@@ -21,8 +21,8 @@ std::vector<double> dealt(std::size_t count, const BreedingKey& key, base::Execu
 }
 
 TEST(FitnessShuffle, MakesEveryOrderEquallyLikely) {
-    // Law: each of the 24 orders of four values has chance 1/24, from generation to generation and from island to
-    // island. Chi-square, 23 degrees of freedom.
+    // Law: each of the 24 orders of four values has probability 1/24, over generations and islands. Chi-square, 23
+    // degrees of freedom.
     base::InlineExecutor executor;
     for (const bool by_island : {false, true}) {
         std::vector<std::vector<double>> orders;
@@ -40,9 +40,9 @@ TEST(FitnessShuffle, MakesEveryOrderEquallyLikely) {
     }
 }
 
-TEST(FitnessShuffle, LeavesNothingOfWhatWasWhose) {
-    // Law: Spearman's rank correlation of a random order of n has mean 0 and variance 1/(n − 1), and is near normal
-    // for n = 20,000; more than 6 standard deviations in fewer than 2e-9 of all seeds.
+TEST(FitnessShuffle, RemovesEveryCorrelation) {
+    // Law: Spearman's rank correlation of a random order of n has mean 0 and variance 1/(n − 1), and is near normal for
+    // n = 20,000. More than 6 standard deviations occur for fewer than 2e-9 of all seeds.
     constexpr std::size_t count = 20'000;
     base::InlineExecutor executor;
     const auto order = dealt(count, {.seed = base::Seed{272}, .island = 0, .generation = 1}, executor);
@@ -55,7 +55,7 @@ TEST(FitnessShuffle, LeavesNothingOfWhatWasWhose) {
     EXPECT_LT(std::abs(covariance / variance) * std::sqrt(count - 1.0), 6);
 }
 
-TEST(FitnessShuffle, LosesNoValueAndIsTheSameOnAnyThreadCount) {
+TEST(FitnessShuffle, KeepsAllValuesOnAnyThreadCount) {
     base::InlineExecutor one;
     const BreedingKey key{.seed = base::Seed{273}, .island = 2, .generation = 9};
     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{150'001}}) {

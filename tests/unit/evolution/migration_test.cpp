@@ -20,7 +20,7 @@ Parameters with(Topology topology, std::uint32_t migrant_count = 1) {
     return parameters;
 }
 
-/// The fitness of islands of given populations; on each, organism i has fitness i, so the last is the best.
+/// The fitness of islands of the given populations. On each island organism i has fitness i, so the last is the best.
 class Islands {
   public:
     explicit Islands(std::initializer_list<std::uint32_t> populations) {
@@ -41,7 +41,7 @@ class Islands {
     std::vector<std::span<const double>> spans_;
 };
 
-TEST(Migration, IsDueOnceAnEpoch) {
+TEST(Migration, IsDueOncePerEpoch) {
     Parameters parameters = with(Topology::Ring);
     parameters.migration_epoch = 3;
     std::vector<std::uint64_t> due;
@@ -54,20 +54,20 @@ TEST(Migration, IsDueOnceAnEpoch) {
     EXPECT_FALSE(migration_due(3, with(Topology::None)));
 }
 
-TEST(Migration, RingSendsTheBestToTheNextIslandsWorst) {
+TEST(Migration, RingSendsTheBestToReplaceTheNextIslandsWorst) {
     const Islands islands{5, 4, 3};
     EXPECT_EQ(
         islands.migrants(with(Topology::Ring, 2)),
         (std::vector<Migrant>{{2, 0, 2, 0}, {2, 0, 1, 1}, {0, 1, 4, 0}, {0, 1, 3, 1}, {1, 2, 3, 0}, {1, 2, 2, 1}}));
 }
 
-TEST(Migration, FullyConnectedSendsAlongEveryEdgeInOrderOfDestinationAndSource) {
+TEST(Migration, FullyConnectedSendsAlongEveryEdgeInOrder) {
     const auto migrants = Islands{9, 9, 9}.migrants(with(Topology::FullyConnected));
     EXPECT_EQ(migrants, (std::vector<Migrant>{
                             {1, 0, 8, 0}, {2, 0, 8, 1}, {0, 1, 8, 0}, {2, 1, 8, 1}, {0, 2, 8, 0}, {1, 2, 8, 1}}));
 }
 
-TEST(Migration, RandomSendsEveryIslandsMigrantsToOneOtherEachEquallyLikely) {
+TEST(Migration, RandomSendsToOneOtherIslandEachEquallyOften) {
     // Law: 1/3 for each of the others of 4 islands. Chi-square over 4 · 3 cells for 4 independent rows, so 8 degrees of
     // freedom.
     const Islands islands{3, 3, 3, 3};
@@ -86,7 +86,7 @@ TEST(Migration, RandomSendsEveryIslandsMigrantsToOneOtherEachEquallyLikely) {
     EXPECT_GT(support::p_value(support::chi_square(counts, expected), 8), alpha);
 }
 
-TEST(Migration, NobodyGoesWithoutATopologyOrASecondIsland) {
+TEST(Migration, NeedsATopologyAndASecondIsland) {
     EXPECT_TRUE((Islands{5, 5}.migrants(with(Topology::None)).empty()));
     for (const Topology topology : {Topology::Ring, Topology::FullyConnected, Topology::Random}) {
         EXPECT_TRUE(Islands{5}.migrants(with(topology)).empty());
@@ -143,7 +143,7 @@ TEST(Migration, NoOrganismIsReplacedTwice) {
     }
 }
 
-/// How many go from where to where: arrivals[to][from].
+/// The number of migrants by islands: arrivals[to][from].
 std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> arrivals_of(const std::vector<Migrant>& migrants) {
     std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> arrivals;
     for (const Migrant& migrant : migrants) {
@@ -184,9 +184,9 @@ TEST(Migration, SharesPlacesEvenlyAmongOrigins) {
     }
 }
 
-TEST(Migration, DrawsWhoGetsThePlacesThatAreLeftOver) {
-    // Law: of three origins each gets the place that cannot be shared with chance 1/3. Chi-square over 4 · 3 cells for
-    // 4 independent rows, so 8 degrees of freedom.
+TEST(Migration, DrawsTheOriginsThatGetRemainingPlaces) {
+    // Law: each of three origins gets the remaining place with probability 1/3. Chi-square over 4 · 3 cells for 4
+    // independent rows, so 8 degrees of freedom.
     for (const std::uint32_t population : {1u, 4u}) {
         const Islands islands{population, population, population, population};
         std::vector<std::uint64_t> counts(12);
@@ -195,7 +195,7 @@ TEST(Migration, DrawsWhoGetsThePlacesThatAreLeftOver) {
             for (const auto& [to, origins] :
                  arrivals_of(islands.migrants(with(Topology::FullyConnected, 4), generation))) {
                 for (const auto& [from, sent] : origins) {
-                    counts[to * 3 + from - (from > to)] += sent - population / 4; // each has the places that can be
+                    counts[to * 3 + from - (from > to)] += sent - population / 4; // each has its equal share
                 }
             }
         }
@@ -204,7 +204,7 @@ TEST(Migration, DrawsWhoGetsThePlacesThatAreLeftOver) {
     }
 }
 
-TEST(Migration, EmigrantsAreCopiedOutBeforeAnyoneArrives) {
+TEST(Migration, EmigrantsAreCopiedBeforeAnyArrives) {
     GeneMatrix first = GeneMatrix::Constant(gene_count, 1, 1), second = GeneMatrix::Constant(gene_count, 1, 2);
     std::vector<double> first_fitness = {10}, second_fitness = {20};
     const IslandPopulation islands[] = {{&first, first_fitness}, {&second, second_fitness}};
@@ -215,7 +215,7 @@ TEST(Migration, EmigrantsAreCopiedOutBeforeAnyoneArrives) {
     EXPECT_EQ(second_fitness[0], 10);
 }
 
-TEST(Migration, TheSameKeysGiveTheSameMigrantsAndAnotherGenerationOthers) {
+TEST(Migration, DependsOnSeedAndGeneration) {
     Parameters parameters = with(Topology::Random, 3);
     parameters.emigrants = Emigrants::Random;
     parameters.immigrants_replace = Replaced::Random;

@@ -15,7 +15,7 @@ namespace {
 
 using Values = std::array<float, gene_count>;
 
-/// No mutation at all, and bounds far away.
+/// No mutation at all, and distant bounds.
 Parameters still() {
     Parameters parameters;
     parameters.mutation_chance = 0;
@@ -93,7 +93,7 @@ TEST(Creep, GaussianStepsHaveTheStepAsStandardDeviation) {
     EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
 }
 
-TEST(Creep, GaussianStepsReachFarOut) {
+TEST(Creep, GaussianTailsFollowTheNormalLaw) {
     // Law: normal, standard deviation 1. Chi-square over the steps beyond 3, 3.3, 3.44 (where the ziggurat's lowest
     // layer ends), 3.6, 4 and 4.5, and between, both signs apart: 13 degrees of freedom.
     Parameters parameters = still();
@@ -120,8 +120,8 @@ TEST(Creep, GaussianStepsReachFarOut) {
 }
 
 TEST(Creep, GaussianStepsOfDifferentGenesAreIndependent) {
-    // Law: each of the 4 quarters of the normal law, in each of the 6 genes, alike: 4^6 cells. Chi-square, 4095 degrees
-    // of freedom.
+    // Law: in each of the 6 genes, each of the 4 quarters of the normal law is equally likely: 4^6 cells. Chi-square,
+    // 4095 degrees of freedom.
     Parameters parameters = still();
     parameters.mutation_chance = 1;
     parameters.creep = Creep::Gaussian;
@@ -149,7 +149,8 @@ TEST(Creep, EachGeneMutatesWithItsChanceIndependently) {
         }
         ++counts[mutated];
     });
-    // A step of the uniform law rounds to the very same float with probability below 1e-5, too rare to be seen here.
+    // A step of the uniform law rounds to the same float with probability below 1e-5, which is too rare to be seen
+    // here.
     std::vector<double> law(64);
     for (unsigned set = 0; set < 64; ++set) {
         law[set] = std::pow(0.15, std::popcount(set)) * std::pow(0.85, 6 - std::popcount(set));
@@ -165,7 +166,7 @@ TEST(Reset, IsUniformWithinTheBoundsOfEachGene) {
     const GeneBounds bounds = gene_bounds(parameters);
     std::array<std::vector<std::uint64_t>, gene_count> cells;
     cells.fill(std::vector<std::uint64_t>(41));
-    constexpr float start = 100.0001f; // no draw hits it but by an accident of probability 1e-7
+    constexpr float start = 100.0001f; // a draw hits it with probability 1e-7
     mutants(parameters, {start, start, start, start, start, start}, 200'000, 204, [&](const Values& genes, unsigned) {
         for (unsigned gene = 0; gene < gene_count; ++gene) {
             ASSERT_GE(genes[gene], bounds.min[gene]);
@@ -211,11 +212,11 @@ TEST(BitFlip, EveryBitFlipsWithItsChanceIndependently) {
     }
 }
 
-TEST(BitFlip, LeavesAGeneNoneOfWhoseBitsFlipsExactlyAsItWas) {
+TEST(BitFlip, LeavesGenesWithoutFlippedBitsUnchanged) {
     Parameters parameters;
     parameters.mutation_chance = 0;
     parameters.bit_flip_chance = 0.05;
-    parameters.bit_flip_bits = 4; // coarse: rounding to the nearest code would show
+    parameters.bit_flip_bits = 4; // coarse, so that rounding to the nearest code is visible
     constexpr Values start = {101.3f, 99.7f, 88.1f, 111.9f, 104.2f, 93.4f};
     std::uint64_t untouched = 0;
     mutants(parameters, start, 1000, 206, [&](const Values& genes, unsigned) {
@@ -227,7 +228,7 @@ TEST(BitFlip, LeavesAGeneNoneOfWhoseBitsFlipsExactlyAsItWas) {
     EXPECT_LT(untouched, 5300u);
 }
 
-TEST(BinaryView, CodesGoFromBoundToBound) {
+TEST(BinaryView, CodesSpanTheBounds) {
     for (const unsigned bits : {1u, 2u, 16u, 24u}) {
         const BinaryView view{20, 250, bits};
         const std::uint32_t last = (1u << bits) - 1;
@@ -242,7 +243,7 @@ TEST(BinaryView, CodesGoFromBoundToBound) {
     EXPECT_EQ((BinaryView{5, 5, 8}.to_value(200)), 5);
 }
 
-RC_GTEST_PROP(BinaryView, EveryCodeSurvivesTheWayToAValueAndBack, ()) {
+RC_GTEST_PROP(BinaryView, EveryCodeConvertsToAValueAndBack, ()) {
     const unsigned bits = *rc::gen::inRange(1u, 17u);
     const BinaryView view{20, 250, bits};
     const std::uint32_t code = *rc::gen::inRange(0u, 1u << bits);
@@ -264,10 +265,10 @@ TEST(Bounds, EveryGeneOutsideIsClampedAndCounted) {
         }
     });
     EXPECT_EQ(counted, at_a_bound);
-    EXPECT_GT(counted, 50'000u); // nine in ten steps lead out
+    EXPECT_GT(counted, 50'000u); // nine in ten steps leave the bounds
 }
 
-TEST(Bounds, NothingIsCountedWhenNothingIsOutside) {
+TEST(Bounds, NothingIsCountedIfNoGeneIsOutside) {
     mutants({}, {100, 100, 100, 100, 100, 100}, 1000, 208,
             [](const Values&, unsigned clamped) { ASSERT_EQ(clamped, 0u); });
 }

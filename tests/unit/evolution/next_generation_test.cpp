@@ -21,7 +21,7 @@ struct Population {
     GeneMatrix genes;
 };
 
-/// Organism i has genes of its own; fitness is drawn, with ties.
+/// Organism i has distinct genes; fitness is drawn, with ties.
 Population population_of(std::uint32_t count, std::uint64_t seed) {
     base::RandomStream random = stream_of(seed);
     Population population{{}, initial_population(count, {}, base::Seed{seed}, 0)};
@@ -45,7 +45,7 @@ Parameters without_mutation() {
     return parameters;
 }
 
-/// Who the parents are, whichever is the first.
+/// The set of parents, in any order.
 std::pair<std::uint32_t, std::uint32_t> pair_of(const Parents& parents) {
     return std::minmax({parents.first, parents.second});
 }
@@ -79,7 +79,7 @@ TEST(Places, GenerationalKeepsOnlyTheElite) {
     EXPECT_EQ(share_places(50, 50, parameters).children, 47u);
 }
 
-TEST(Places, SteadyStateReplacesItsCountAndAPopulationGrowsByChildrenAndShrinksByItsWorst) {
+TEST(Places, SteadyStateAddsChildrenAndDropsTheWorst) {
     Parameters parameters;
     parameters.population_model = PopulationModel::SteadyState;
     parameters.replaced_count = 5;
@@ -96,7 +96,7 @@ TEST(Places, SteadyStateReplacesItsCountAndAPopulationGrowsByChildrenAndShrinksB
     EXPECT_EQ(survivors(5, 5), 2u);
 }
 
-TEST(Places, TheEliteIsAtMostEverybody) {
+TEST(Places, TheEliteIsAtMostThePopulation) {
     for (const PopulationModel model : all_models) {
         Parameters parameters;
         parameters.population_model = model;
@@ -110,7 +110,7 @@ TEST(Places, TheEliteIsAtMostEverybody) {
     }
 }
 
-TEST(NextGeneration, HasTheWantedSizeAndAccountsForEveryone) {
+TEST(NextGeneration, HasTheWantedSizeAndParentsForAll) {
     for (const Parameters& choice : stage_choices()) {
         for (const std::uint32_t present : {1u, 2u, 3u, 4u, 5u, 7u, 20u}) {
             for (const std::uint32_t wanted : {1u, 2u, 3u, 5u, 7u, 8u, 20u, 33u}) {
@@ -168,7 +168,7 @@ TEST(NextGeneration, MutatedSurvivorsChangeButTheEliteDoesNot) {
     }
 }
 
-TEST(NextGeneration, SurvivorsAreMutatedWithTheSameLawAsChildren) {
+TEST(NextGeneration, SurvivorsMutateByTheSameLawAsChildren) {
     // Law: each gene mutates with probability 0.15. Chi-square, 1 degree of freedom.
     Parameters parameters;
     parameters.mutate_survivors = true;
@@ -180,7 +180,7 @@ TEST(NextGeneration, SurvivorsAreMutatedWithTheSameLawAsChildren) {
             ++counts[next.genes(gene, i) != population.genes(gene, next.parents[i].first)];
         }
     }
-    // A step rounds to the very same float with probability below 1e-6.
+    // A step rounds to the same float with probability below 1e-6.
     EXPECT_GT(p_value_of_law(counts, std::vector{0.85, 0.15}), alpha);
 }
 
@@ -210,7 +210,7 @@ TEST(NextGeneration, AnElitePickedByTheSelectionUsesUpThatPick) {
     const NextGeneration plain = breed(population, parameters, 20);
     parameters.elite_count = 3;
     const NextGeneration with_elite = breed(population, parameters, 20);
-    for (std::uint32_t i = 0; i < 10; ++i) { // truncation keeps the ten best either way, nobody twice
+    for (std::uint32_t i = 0; i < 10; ++i) { // truncation keeps the ten best either way, each once
         EXPECT_EQ(with_elite.parents[i], plain.parents[i]);
     }
 }
@@ -253,13 +253,14 @@ TEST(NextGeneration, SteadyStateParentsAreDrawnFromAllTheWorstIncluded) {
     std::vector<std::uint64_t> bred(7);
     for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
         const NextGeneration next = breed(population, parameters, 7, seed);
-        for (std::uint32_t i = next.survivor_count; i < 7; i += 2) { // both children of a pair have its two parents
+        for (std::uint32_t i = next.survivor_count; i < 7; i += 2) { // both children of a pair have the same two
+                                                                     // parents
             ++bred[next.parents[i].first];
             ++bred[next.parents[i].second];
         }
     }
-    // Law: uniform over the population. The four parents of a generation are different, so the counts vary less than in
-    // the test's law. Chi-square, 6 degrees of freedom.
+    // Law: uniform over the population. The four parents of a generation are different, so the counts vary less than
+    // the test assumes. Chi-square, 6 degrees of freedom.
     EXPECT_GT(support::p_value_of_equal_cells(bred), alpha);
 }
 
@@ -330,7 +331,7 @@ TEST(NextGeneration, TheFirstParentGaveMostGenes) {
     }
 }
 
-TEST(NextGeneration, SiblingsOfHalfAndHalfHaveTheSameFirst) {
+TEST(NextGeneration, SiblingsWithHalfOfEachShareTheFirstParent) {
     const Population population = population_of(400, 243);
     const NextGeneration next = breed(population, without_mutation(), 400);
     std::uint32_t halves = 0;
@@ -343,11 +344,11 @@ TEST(NextGeneration, SiblingsOfHalfAndHalfHaveTheSameFirst) {
             EXPECT_EQ(next.parents[i + 1], (Parents{second, first}));
         }
     }
-    EXPECT_GT(halves, 10u); // of 100 pairs, each with chance 20 / 64
+    EXPECT_GT(halves, 10u); // of 100 pairs, each with probability 20 / 64
 }
 
 TEST(NextGeneration, SurplusChildrenAreDroppedLastFirst) {
-    // Eight parents make four pairs; of seven children it is the second of the last pair that is not born.
+    // Eight parents make four pairs; with seven children, the second child of the last pair is missing.
     Parameters parameters;
     parameters.population_model = PopulationModel::SteadyState;
     parameters.selection = SelectionMethod::Truncation;
@@ -367,11 +368,11 @@ TEST(NextGeneration, SurplusChildrenAreDroppedLastFirst) {
     EXPECT_EQ(children.size(), 4u);
 }
 
-TEST(NextGeneration, ClampingsAreCounted) {
+TEST(NextGeneration, ClampedGenesAreCounted) {
     Parameters parameters = without_mutation();
     const Population population = population_of(50, 235); // genes in 80 … 120
     EXPECT_EQ(breed(population, parameters, 50).clamped_count, 0u);
-    parameters.base_health_max = 80; // every organism's gene is above it: bounds narrowed since hold for all
+    parameters.base_health_max = 80; // every organism's gene is above it: the new bounds hold for all
     const NextGeneration next = breed(population, parameters, 50);
     EXPECT_EQ(next.clamped_count, 50u);
     EXPECT_TRUE((next.genes.row(BaseHealth) == 80).all());
@@ -391,8 +392,8 @@ TEST(NextGeneration, EverySeedIslandAndGenerationBreedsDifferently) {
 }
 
 TEST(NextGeneration, HasItsGoldenHash) {
-    // The same for every compiler and optimisation level. A change of it changes what every seed leads to: it needs a
-    // reason in the commit.
+    // The same for every compiler and optimisation level. A change of this hash changes the result of every seed, so
+    // the commit must give the reason.
     base::StateHash hash;
     std::uint64_t id = 0;
     const Population population = population_of(1000, 240);
@@ -424,13 +425,13 @@ TEST_P(SameBitsOnAnyThreadCount, ForEveryChoiceOfEveryStage) {
     }
 }
 
-TEST_P(SameBitsOnAnyThreadCount, AlsoWhereShufflesAreCut) {
+TEST_P(SameBitsOnAnyThreadCount, AlsoForShufflesInParts) {
     support::ThreadExecutor executor{GetParam()};
     const Population population = population_of(2 * shuffled_whole_max + 9, 241);
     for (const StageChoice& choice : stage_choices()) {
         if (choice.population_model == PopulationModel::Hybrid && choice.selection == SelectionMethod::Roulette &&
             choice.fitness_scaling == FitnessScaling::None) {
-            continue; // cut as above
+            continue; // see above
         }
         const auto wanted = static_cast<std::uint32_t>(population.fitness.size()) + 1;
         const NextGeneration reference = breed(population, choice, wanted, 7, 8);
@@ -444,7 +445,7 @@ TEST_P(SameBitsOnAnyThreadCount, AlsoWhereShufflesAreCut) {
 INSTANTIATE_TEST_SUITE_P(Threads, SameBitsOnAnyThreadCount, testing::Values(1, 2, 3, 8, 13));
 
 TEST(NextGeneration, TheSumOfTheGenesRisesToItsBound) {
-    // A check of the whole: fitness = Σ genes is at most 1100 with the default bounds, and starts near 600.
+    // A check of the whole: fitness = Σ genes is at most 1100 with the default bounds, and begins near 600.
     for (const PopulationModel model : all_models) {
         for (const SelectionMethod method : {SelectionMethod::Tournament, SelectionMethod::Truncation}) {
             Parameters parameters;

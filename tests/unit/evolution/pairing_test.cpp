@@ -24,7 +24,7 @@ std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32
     return evolution::pair_up(parents, pair_count, key, executor);
 }
 
-TEST(Pairing, EveryParentMatesBeforeAnyoneMatesTwice) {
+TEST(Pairing, EveryParentMatesBeforeAnyMatesTwice) {
     for (std::uint32_t count = 2; count <= 9; ++count) {
         const std::uint32_t round = (count + 1) / 2;
         const auto pairs = pair_up(numbered(count), 3 * round, key_of(171));
@@ -35,7 +35,7 @@ TEST(Pairing, EveryParentMatesBeforeAnyoneMatesTwice) {
                 EXPECT_TRUE(met.insert(pairs[i].first).second);
                 EXPECT_TRUE(met.insert(pairs[i].second).second);
             }
-            if (count % 2 == 1) { // the one left over, and a mate that has had its turn
+            if (count % 2 == 1) { // the last parent, and a mate that has already mated in this round
                 EXPECT_FALSE(met.contains(pairs[first + round - 1].first));
                 EXPECT_TRUE(met.contains(pairs[first + round - 1].second));
                 met.insert(pairs[first + round - 1].first);
@@ -46,7 +46,7 @@ TEST(Pairing, EveryParentMatesBeforeAnyoneMatesTwice) {
 }
 
 TEST(Pairing, EveryMatchingIsEquallyLikely) {
-    // Law: 3 matchings of 4 parents. Chi-square, 2 degrees of freedom; the mate of parent 0 names the matching.
+    // Law: 3 matchings of 4 parents. Chi-square, 2 degrees of freedom; the mate of parent 0 determines the matching.
     std::vector<std::uint64_t> counts(3);
     for (std::uint64_t seed = 0; seed < 100'000; ++seed) {
         for (const Parents& pair : pair_up(numbered(4), 2, key_of(1'000'000 + seed))) {
@@ -59,7 +59,7 @@ TEST(Pairing, EveryMatchingIsEquallyLikely) {
 }
 
 TEST(Pairing, TheOddOneAndItsMateAreUniform) {
-    // Law: 5 · 4 ordered pairs (left over, mate) of 5 parents. Chi-square, 19 degrees of freedom.
+    // Law: 5 · 4 ordered pairs (last parent, mate) of 5 parents. Chi-square, 19 degrees of freedom.
     std::vector<std::uint64_t> counts(20);
     for (std::uint64_t seed = 0; seed < 100'000; ++seed) {
         const Parents pair = pair_up(numbered(5), 3, key_of(2'000'000 + seed)).back();
@@ -69,17 +69,17 @@ TEST(Pairing, TheOddOneAndItsMateAreUniform) {
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
-TEST(Pairing, ALoneParentMatesWithItself) {
+TEST(Pairing, ASingleParentMatesWithItself) {
     const std::uint32_t lone[] = {7};
     EXPECT_EQ(pair_up(lone, 3, key_of(172)), (std::vector<Parents>{{7, 7}, {7, 7}, {7, 7}}));
 }
 
-TEST(Pairing, RoundsAreShuffledAfresh) {
+TEST(Pairing, EachRoundIsShuffledAgain) {
     const auto pairs = pair_up(numbered(100), 100, key_of(173));
     EXPECT_NE(std::vector(pairs.begin(), pairs.begin() + 50), std::vector(pairs.begin() + 50, pairs.end()));
 }
 
-TEST(Pairing, SurplusPairsAreNotMadeAndAFewerWantedAreTheFirstOfMore) {
+TEST(Pairing, FewerPairsAreTheFirstOfMore) {
     const auto many = pair_up(numbered(7), 11, key_of(174));
     for (std::uint32_t count = 0; count <= 11; ++count) {
         EXPECT_EQ(pair_up(numbered(7), count, key_of(174)), std::vector(many.begin(), many.begin() + count));

@@ -15,7 +15,7 @@
 namespace evod::evolution {
 namespace {
 
-/// What went into a breeding and what came of it.
+/// The input and the result of a breeding.
 struct Bred {
     GeneMatrix before, bred_from;
     NextGeneration next;
@@ -30,7 +30,7 @@ struct Case {
     std::uint64_t seed = 1;
 };
 
-/// Fitness is drawn, so that it has nothing to do with the genes, unless `by_first_gene`: then it is the first gene.
+/// Fitness is drawn, independent of the genes, unless `by_first_gene` is set: then it is the first gene.
 Bred breed(const Case& of, bool by_first_gene = false) {
     base::InlineExecutor executor;
     Bred bred;
@@ -38,7 +38,7 @@ Bred breed(const Case& of, bool by_first_gene = false) {
     std::vector<std::vector<double>> fitness(2);
     for (std::uint32_t island = 0; island < 2; ++island) {
         Parameters first = of.parameters;
-        first.initial_gene_min += 30 * island; // others than at home
+        first.initial_gene_min += 30 * island; // different from those born there
         first.initial_gene_max += 30 * island;
         islands.push_back(initial_population(of.present, first, base::Seed{of.seed}, island));
         base::RandomStream random = stream_of(of.seed, island);
@@ -75,7 +75,7 @@ double mean(const GeneMatrix& genes, unsigned gene) {
     return genes.row(gene).cast<double>().mean();
 }
 
-/// Price's equation as it is written, organism by organism, in long double.
+/// The Price equation as written, organism by organism, in long double.
 SelectionAccount by_definition(const Bred& bred) {
     using Real = long double;
     const auto n = static_cast<std::size_t>(bred.before.cols());
@@ -120,9 +120,9 @@ void expect_closed(const SelectionAccount& account) {
     }
 }
 
-TEST(Price, AnExampleWorkedOutByHand) {
-    // Four organisms of mean 130. A migrant of 200 takes the place of the first: mean 155. Of five descendants the
-    // first is the migrant itself, the second organism 1 after a mutation by +6; the others are children.
+TEST(Price, EqualsAnExampleComputedByHand) {
+    // Four organisms with mean 130. A migrant of 200 replaces the first: mean 155. Of five descendants, the first is
+    // the migrant itself, the second is organism 1 after a mutation by +6, and the others are children.
     base::InlineExecutor executor;
     const auto population = [](std::initializer_list<float> values) {
         GeneMatrix genes(gene_count, static_cast<Eigen::Index>(values.size()));
@@ -144,7 +144,7 @@ TEST(Price, AnExampleWorkedOutByHand) {
     }
 }
 
-TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
+TEST(Price, EqualsTheWrittenEquationForEveryChoice) {
     std::uint64_t seed = 0;
     for (const auto model : {PopulationModel::Hybrid, PopulationModel::Generational, PopulationModel::SteadyState}) {
         for (const auto selection :
@@ -164,11 +164,11 @@ TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
                                 of.parameters.mutate_survivors = mutate_survivors;
                                 of.parameters.elite_count = static_cast<std::uint32_t>(seed % 3);
                                 of.parameters.replaced_count = 11;
-                                if (seed % 5 == 0) { // bounds that have been narrowed since
+                                if (seed % 5 == 0) { // bounds that are narrower than before
                                     of.parameters.impulse_max = 95;
                                 }
                                 if (seed % 7 == 0) {
-                                    of.parameters.rearranging = Rearranging::Scramble;
+                                    of.parameters.rearranging = OrderMutationMethod::Scramble;
                                 }
                                 const Bred bred = breed(of);
                                 SCOPED_TRACE(seed);
@@ -196,12 +196,12 @@ TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
     }
 }
 
-RC_GTEST_PROP(Price, IsClosedWhateverTheGenes, ()) {
+RC_GTEST_PROP(Price, AddsUpForAnyGenes, ()) {
     const auto count = [](std::uint32_t end) { return *rc::gen::inRange(1u, end); };
     const std::uint32_t present = count(60), wanted = count(90);
     const auto genes_of = [&](std::uint32_t organisms) {
         GeneMatrix genes(gene_count, static_cast<Eigen::Index>(organisms));
-        for (Eigen::Index i = 0; i < genes.size(); ++i) { // everywhere in what bounds can be, the least of them too
+        for (Eigen::Index i = 0; i < genes.size(); ++i) { // everywhere within the possible bounds, including the lowest
             genes.data()[i] = std::ldexp(static_cast<float>(*rc::gen::inRange(0, 10'001)), -*rc::gen::inRange(0, 30));
         }
         return genes;
@@ -217,8 +217,8 @@ RC_GTEST_PROP(Price, IsClosedWhateverTheGenes, ()) {
     }
 }
 
-TEST(Price, WithoutMutationTheTwoChildrenOfAPairMoveNoMean) {
-    // They are complements, whatever is cut where; so all that happens is selection, to the last bit.
+TEST(Price, SiblingsWithoutMutationDoNotChangeTheMean) {
+    // Siblings are complements wherever the cuts are, so the whole change is selection, to the last bit.
     for (const auto crossover :
          {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint, CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
         Case of{.parameters = {}, .wanted = 48}; // 24 survivors, 12 pairs
@@ -234,8 +234,8 @@ TEST(Price, WithoutMutationTheTwoChildrenOfAPairMoveNoMean) {
 }
 
 TEST(Price, TruncationSelectsTheMeanOfTheBest) {
-    // Of the better half each is kept once and is in one pair of two children: its share is 2. The gene by which it is
-    // selected moves by what the better half is better.
+    // Each organism of the better half survives once and is in one pair with two children: its share is 2. The mean of
+    // the gene that selection uses becomes the mean of the better half.
     Case of;
     of.parameters.selection = SelectionMethod::Truncation;
     of.parameters.mutation_chance = 0;
@@ -251,7 +251,7 @@ TEST(Price, TruncationSelectsTheMeanOfTheBest) {
     EXPECT_EQ(bred.account[0].transmission, 0);
 }
 
-TEST(Price, WhereEveryoneIsKeptNobodyIsSelectedAndAllIsMutation) {
+TEST(Price, IfAllSurviveTheChangeIsTransmissionAlone) {
     Case of;
     of.parameters.selection = SelectionMethod::Truncation;
     of.parameters.survivors = 1;
@@ -268,7 +268,7 @@ TEST(Price, WhereEveryoneIsKeptNobodyIsSelectedAndAllIsMutation) {
     }
 }
 
-TEST(Price, OnlyMigrantsMoveAnIslandWhereNothingElseHappens) {
+TEST(Price, MigrantsAloneChangeAnIdleIsland) {
     Case of{.parameters = {}, .migration = true};
     of.parameters.selection = SelectionMethod::Truncation;
     of.parameters.survivors = 1;
@@ -282,8 +282,8 @@ TEST(Price, OnlyMigrantsMoveAnIslandWhereNothingElseHappens) {
     }
 }
 
-TEST(Price, WhereChanceAloneSelectsTheSelectionTermIsNoughtOnAverage) {
-    // The mean of many terms, over its standard error, is normal: by chance alone |t| is greater than 5.5 with a
+TEST(Price, RandomSelectionHasZeroSelectionOnAverage) {
+    // The mean of many terms, divided by its standard error, is normal: by chance alone |t| is above 5.5 with a
     // probability of 4e-8 for each gene, less than `alpha` for all of them.
     constexpr std::uint32_t seeds = 400;
     std::array<double, gene_count> sums{}, squares{};
@@ -314,7 +314,7 @@ TEST(Price, IsTheSameOnAnyNumberOfThreads) {
     }
 }
 
-TEST(Price, NumbersGoOutAndComeBackInOneOrder) {
+TEST(Price, NumbersAreWrittenAndReadInOneOrder) {
     const SelectionAccount account = breed({.parameters = {}, .migration = true}).account;
     std::vector<std::string> names;
     std::vector<std::optional<double>> numbers;

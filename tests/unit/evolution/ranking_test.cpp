@@ -20,7 +20,7 @@ std::vector<std::uint32_t> best_first(std::span<const double> fitness) {
     return {order.begin(), order.end()};
 }
 
-TEST(Ranking, LowerIndexIsTheBetterRankOfEquals) {
+TEST(Ranking, LowerIndexIsTheBetterRankOfTies) {
     EXPECT_EQ(best_first(std::vector{1.0, 3.0, 3.0, 2.0, 3.0, 1.0}), (std::vector{1u, 2u, 4u, 3u, 0u, 5u}));
     EXPECT_EQ(best_first(std::vector{-0.0, 0.0, -0.0}), (std::vector{0u, 1u, 2u}));
     EXPECT_EQ(best_first(std::vector{7.0}), (std::vector{0u}));
@@ -59,7 +59,7 @@ TEST(Ranking, IsAStableSortOfManyWithTies) {
     }
 }
 
-TEST(Ranking, OrdersManyWhateverTheSpreadOfTheirFitness) {
+TEST(Ranking, OrdersManyForAnyDistributionOfFitness) {
     base::RandomStream random = stream_of(122);
     constexpr double huge = std::numeric_limits<double>::max(), tiny = std::numeric_limits<double>::denorm_min();
     for (const double outlier : {0.0, 1e300, -huge, huge}) {

@@ -9,7 +9,7 @@
 namespace evod::evolution {
 namespace {
 
-TEST(RareEvents, EachTrialSucceedsAsOftenAsItsChanceSays) {
+TEST(RareEvents, EachTrialSucceedsWithItsChance) {
     // Law: how often each of 144 trials succeeds is binomial. Chi-square of the successes, 144 degrees of freedom.
     for (const double chance : {0.125, 0.01, 0.0003}) {
         const RareEvents events{144, chance};

@@ -27,12 +27,12 @@ TEST(Scaling, WindowingSubtractsTheLeast) {
     EXPECT_EQ(scaled(std::vector{5.0, 5.0}, FitnessScaling::Windowing), (std::vector{0.0, 0.0}));
 }
 
-TEST(Scaling, WindowingOfHugeFitnessStaysFiniteAndKeepsTheRatios) {
+TEST(Scaling, WindowingKeepsTheRatiosOfHugeFitness) {
     constexpr double huge = std::numeric_limits<double>::max();
     EXPECT_EQ(scaled(std::vector{huge, 0.0, -huge}, FitnessScaling::Windowing), (std::vector{huge, huge / 2, 0.0}));
 }
 
-TEST(Scaling, LinearRankingGivesTheBestThePressureAndTheMeanOne) {
+TEST(Scaling, LinearRankingHasMeanOneAndBestPressure) {
     for (const double pressure : {1.0, 1.5, 2.0}) {
         Parameters parameters;
         parameters.ranking_pressure = pressure;
@@ -45,7 +45,7 @@ TEST(Scaling, LinearRankingGivesTheBestThePressureAndTheMeanOne) {
     EXPECT_EQ(scaled(std::vector{4.0}, FitnessScaling::LinearRanking), std::vector{1.0});
 }
 
-TEST(Scaling, RankingGoesByRankAndTheLowerIndexOfEqualsIsBetter) {
+TEST(Scaling, RankingPrefersTheLowerIndexOfTies) {
     Parameters parameters;
     parameters.ranking_decay = 0.5;
     EXPECT_EQ(scaled(std::vector{1.0, 7.0, 1.0, 1e300}, FitnessScaling::ExponentialRanking, parameters),
@@ -64,7 +64,7 @@ TEST(Scaling, ExponentialRankingDecaysByAFactorPerRank) {
     }
 }
 
-TEST(Scaling, ExponentialRankingOfManyGoesDownToZero) {
+TEST(Scaling, ExponentialRankingOfManyReachesZero) {
     Parameters parameters;
     parameters.ranking_decay = 0.01;
     std::vector<double> fitness(1000);

@@ -78,7 +78,7 @@ TEST(Roulette, AllZeroWeightsAndEqualNegativeOnesAreUniform) {
     EXPECT_GT(support::p_value_of_equal_cells(spins({-huge, -huge, -huge, -huge}, 300'000, 136)), alpha);
 }
 
-TEST(Roulette, WeightsOfZeroAreNeverPickedWhereverTheyStand) {
+TEST(Roulette, NeverPicksAWeightOfZero) {
     const auto counts = spins({0, 1, 0, 0, 2, 0}, 100'000, 137);
     EXPECT_EQ(counts[0] + counts[2] + counts[3] + counts[5], 0u);
     EXPECT_EQ(spins({0, 0, 0, tiny}, 1000, 138)[3], 1000u);
@@ -89,12 +89,12 @@ TEST(Roulette, HugeAndTinyWeightsKeepTheirRatios) {
     const std::vector<double> law = {0.25, 0.25, 0.5};
     EXPECT_GT(p_value_of_law(spins({huge / 2, huge / 2, huge}, 300'000, 139), law), alpha);
     EXPECT_GT(p_value_of_law(spins({tiny, tiny, 2 * tiny}, 300'000, 140), law), alpha);
-    // Shifted by −huge the weights are 0, 1 and 2 times it.
+    // Shifted by −huge, the weights are 0, 1 and 2 times huge.
     EXPECT_GT(p_value_of_law(spins({-huge, 0, huge}, 300'000, 141), std::vector{0.0, 1 / 3.0, 2 / 3.0}), alpha);
 }
 
-TEST(Roulette, PicksInProportionAmongManyOfVeryUnequalWeight) {
-    // Law: weight / sum, 2,000 organisms in 8 groups whose weights rise by a factor of 8. Chi-square, 7 degrees of
+TEST(Roulette, PicksInProportionAmongVeryUnequalWeights) {
+    // Law: weight / sum, 2,000 organisms in 8 groups whose weights differ by a factor of 8. Chi-square, 7 degrees of
     // freedom.
     std::vector<double> weights(2000), law(8);
     double sum = 0;
@@ -114,7 +114,7 @@ TEST(Roulette, PicksInProportionAmongManyOfVeryUnequalWeight) {
     EXPECT_GT(p_value_of_law(groups, law), alpha);
 }
 
-TEST(Wheel, SlotsEndWhereTheWeightsAddUpTo) {
+TEST(Wheel, SlotsEndAtTheCumulatedWeights) {
     const Wheel wheel{{1, 0, 3}};
     EXPECT_EQ(wheel.share(0), 0.25);
     EXPECT_EQ(wheel.share(1), 0);
@@ -140,7 +140,7 @@ TEST(Wheel, TheGuideFindsWhatABinarySearchFinds) {
     }
 }
 
-TEST(Wheel, TheGuideIsRightWhereRoundingPutsAPlaceOnEitherSideOfASlotsEnd) {
+TEST(Wheel, TheGuideIsRightAtRoundedSlotEnds) {
     for (const double weight : {0.1, 1.0, 3.0}) {
         for (std::size_t population = 1; population <= 200; ++population) {
             const Wheel wheel{std::vector<double>(population, weight)};
@@ -157,7 +157,7 @@ TEST(Wheel, TheGuideIsRightWhereRoundingPutsAPlaceOnEitherSideOfASlotsEnd) {
     }
 }
 
-TEST(StochasticUniversal, CopiesAreFloorOrCeilingOfTheExpectedInEverySpin) {
+TEST(StochasticUniversal, CopiesAreTheRoundedExpectationInEverySpin) {
     const Wheel wheel{ten_to_one};
     for (const std::uint32_t wanted : {1u, 3u, 10u, 55u, 100u}) {
         for (std::uint32_t spin = 0; spin < 2000; ++spin) {
@@ -172,9 +172,9 @@ TEST(StochasticUniversal, CopiesAreFloorOrCeilingOfTheExpectedInEverySpin) {
     }
 }
 
-TEST(StochasticUniversal, CopiesAverageToTheExpected) {
-    // Law: an organism gets its extra copy with the probability of the fraction of 10 p. Chi-square, 1 degree of
-    // freedom for each of the 10 organisms.
+TEST(StochasticUniversal, CopiesHaveTheExpectedMean) {
+    // Law: an organism gets an extra copy with probability equal to the fractional part of 10 p. Chi-square, 1 degree
+    // of freedom for each of the 10 organisms.
     const Wheel wheel{ten_to_one};
     constexpr std::uint32_t spin_count = 100'000;
     std::vector<std::uint64_t> copies(10);
@@ -202,7 +202,7 @@ TEST(StochasticUniversal, TheOrderOfThePicksIsRandom) {
     EXPECT_GT(support::p_value_of_equal_cells(first), alpha);
 }
 
-TEST(RandomSelection, IsUniqueAndEverySetAndOrderIsEquallyLikely) {
+TEST(RandomSelection, PicksEverySetAndOrderEquallyOften) {
     // Law: 5 · 4 · 3 = 60 ordered choices of 3 from 5. Chi-square, 59 degrees of freedom.
     std::vector<std::uint64_t> counts(125);
     for (std::uint32_t i = 0; i < 200'000; ++i) {
@@ -221,7 +221,7 @@ TEST(RandomSelection, IsUniqueAndEverySetAndOrderIsEquallyLikely) {
     EXPECT_GT(p_value_of_law(counts, law), alpha);
 }
 
-TEST(RandomSelection, GoesThroughEverybodyBeforeAnyoneTwice) {
+TEST(RandomSelection, PicksAllBeforeAnyTwice) {
     base::RandomStream random = stream_of(148);
     const auto picked = draw_unique(7, 7 + 7 + 3, random);
     ASSERT_EQ(picked.size(), 17u);
@@ -232,7 +232,7 @@ TEST(RandomSelection, GoesThroughEverybodyBeforeAnyoneTwice) {
     EXPECT_TRUE(draw_unique(0, 3, random).empty());
 }
 
-TEST(Truncation, TakesExactlyTheBestInOrderOfRank) {
+TEST(Truncation, PicksExactlyTheBestInOrderOfRank) {
     const std::vector<double> fitness = {3, 9, 1, 9, 5};
     Ranking ranking{fitness};
     EXPECT_EQ(take_best(ranking, 5, 3), (std::vector{1u, 3u, 4u}));
@@ -241,7 +241,7 @@ TEST(Truncation, TakesExactlyTheBestInOrderOfRank) {
 }
 
 TEST(Select, RouletteUnderLinearRankingFollowsTheRanks) {
-    // Law: (pressure − 2(pressure − 1) rank / 9) / 10 whatever the fitness. Chi-square, 9 degrees of freedom.
+    // Law: (pressure − 2(pressure − 1) rank / 9) / 10 for any fitness. Chi-square, 9 degrees of freedom.
     Parameters parameters;
     parameters.fitness_scaling = FitnessScaling::LinearRanking;
     parameters.ranking_pressure = 1.8;
@@ -278,7 +278,7 @@ TEST(Select, RouletteUnderWindowingNeverPicksTheWorst) {
 
 TEST(Select, ScalingDoesNotChangeTournamentAndTruncation) {
     base::InlineExecutor executor;
-    std::vector<double> fitness(300); // the lower half gets no weight at all from this decay
+    std::vector<double> fitness(300); // with this decay the lower half has weight 0
     for (std::size_t i = 0; i < fitness.size(); ++i) {
         fitness[i] = static_cast<double>(i);
     }

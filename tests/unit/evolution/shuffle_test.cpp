@@ -51,7 +51,7 @@ TEST(Distribute, IsAStableSortByBucketOnAnyThreadCount) {
               (std::vector<std::uint32_t>{0, 0, 0}));
 }
 
-TEST(Shuffle, OfManyIsTheSameOnAnyThreadCountAndLosesNobody) {
+TEST(Shuffle, OfManyKeepsAllItemsOnAnyThreadCount) {
     base::InlineExecutor inline_executor;
     const auto reference = shuffled(150'001, 262, inline_executor);
     for (const std::size_t threads : {2, 3, 8, 13}) {
@@ -65,9 +65,9 @@ TEST(Shuffle, OfManyIsTheSameOnAnyThreadCountAndLosesNobody) {
     }
 }
 
-TEST(Shuffle, OfManyTakesEveryoneAnywhere) {
-    // Law: from each twentieth of the items as many go to each twentieth of the places as chance has it. Chi-square of
-    // a table with both margins fixed, 19 · 19 degrees of freedom.
+TEST(Shuffle, OfManyMovesItemsToAnyPlace) {
+    // Law: each twentieth of the items is distributed over the twentieths of the places at random. Chi-square of a
+    // table with both margins fixed, 19 · 19 degrees of freedom.
     constexpr std::uint32_t count = 200'000, parts = 20;
     base::InlineExecutor executor;
     std::vector<std::uint64_t> table(parts * parts);
@@ -80,9 +80,9 @@ TEST(Shuffle, OfManyTakesEveryoneAnywhere) {
 }
 
 TEST(Shuffle, OfManyMixesNeighbours) {
-    // Law: of items that were neighbours the second comes first with chance 1/2, and they end up next to each other
-    // with chance 2/count. Chi-square over whether they change sides, 1 degree of freedom, and a bound on how many stay
-    // together: 2 on average, more than 20 in fewer than 1e-13 of all seeds.
+    // Law: of two neighbouring items, the second comes first with probability 1/2, and they stay neighbours with
+    // probability 2/count. Chi-square over the exchanged pairs, 1 degree of freedom, and a bound on the number of pairs
+    // that stay neighbours: 2 on average, more than 20 for fewer than 1e-13 of all seeds.
     constexpr std::uint32_t count = 100'000;
     base::InlineExecutor executor;
     const auto items = shuffled(count, 264, executor);

@@ -1,5 +1,5 @@
-// One set of parameters for every choice of every stage of the genetic algorithm, the other stages at their defaults,
-// and one that has the slowest choices together.
+// Parameters for every choice of every stage of the genetic algorithm, with the other stages at their defaults, and one
+// set that combines the slowest choices.
 #pragma once
 
 #include "server/evolution/parameters.h"
@@ -24,7 +24,7 @@ inline StageChoice slowest_choices() {
     choice.tournament_replacement = false;
     choice.tournament_size = 7;
     choice.crossover = CrossoverMethod::MultiPoint;
-    choice.rearranging = Rearranging::Scramble;
+    choice.rearranging = OrderMutationMethod::Scramble;
     choice.rearrange_chance = 1;
     choice.creep = Creep::Gaussian;
     choice.mutation_chance = 1;
@@ -78,11 +78,12 @@ inline std::vector<StageChoice> stage_choices() {
     }
     add_each("crossover", &Parameters::crossover);
     add("crossover_chance=0.5", [](Parameters& parameters) { parameters.crossover_chance = 0.5; });
-    for (std::size_t i = 1; i < std::size(base::ChoiceNames<Rearranging>::names); ++i) {
-        add("rearranging=" + std::string{base::ChoiceNames<Rearranging>::names[i]}, [&](Parameters& parameters) {
-            parameters.rearranging = static_cast<Rearranging>(i);
-            parameters.rearrange_chance = 1;
-        });
+    for (std::size_t i = 1; i < std::size(base::ChoiceNames<OrderMutationMethod>::names); ++i) {
+        add("rearranging=" + std::string{base::ChoiceNames<OrderMutationMethod>::names[i]},
+            [&](Parameters& parameters) {
+                parameters.rearranging = static_cast<OrderMutationMethod>(i);
+                parameters.rearrange_chance = 1;
+            });
     }
     add_each("creep", &Parameters::creep);
     add("reset_chance=0.15", [](Parameters& parameters) { parameters.reset_chance = 0.15; });

@@ -38,7 +38,7 @@ TEST(Termination, TargetFitnessOfTheLastGeneration) {
     EXPECT_EQ(outcome(after({5}), parameters), Outcome::TargetFitness);
     parameters.target_fitness = -3;
     EXPECT_EQ(outcome(after({-3}), parameters), Outcome::TargetFitness);
-    EXPECT_EQ(outcome({}, parameters), Outcome::Running); // no generation is over
+    EXPECT_EQ(outcome({}, parameters), Outcome::Running); // no generation has ended
 }
 
 TEST(Termination, StagnationCountsGenerationsWithoutANewBest) {
@@ -65,7 +65,7 @@ TEST(Termination, Extinction) {
     EXPECT_FALSE(advance(died, {.best_fitness = 1, .died_out = false}).last_died_out);
 }
 
-TEST(Termination, TheFirstOutcomeOfTheListIsGiven) {
+TEST(Termination, TheFirstOutcomeThatHoldsIsReturned) {
     Parameters parameters;
     parameters.stop_at_target_fitness = parameters.stop_at_extinction = true;
     parameters.target_fitness = 5;

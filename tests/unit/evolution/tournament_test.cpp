@@ -26,13 +26,13 @@ std::vector<double> closed_form(std::uint32_t n, const Tournament& tournament, s
     const std::uint32_t k = tournament.size;
     std::vector<double> law(n);
     if (!tournament.replacement) {
-        // `place` of the k are among the r better, the rest among the n − r − 1 worse.
+        // `place` of the k are among the r better ranks, the others among the n − r − 1 worse.
         for (std::uint32_t r = 0; r < n; ++r) {
             law[r] = choose(r, place) * choose(n - r - 1, k - place - 1) / choose(n, k);
         }
         return law;
     }
-    // Winner `place` is worse than the r best ranks if at most `place` of k independent draws fall on them.
+    // Winner `place` is worse than the r best ranks if at most `place` of k independent draws are among them.
     const auto beyond = [&](std::uint32_t r) {
         const double p = static_cast<double>(r) / n;
         double sum = 0;
@@ -47,7 +47,7 @@ std::vector<double> closed_form(std::uint32_t n, const Tournament& tournament, s
     return law;
 }
 
-/// How often winner number `place` has each rank, when the fitness falls from organism to organism.
+/// How often winner number `place` has each rank, if the fitness decreases with the index.
 std::vector<std::uint64_t> ranks_of_winners(std::uint32_t n, const Tournament& tournament, std::uint32_t place,
                                             std::uint32_t tournaments, std::uint64_t seed) {
     base::InlineExecutor executor;
@@ -62,14 +62,14 @@ std::vector<std::uint64_t> ranks_of_winners(std::uint32_t n, const Tournament& t
     return counts;
 }
 
-TEST(Tournament, TheBestOfTheContestantsHasTheRankOfTheClosedForm) {
+TEST(Tournament, TheWinnersRankFollowsTheClosedForm) {
     // Law: ((n−r)^k − (n−r−1)^k) / n^k with replacement, C(n−r−1, k−1) / C(n, k) without, n = 10. Chi-square, one
     // degree of freedom less than ranks of positive probability.
     for (const bool replacement : {true, false}) {
         for (const std::uint32_t size : {1u, 2u, 3u, 5u, 10u}) {
             const Tournament tournament{.size = size, .winners = 1, .replacement = replacement};
             if (size == 10 && !replacement) {
-                continue; // the best of all always wins: no law left to test, see below
+                continue; // the best of all always wins: there is no law to test here, see below
             }
             const auto law = closed_form(10, tournament, 0);
             if (replacement) {
@@ -81,7 +81,7 @@ TEST(Tournament, TheBestOfTheContestantsHasTheRankOfTheClosedForm) {
     }
 }
 
-TEST(Tournament, EveryWinnerHasTheRankOfTheClosedForm) {
+TEST(Tournament, EveryWinnersRankFollowsTheClosedForm) {
     // Law: that of the order statistics of the contestants (closed_form above). Chi-square for each winner's place.
     for (const bool replacement : {true, false}) {
         for (std::uint32_t place = 0; place < 3; ++place) {
@@ -95,7 +95,8 @@ TEST(Tournament, EveryWinnerHasTheRankOfTheClosedForm) {
 }
 
 TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
-    // Tournaments too large to be held. The same law and test as above, ranks too rare to test joined into one.
+    // Tournaments whose outcome is drawn directly. The same law and test as above; rare ranks are combined into one
+    // cell.
     const struct {
         std::uint32_t population;
         Tournament tournament;
@@ -120,7 +121,7 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
                     expected.push_back(law[r]);
                 }
             }
-            if (expected[0] < 1e-5) { // too few to expect any: left out of the test
+            if (expected[0] < 1e-5) { // too rare to be expected: omitted from the test
                 counts.erase(counts.begin());
                 expected.erase(expected.begin());
             }
@@ -129,7 +130,7 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
     }
 }
 
-TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {
+TEST(Tournament, WithoutReplacementEachWinsOnce) {
     base::InlineExecutor executor;
     std::vector<double> fitness(2000);
     std::iota(fitness.begin(), fitness.end(), 0.0);
@@ -144,7 +145,7 @@ TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {
     }
 }
 
-TEST(Tournament, OfEverybodyTheBestWin) {
+TEST(Tournament, OfTheWholePopulationTheBestWin) {
     base::InlineExecutor executor;
     const std::vector<double> fitness = {3, 9, 1, 9, 5};
     for (const std::uint32_t size : {5u, 6u, 1'000'000u}) {
@@ -164,8 +165,8 @@ TEST(Tournament, TiesGoToTheLowerIndex) {
     EXPECT_GT(p_value_of_law(count_each(picked, 10), closed_form(10, {.size = 3}, 0)), alpha);
 }
 
-TEST(Tournament, MoreWinnersThanContestantsMeansThatAllOfThemWin) {
-    // Law: uniform, as nobody loses. Chi-square, 9 degrees of freedom.
+TEST(Tournament, MoreWinnersThanContestantsMeansThatAllWin) {
+    // Law: uniform, because every contestant wins. Chi-square, 9 degrees of freedom.
     base::InlineExecutor executor;
     const std::vector<double> fitness = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
     Ranking ranking{fitness};

@@ -66,7 +66,7 @@ TEST(Controls, EveryParameterThatMakesOneIsKnown) {
     world.island_count = 2;
     world.migration = evolution::Topology::Ring;
     world.reset_chance = world.bit_flip_chance = world.rearrange_chance = 0.1;
-    world.rearranging = evolution::Rearranging::Swap;
+    world.rearranging = evolution::OrderMutationMethod::Swap;
     for (const ControlKind kind : all_controls) {
         const Control control = control_of(world, kind);
         for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
@@ -115,7 +115,7 @@ TEST(Controls, MutationOffTurnsOffEveryWayToANewValueOrPlace) {
     Parameters world;
     world.reset_chance = 0.1;
     world.bit_flip_chance = 0.1;
-    world.rearranging = evolution::Rearranging::Swap;
+    world.rearranging = evolution::OrderMutationMethod::Swap;
     EXPECT_EQ(changes(world, ControlKind::MutationOff),
               "rearranging=none mutation_chance=0 reset_chance=0 bit_flip_chance=0");
 }
@@ -135,7 +135,7 @@ TEST(Controls, SayWhereTheWorldIsTheControlAlready) {
     world = {};
     world.mutation_step = 0;
     world.rearrange_chance = 0;
-    world.rearranging = evolution::Rearranging::Swap;
+    world.rearranging = evolution::OrderMutationMethod::Swap;
     EXPECT_EQ(why(world, ControlKind::MutationOff), "nothing mutates already");
     world.bit_flip_chance = 0.01;
     EXPECT_EQ(why(world, ControlKind::MutationOff), "");

@@ -1,4 +1,4 @@
-// Assignments for tests: one, or one that a parameter can have besides its default.
+// Assignments for tests: a single one, or one with a valid value other than the default.
 #pragma once
 
 #include "server/parameters/parameters.h"
@@ -17,7 +17,7 @@ inline std::vector<Assignment> one(std::string_view name, ParameterValue value) 
     return {{std::string{name}, std::move(value)}};
 }
 
-/// Values other than the default that a parameter can have as far as its own range goes.
+/// Values other than the default within the parameter's own range.
 inline std::vector<ParameterValue> other_values(const ParameterDescription& description) {
     std::vector<ParameterValue> values;
     if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
@@ -46,7 +46,7 @@ inline std::vector<ParameterValue> other_values(const ParameterDescription& desc
     return values;
 }
 
-/// One that `parameters` can have.
+/// One of other_values() that is valid together with `parameters`.
 inline Assignment other_value(const ParameterDescription& description, const Parameters& parameters) {
     for (const ParameterValue& value : other_values(description)) {
         const auto assignments = one(description.name, value);

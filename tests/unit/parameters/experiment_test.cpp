@@ -13,13 +13,13 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The refusal of a text as one text; empty if it is accepted.
+/// The refusal of a text as text; empty if the text is accepted.
 std::string refusal_of(std::string_view text) {
     const auto result = parse_experiment(text);
     return result ? "" : to_text(result.error());
 }
 
-TEST(Experiment, HasTheDefaultsForWhatItDoesNotName) {
+TEST(Experiment, HasDefaultsForUnnamedParameters) {
     const auto experiment = parse_experiment(R"({"description": "x", "seed": 7, "food_count": 30, "respawn_s": 2,
                                                  "flee_rule": "always", "respawn": true})");
     ASSERT_TRUE(experiment.has_value());
@@ -43,20 +43,20 @@ TEST(Experiment, KeepsAllBitsOfASeed) {
     }
 }
 
-TEST(Experiment, LetsTheReferencePopulationFollowItsOwnPopulation) {
+TEST(Experiment, ReferencePopulationDefaultsToThePopulation) {
     EXPECT_EQ(parse_experiment(R"({"population_size": 80})")->parameters.reference_population, 80u);
     EXPECT_EQ(
         parse_experiment(R"({"population_size": 80, "reference_population": 40})")->parameters.reference_population,
         40u);
     EXPECT_EQ(parse_experiment(R"({"reference_population": 40})")->parameters.population_size, 50u);
     EXPECT_EQ(parse_experiment("{}")->parameters.reference_population, 50u);
-    // A wrong population is told once.
+    // A wrong population is reported once.
     const auto refused = parse_experiment(R"({"population_size": 0})");
     ASSERT_FALSE(refused.has_value());
     EXPECT_EQ(refused.error().violations.size(), 1u);
 }
 
-TEST(Experiment, SaysOnWhichLineTheJsonIsBroken) {
+TEST(Experiment, ReportsTheLineOfBrokenJson) {
     EXPECT_THAT(refusal_of("{\n  \"food_count\": 3,\n  \"respawn\" true\n}"), HasSubstr("line 3"));
     EXPECT_THAT(refusal_of("{\n  \"food_count\": 3\n"), HasSubstr("not JSON"));
     EXPECT_THAT(refusal_of("{}\n\n}"), HasSubstr("line 3"));
@@ -66,7 +66,7 @@ TEST(Experiment, SaysOnWhichLineTheJsonIsBroken) {
     EXPECT_THAT(refusal_of(std::string(100'000, '[')), HasSubstr("not JSON"));
 }
 
-TEST(Experiment, NamesEveryFieldThatIsWrongWithItsLine) {
+TEST(Experiment, NamesEveryWrongFieldWithItsLine) {
     const auto refused = parse_experiment("{\n  \"food_cuont\": 3,\n  \"tick_s\": -1,\n\n  \"respawn\": null,\n"
                                           "  \"description\": 4,\n  \"selection\": [\"roulette\"]\n}");
     ASSERT_FALSE(refused.has_value());
@@ -79,25 +79,25 @@ TEST(Experiment, NamesEveryFieldThatIsWrongWithItsLine) {
     EXPECT_THAT(to_text(refused.error()), HasSubstr("did you mean food_count"));
 }
 
-TEST(Experiment, TellsTheLineOfTheFieldNotOfATextThatIsLikeIt) {
+TEST(Experiment, ReportsTheLineOfTheFieldNotOfSimilarText) {
     EXPECT_THAT(refusal_of("{\n\"description\": \"tick_s\",\n\"tick_s\": -1\n}"), HasSubstr("tick_s (line 3)"));
 }
 
-TEST(Experiment, RefusesAFieldThatIsGivenTwice) {
+TEST(Experiment, RefusesARepeatedField) {
     const std::string refusal = refusal_of("{\n\"food_count\": 3,\n\"tick_s\": 0.01,\n\"food_count\": 30\n}");
     EXPECT_THAT(refusal, HasSubstr("food_count (line 4)"));
     EXPECT_THAT(refusal, HasSubstr("twice"));
     EXPECT_THAT(refusal_of(R"({"seed": 1, "seed": 2})"), HasSubstr("seed (line 1)"));
 }
 
-TEST(Experiment, RefusesNumbersThatAreNone) {
+TEST(Experiment, RefusesInvalidNumbers) {
     for (const char* text : {R"({"tick_s": NaN})", R"({"tick_s": Infinity})", R"({"tick_s": 1e999})",
                              R"({"food_count": -3})", R"({"food_count": 2.5})", R"({"food_count": 5000000000})"}) {
         EXPECT_NE(refusal_of(text), "") << text;
     }
 }
 
-TEST(Experiment, OfItsOwnTextIsTheSame) {
+TEST(Experiment, IsReadBackFromItsOwnText) {
     Parameters p;
     p.food_count = 99;
     p.tick_s = 1.0 / 30;
@@ -134,7 +134,7 @@ TEST(Experiment, MayHaveValuesByGeneration) {
     EXPECT_TRUE(parse_experiment("{}")->schedule.empty());
 }
 
-TEST(Experiment, TheReferencePopulationIsTheFirstOfThoseThatAreScheduled) {
+TEST(Experiment, ReferencePopulationIsTheFirstScheduledOne) {
     const auto experiment =
         parse_experiment(R"({"population_size": {"1": 30, "5": 60}, "scale_with_population": true})");
     ASSERT_TRUE(experiment) << to_text(experiment.error());
@@ -146,7 +146,7 @@ TEST(Experiment, TheReferencePopulationIsTheFirstOfThoseThatAreScheduled) {
     EXPECT_EQ(given->parameters.reference_population, 50u) << "given, though not for generation 1: its default";
 }
 
-TEST(Experiment, OfItsOwnTextHasTheSameSchedule) {
+TEST(Experiment, ItsScheduleIsReadBackFromItsOwnText) {
     for (
         const char* text :
         {R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "respawn": {"7": false}, "crossover": {"2": "none", "3": "uniform"}})",
@@ -171,7 +171,7 @@ TEST(Experiment, OfItsOwnTextHasTheSameSchedule) {
     }
 }
 
-TEST(Experiment, NamesWhatIsWrongWithAScheduleByGenerationAndLine) {
+TEST(Experiment, NamesScheduleErrorsByGenerationAndLine) {
     const std::string refusal = refusal_of(R"({
   "mutation_chance": {
     "1": 0.2,
@@ -204,15 +204,15 @@ TEST(Experiment, EveryCombinationOfAScheduleIsValidated) {
     EXPECT_THAT(refusal, HasSubstr("impulse_max at generation 7 (line 4): got 90, allowed at least impulse_min (100)"));
     EXPECT_THAT(refusal_of("{\"impulse_min\":\n{\"5\": 260}}"),
                 HasSubstr("impulse_max at generation 5 (line 2): got 250"));
-    // Those who are born are as large as breeding still makes them.
+    // The new organisms are as large as the breeding parameters before the change allow.
     EXPECT_EQ(refusal_of(R"({"population_size": {"2": 250}, "body_size_max": {"2": 100}, "island_width_px": 1280})"),
               "");
     EXPECT_THAT(refusal_of(R"({"population_size": {"2": 900}, "body_size_max": {"2": 60}})"),
-                HasSubstr("by what breeding still goes by then"));
+                HasSubstr("with the values that breeding still uses then"));
     EXPECT_EQ(refusal_of(R"({"population_size": {"3": 900}, "body_size_max": {"2": 60}})"), "");
 }
 
-TEST(Experiment, ASchedulesSizeIsBounded) {
+TEST(Experiment, TheSizeOfAScheduleIsLimited) {
     const auto steps = [](std::size_t count) {
         std::string text = "{\"food_health\": {\"1\": 0";
         for (std::size_t i = 0; i < count; ++i) {
@@ -241,7 +241,7 @@ TEST(ExperimentsOfTheRepository, AreAllAccepted) {
     EXPECT_GE(count, 5);
 }
 
-TEST(Experiment, GivesBackEveryBitOfANumber) {
+TEST(Experiment, KeepsEveryBitOfANumber) {
     base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
     for (int trial = 0; trial < 2000; ++trial) {
         Parameters parameters;

@@ -24,7 +24,7 @@ bool accepted(std::string_view name, ParameterValue value) {
     return assign({}, one(name, std::move(value))).has_value();
 }
 
-/// Where a set is refused, the violations as "field: got X, allowed Y".
+/// The violations of a refused set as "field: got X, allowed Y".
 std::vector<std::string> violations(const base::Result<Parameters>& result) {
     std::vector<std::string> texts;
     if (!result) {
@@ -60,7 +60,7 @@ TEST(ParameterRegistry, AcceptsEveryDefaultAndTheDefaultsTogether) {
     EXPECT_THAT(validate(Parameters{}), IsEmpty());
 }
 
-TEST(ParameterRegistry, GivesBackWhatWasSetAndChangesNothingElse) {
+TEST(ParameterRegistry, SetsOneParameterAndNoOther) {
     for (const ParameterDescription& description : parameter_registry()) {
         const Assignment assignment = other_value(description, {});
         const auto changed = assign({}, std::vector{assignment});
@@ -87,7 +87,7 @@ TEST(ParameterRegistry, ReadsEachValueBackFromItsText) {
     }
 }
 
-TEST(ParameterRegistry, RefusesTextThatIsNoValue) {
+TEST(ParameterRegistry, RefusesTextThatIsNotAValue) {
     for (const char* text : {"", " 1", "1 ", "0.5x", "--1", "one"}) {
         EXPECT_FALSE(parse_value(*find_parameter("tick_s"), text).has_value()) << text;
         EXPECT_FALSE(parse_value(*find_parameter("food_count"), text).has_value()) << text;
@@ -109,7 +109,7 @@ TEST(Assign, AcceptsBothEndsOfEveryRangeAndNothingBeyond) {
                    result.error().violations[0].allowed == description.allowed() &&
                    result.error().violations[0].got == to_text(value);
         };
-        // Other rules may refuse an end, but not by its own range.
+        // Other rules may refuse an end of the range, but the range itself must not.
         if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
             constexpr double infinity = std::numeric_limits<double>::infinity();
             EXPECT_FALSE(refused_by_itself(real->range.min)) << name;
@@ -139,13 +139,13 @@ TEST(Assign, AcceptsBothEndsOfEveryRangeAndNothingBeyond) {
     }
 }
 
-TEST(Assign, TakesACountForAReal) {
+TEST(Assign, AcceptsACountForAReal) {
     const auto result = assign({}, one("respawn_s", std::uint32_t{3}));
     ASSERT_TRUE(result.has_value());
     EXPECT_EQ(result->respawn_s, 3);
 }
 
-TEST(Assign, NamesEveryViolationWithItsPrefixAndChangesNothing) {
+TEST(Assign, NamesEveryViolationWithItsPrefix) {
     const auto result = assign({},
                                std::vector<Assignment>{{"mutation_chance", 1.5},
                                                        {"food_count", std::uint32_t{30}},
@@ -163,14 +163,14 @@ TEST(Assign, NamesEveryViolationWithItsPrefixAndChangesNothing) {
                     "random, truncation"));
 }
 
-TEST(Assign, LooksAtNoMoreThanEachParameterOnce) {
+TEST(Assign, RefusesMoreAssignmentsThanParameters) {
     const std::vector<Assignment> many(200'000, {"foood", 1.0});
     EXPECT_THAT(
         violations(assign({}, many, "set_parameters.parameters.")),
         ElementsAre(AllOf(HasSubstr("set_parameters.parameters: got 200000"), HasSubstr("each parameter once"))));
 }
 
-TEST(SimilarNames, AreTheOnesMeantBestFirst) {
+TEST(SimilarNames, AreOrderedBySimilarity) {
     EXPECT_EQ(similar_parameter_names("mutation_chence").front(), "mutation_chance");
     EXPECT_THAT(similar_parameter_names("poison_cout"), Contains("poison_count"));
     EXPECT_THAT(similar_parameter_names("tournament"), SizeIs(3)); // at most three, all with that part
@@ -179,7 +179,7 @@ TEST(SimilarNames, AreTheOnesMeantBestFirst) {
     EXPECT_THAT(similar_parameter_names(""), IsEmpty());
 }
 
-TEST(CrossFieldRules, PutBoundsTheRightWayRound) {
+TEST(CrossFieldRules, RequireMinimaBelowMaxima) {
     for (const std::string stem :
          {"initial_gene", "normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"}) {
         const auto both = [&](double min, double max) {
@@ -206,7 +206,7 @@ TEST(CrossFieldRules, KeepTournamentsPossible) {
     EXPECT_TRUE(set(21, 1, true, 20));
 }
 
-TEST(CrossFieldRules, LimitTicksAndWays) {
+TEST(CrossFieldRules, LimitTicksAndDistancesPerTick) {
     const auto set = [](std::vector<Assignment> assignments) { return assign({}, assignments).has_value(); };
     EXPECT_FALSE(set({{"generation_s", 0.5}, {"tick_s", 0.6}}));
     EXPECT_TRUE(set({{"generation_s", 0.5}, {"tick_s", 0.5}}));
@@ -214,7 +214,7 @@ TEST(CrossFieldRules, LimitTicksAndWays) {
     EXPECT_TRUE(set({{"max_speed_px_s", 50'000.0}, {"tick_s", 0.1}}));
 }
 
-TEST(CrossFieldRules, BoundWhatAllIslandsHoldTogether) {
+TEST(CrossFieldRules, LimitTheTotalOverAllIslands) {
     const auto set = [](std::vector<Assignment> assignments) { return assign({}, assignments).has_value(); };
     const Assignment scaled{"scale_with_population", true};
     EXPECT_TRUE(set({scaled, {"population_size", std::uint32_t{500'000}}, {"island_count", std::uint32_t{8}}}));
@@ -233,7 +233,7 @@ TEST(CrossFieldRules, KeepRoomForOrganisms) {
 }
 
 TEST(CrossFieldRules, KeepRoomForACrateAmongManySmallObstacles) {
-    // The obstacles are few square pixels, but a crate of 100 px has hardly a place without one.
+    // The obstacles cover few square pixels, but a crate of 100 px hardly finds a place without one.
     const auto result = assign({}, std::vector<Assignment>{{"population_size", std::uint32_t{1}},
                                                            {"island_width_px", 400.0},
                                                            {"island_height_px", 400.0},
@@ -258,7 +258,7 @@ TEST(CrossFieldRules, KeepRoomForAnOrganismAmongManySmallCrates) {
     EXPECT_FALSE(result.has_value());
 }
 
-TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
+TEST(IslandPlan, ScalesWithThePopulationIfRequested) {
     Parameters p;
     p.population_size = 200;
     EXPECT_EQ(island_plan(p).width_px, 1280);

@@ -1,7 +1,7 @@
-// Crowds: half of the area covered by circles, crates and obstacles, everything in contact all the time.
+// Crowds: circles, crates and obstacles cover half of the area, and all of them touch others all the time.
 #include "server/physics/shapes.h"
 #include "tests/support/thread_executor.h"
-#include "tests/unit/physics/scene.h"
+#include "tests/unit/physics/test_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@ namespace {
 
 constexpr double side = 1500;
 
-Scene crowd(double share, std::uint64_t seed) {
-    Scene scene;
-    scene.area = {to_units(side), to_units(side)};
-    scene.parameters.integration = integration(Integrator::SymplecticEuler, 1.0 / 60, damping_rate(0.999));
-    base::RandomStream random = scene_stream(seed);
+TestBodies crowd(double share, std::uint64_t seed) {
+    TestBodies setup;
+    setup.area = {to_units(side), to_units(side)};
+    setup.parameters.integration = integration(Integrator::SymplecticEuler, 1.0 / 60, damping_rate(0.999));
+    base::RandomStream random = test_stream(seed);
     const auto place = [&] { return random.uniform(12, side - 12); };
     double covered = 0;
     while (covered < share * side * side) {
@@ -28,21 +28,21 @@ Scene crowd(double share, std::uint64_t seed) {
         covered += 3.14159 * static_cast<double>(radius * radius);
         const double x = place(), y = place();
         const float vx = uniform_float(random, -200, 200);
-        scene.add_circle(x, y, radius, radius / 10, vx, uniform_float(random, -200, 200));
+        setup.add_circle(x, y, radius, radius / 10, vx, uniform_float(random, -200, 200));
     }
     for (int i = 0; i < 30; ++i) {
         const double x = place(), y = place();
-        scene.add_box(x, y, 20, 15, i < 20 ? 0.25f : 0.0f);
+        setup.add_box(x, y, 20, 15, i < 20 ? 0.25f : 0.0f);
     }
-    return scene;
+    return setup;
 }
 
 struct Motion {
     double x = 0, y = 0, size = 0, energy = 0;
 };
 
-/// Sums over what can move: momentum, its size, kinetic energy.
-Motion motion_of(const Scene& scene) {
+/// Sums over movable bodies: momentum, its magnitude, kinetic energy.
+Motion motion_of(const TestBodies& setup) {
     Motion sum;
     const auto add = [&](const Bodies& bodies) {
         for (std::size_t i = 0; i < bodies.x.size(); ++i) {
@@ -57,41 +57,41 @@ Motion motion_of(const Scene& scene) {
             }
         }
     };
-    add(scene.circles);
-    add(scene.boxes);
+    add(setup.circles);
+    add(setup.boxes);
     return sum;
 }
 
-/// Momentum that the walls give to what touches them, or is beyond them, and heads outward.
-Motion impulse_of_walls(const Scene& scene, bool beyond_only) {
+/// The momentum that walls give to the bodies that touch them or are beyond them, and move outward.
+Motion impulse_of_walls(const TestBodies& setup, bool beyond_only) {
     Motion impulse;
     const auto along = [&](double& sum, Coordinate position, double velocity, Coordinate extent, Coordinate size,
                            double mass) {
         const bool at_low = beyond_only ? position < extent : position <= extent;
         const bool at_high = beyond_only ? position > size - extent : position >= size - extent;
         if ((at_low && velocity < 0) || (at_high && velocity > 0)) {
-            sum -= mass * velocity * (1 + static_cast<double>(scene.parameters.restitution));
+            sum -= mass * velocity * (1 + static_cast<double>(setup.parameters.restitution));
         }
     };
     const auto add = [&](const Bodies& bodies, std::size_t i, Coordinate extent_x, Coordinate extent_y) {
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
-        along(impulse.x, bodies.x[i], static_cast<double>(bodies.velocity_x[i]), extent_x, scene.area.width, mass);
-        along(impulse.y, bodies.y[i], static_cast<double>(bodies.velocity_y[i]), extent_y, scene.area.height, mass);
+        along(impulse.x, bodies.x[i], static_cast<double>(bodies.velocity_x[i]), extent_x, setup.area.width, mass);
+        along(impulse.y, bodies.y[i], static_cast<double>(bodies.velocity_y[i]), extent_y, setup.area.height, mass);
     };
-    for (std::size_t i = 0; i < scene.circles.size(); ++i) {
-        add(scene.circles, i, to_units(scene.circles.radius[i]), to_units(scene.circles.radius[i]));
+    for (std::size_t i = 0; i < setup.circles.size(); ++i) {
+        add(setup.circles, i, to_units(setup.circles.radius[i]), to_units(setup.circles.radius[i]));
     }
-    for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-        if (scene.boxes.inverse_mass[i] > 0) {
-            add(scene.boxes, i, to_units(scene.boxes.half_width[i]), to_units(scene.boxes.half_height[i]));
+    for (std::size_t i = 0; i < setup.boxes.size(); ++i) {
+        if (setup.boxes.inverse_mass[i] > 0) {
+            add(setup.boxes, i, to_units(setup.boxes.half_width[i]), to_units(setup.boxes.half_height[i]));
         }
     }
     return impulse;
 }
 
-/// The greatest overlap of two circles, as a share of the lesser radius.
-double deepest_overlap(const Scene& scene) {
-    const Circles& circles = scene.circles;
+/// The greatest overlap of two circles, as a share of the smaller radius.
+double deepest_overlap(const TestBodies& setup) {
+    const Circles& circles = setup.circles;
     double deepest = 0;
     for (std::size_t a = 0; a < circles.size(); ++a) {
         for (std::size_t b = a + 1; b < circles.size(); ++b) {
@@ -108,57 +108,58 @@ double deepest_overlap(const Scene& scene) {
     return deepest;
 }
 
-void step_in_parts(Scene& scene, base::Executor& executor, const std::function<void()>& before_collisions,
+void step_in_parts(TestBodies& setup, base::Executor& executor, const std::function<void()>& before_collisions,
                    const std::function<void()>& after_collisions) {
-    Stepper& stepper = scene.stepper;
+    Stepper& stepper = setup.stepper;
     const std::vector<float> none(circles_per_block, 0);
-    if (stepper.near().worn(scene.circles, scene.boxes)) {
-        stepper.near().renew(scene.circles, scene.boxes, scene.area, executor);
+    if (stepper.near().stale(setup.circles, setup.boxes)) {
+        stepper.near().renew(setup.circles, setup.boxes, setup.area, executor);
     }
-    stepper.begin(scene.circles, scene.boxes, scene.area, scene.parameters);
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
-        stepper.accelerate(scene.circles, block, {none.data(), none.data()});
+    stepper.begin(setup.circles, setup.boxes, setup.area, setup.parameters);
+    for (std::size_t block = 0; block < block_count(setup.circles.size()); ++block) {
+        stepper.accelerate(setup.circles, block, {none.data(), none.data()});
     }
     before_collisions();
-    stepper.collide(scene.circles, scene.boxes, executor);
+    stepper.collide(setup.circles, setup.boxes, executor);
     after_collisions();
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
-        stepper.move(scene.circles, block);
+    for (std::size_t block = 0; block < block_count(setup.circles.size()); ++block) {
+        stepper.move(setup.circles, block);
     }
-    stepper.finish(scene.boxes);
+    stepper.finish(setup.boxes);
 }
 
-TEST(ACrowd, ChangesItsMomentumOnlyByWallsObstaclesAndDamping) {
-    // Without obstacles, which take momentum as walls do. A float has 24 bits: rounding takes 6e-8 of a velocity.
-    Scene scene = crowd(0.5, 21);
+TEST(ACrowd, ChangesMomentumOnlyByWallsAndDamping) {
+    // Without obstacles, which take up momentum as walls do. A float has 24 bits: rounding changes a velocity by a
+    // share of 6e-8.
+    TestBodies setup = crowd(0.5, 21);
     Boxes crates;
-    for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-        if (scene.boxes.inverse_mass[i] > 0) {
-            crates.add(scene.boxes.x[i], scene.boxes.y[i], scene.boxes.half_width[i], scene.boxes.half_height[i],
+    for (std::size_t i = 0; i < setup.boxes.size(); ++i) {
+        if (setup.boxes.inverse_mass[i] > 0) {
+            crates.add(setup.boxes.x[i], setup.boxes.y[i], setup.boxes.half_width[i], setup.boxes.half_height[i],
                        0.25f);
         }
     }
-    scene.boxes = crates;
+    setup.boxes = crates;
     base::InlineExecutor executor;
-    const auto kept = static_cast<double>(scene.parameters.integration.velocity_kept);
+    const auto kept = static_cast<double>(setup.parameters.integration.velocity_kept);
     std::uint64_t touched_walls = 0;
     for (int tick = 0; tick < 300; ++tick) {
-        const Motion before = motion_of(scene);
-        Motion walls = impulse_of_walls(scene, false);
+        const Motion before = motion_of(setup);
+        Motion walls = impulse_of_walls(setup, false);
         walls.x *= kept;
         walls.y *= kept;
-        // Velocities → positions comes last: its bounces follow from where everything would be without a wall.
-        Scene unbounded = scene;
+        // Velocities → positions is the last step: its bounces depend on where all bodies would be without walls.
+        TestBodies unbounded = setup;
         unbounded.stepper = {};
         Motion late_walls;
         Motion after_contacts;
         step_in_parts(
-            scene, executor, [] {},
+            setup, executor, [] {},
             [&] {
-                after_contacts = motion_of(scene);
-                unbounded.circles = scene.circles;
-                unbounded.boxes = scene.boxes;
-                const float tick_s = scene.parameters.integration.tick_s;
+                after_contacts = motion_of(setup);
+                unbounded.circles = setup.circles;
+                unbounded.boxes = setup.boxes;
+                const float tick_s = setup.parameters.integration.tick_s;
                 const auto move = [&](Bodies& bodies) {
                     for (std::size_t i = 0; i < bodies.x.size(); ++i) {
                         if (bodies.inverse_mass[i] > 0) {
@@ -171,7 +172,7 @@ TEST(ACrowd, ChangesItsMomentumOnlyByWallsObstaclesAndDamping) {
                 move(unbounded.boxes);
                 late_walls = impulse_of_walls(unbounded, true);
             });
-        const Motion after = motion_of(scene);
+        const Motion after = motion_of(setup);
         ASSERT_NEAR(after_contacts.x, before.x * kept + walls.x, before.size * 2e-6) << "tick " << tick;
         ASSERT_NEAR(after_contacts.y, before.y * kept + walls.y, before.size * 2e-6) << "tick " << tick;
         ASSERT_NEAR(after.x, after_contacts.x + late_walls.x, before.size * 2e-6) << "tick " << tick;
@@ -182,49 +183,49 @@ TEST(ACrowd, ChangesItsMomentumOnlyByWallsObstaclesAndDamping) {
 }
 
 TEST(ACrowd, NeverGainsKineticEnergyThroughContacts) {
-    Scene scene = crowd(0.5, 22);
+    TestBodies setup = crowd(0.5, 22);
     base::InlineExecutor executor;
     double before = 0;
     for (int tick = 0; tick < 300; ++tick) {
         step_in_parts(
-            scene, executor, [&] { before = motion_of(scene).energy; },
-            [&] { ASSERT_LE(motion_of(scene).energy, before * (1 + 1e-6)) << "tick " << tick; });
+            setup, executor, [&] { before = motion_of(setup).energy; },
+            [&] { ASSERT_LE(motion_of(setup).energy, before * (1 + 1e-6)) << "tick " << tick; });
     }
 }
 
 TEST(ACrowd, OverlapsLessThanHalfARadiusAndStaysInsideTheWalls) {
-    Scene scene = crowd(0.5, 23);
+    TestBodies setup = crowd(0.5, 23);
     base::InlineExecutor executor;
-    base::RandomStream random = scene_stream(24);
+    base::RandomStream random = test_stream(24);
     for (int tick = 0; tick < 600; ++tick) {
-        // As organisms push: up to 250 gene units of force in any direction.
-        for (std::size_t i = 0; i < scene.circles.size(); ++i) {
+        // Like organisms: up to 250 gene units of force in any direction.
+        for (std::size_t i = 0; i < setup.circles.size(); ++i) {
             const float x = uniform_float(random, -250, 250);
-            scene.push(i, x, uniform_float(random, -250, 250));
+            setup.push(i, x, uniform_float(random, -250, 250));
         }
-        scene.step(executor);
-        for (std::size_t i = 0; i < scene.circles.size(); ++i) {
-            const Coordinate radius = to_units(scene.circles.radius[i]);
-            ASSERT_GE(scene.circles.x[i], radius) << "tick " << tick;
-            ASSERT_LE(scene.circles.x[i], scene.area.width - radius) << "tick " << tick;
-            ASSERT_GE(scene.circles.y[i], radius) << "tick " << tick;
-            ASSERT_LE(scene.circles.y[i], scene.area.height - radius) << "tick " << tick;
+        setup.step(executor);
+        for (std::size_t i = 0; i < setup.circles.size(); ++i) {
+            const Coordinate radius = to_units(setup.circles.radius[i]);
+            ASSERT_GE(setup.circles.x[i], radius) << "tick " << tick;
+            ASSERT_LE(setup.circles.x[i], setup.area.width - radius) << "tick " << tick;
+            ASSERT_GE(setup.circles.y[i], radius) << "tick " << tick;
+            ASSERT_LE(setup.circles.y[i], setup.area.height - radius) << "tick " << tick;
         }
-        // The random start has circles on top of each other, which takes a second to come apart.
+        // At the random start circles overlap completely; they take a second to separate.
         if (tick > 120 && tick % 20 == 0) {
-            ASSERT_LT(deepest_overlap(scene), 0.5) << "tick " << tick;
+            ASSERT_LT(deepest_overlap(setup), 0.5) << "tick " << tick;
         }
     }
 }
 
-TEST(ACrowd, MovesAlikeOnAnyNumberOfThreadsAndWithAFreshListOfPairsInEveryTick) {
-    Scene one = crowd(0.5, 25), many = one, fresh = one;
+TEST(ACrowd, MovesAlikeOnAnyThreadCountAndWithNewPairLists) {
+    TestBodies one = crowd(0.5, 25), many = one, fresh = one;
     base::InlineExecutor executor;
     support::ThreadExecutor threads{3};
     for (int tick = 0; tick < 150; ++tick) {
         one.step(executor);
         many.step(threads);
-        fresh.stepper.near().forget();
+        fresh.stepper.near().invalidate();
         fresh.step(executor);
         ASSERT_EQ(many.circles.x, one.circles.x) << "tick " << tick;
         ASSERT_EQ(many.circles.velocity_y, one.circles.velocity_y) << "tick " << tick;
@@ -236,10 +237,10 @@ TEST(ACrowd, MovesAlikeOnAnyNumberOfThreadsAndWithAFreshListOfPairsInEveryTick) 
 }
 
 TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
-    // Circles only; ids in another order than they lie in memory.
-    Scene scene;
-    scene.area = {to_units(side), to_units(side)};
-    base::RandomStream random = scene_stream(26);
+    // Circles only, stored in another order than by id.
+    TestBodies setup;
+    setup.area = {to_units(side), to_units(side)};
+    base::RandomStream random = test_stream(26);
     std::vector<std::uint32_t> ids(2500);
     for (std::uint32_t i = 0; i < ids.size(); ++i) {
         ids[i] = i;
@@ -247,10 +248,10 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
     random.shuffle(std::span{ids});
     for (const std::uint32_t id : ids) {
         const Coordinate x = to_units(random.uniform(10, side - 10)), y = to_units(random.uniform(10, side - 10));
-        scene.circles.add({.id = id, .x = x, .y = y, .radius = 10, .mass = 1});
-        scene.circles.velocity_x[scene.circles.size() - 1] = uniform_float(random, -100, 100);
+        setup.circles.add({.id = id, .x = x, .y = y, .radius = 10, .mass = 1});
+        setup.circles.velocity_x[setup.circles.size() - 1] = uniform_float(random, -100, 100);
     }
-    Circles expected = scene.circles;
+    Circles expected = setup.circles;
     std::vector<std::size_t> by_id(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) {
         by_id[ids[i]] = i;
@@ -294,25 +295,25 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
     ASSERT_GT(touching.size(), 1500u);
     Contacts contacts;
     support::ThreadExecutor threads{3};
-    contacts.find(scene.circles, scene.boxes, scene.area, threads);
+    contacts.find(setup.circles, setup.boxes, setup.area, threads);
     EXPECT_EQ(contacts.size(), touching.size());
-    contacts.resolve(scene.circles, scene.boxes, 0.8f, threads);
-    EXPECT_EQ(scene.circles.x, expected.x);
-    EXPECT_EQ(scene.circles.y, expected.y);
-    EXPECT_EQ(scene.circles.velocity_x, expected.velocity_x);
-    EXPECT_EQ(scene.circles.velocity_y, expected.velocity_y);
+    contacts.resolve(setup.circles, setup.boxes, 0.8f, threads);
+    EXPECT_EQ(setup.circles.x, expected.x);
+    EXPECT_EQ(setup.circles.y, expected.y);
+    EXPECT_EQ(setup.circles.velocity_x, expected.velocity_x);
+    EXPECT_EQ(setup.circles.velocity_y, expected.velocity_y);
 }
 
-TEST(ACrowd, OnOneCrateIsResolvedAlikeOnAnyNumberOfThreads) {
-    // A body with thousands of contacts gives up one a round, so that most are resolved in order at the end.
-    Scene one;
-    base::RandomStream random = scene_stream(27);
+TEST(ACrowd, OnOneCrateIsResolvedAlikeOnAnyThreadCount) {
+    // A body with thousands of contacts resolves one per round, so most are resolved in order at the end.
+    TestBodies one;
+    base::RandomStream random = test_stream(27);
     for (int i = 0; i < 4000; ++i) {
         const double x = random.uniform(1000, 3000);
         one.add_circle(x, random.uniform(1000, 3000), uniform_float(random, 1, 3), 1, uniform_float(random, -50, 50));
     }
     one.add_box(2000, 2000, 900, 900, 0.001f);
-    Scene many = one;
+    TestBodies many = one;
     base::InlineExecutor executor;
     support::ThreadExecutor threads{3};
     for (int tick = 0; tick < 20; ++tick) {

@@ -1,4 +1,4 @@
-#include "tests/unit/physics/scene.h"
+#include "tests/unit/physics/test_bodies.h"
 
 #include "server/base/elementary.h"
 
@@ -21,31 +21,31 @@ void PrintTo(const Fall& fall, std::ostream* out) {
 class ConstantForce : public testing::TestWithParam<Fall> {
   protected:
     static double way_after_2_4_s(Integrator integrator) {
-        Scene scene;
-        scene.parameters.integration = integration(integrator, GetParam().tick_s, 0);
+        TestBodies setup;
+        setup.parameters.integration = integration(integrator, GetParam().tick_s, 0);
         const double start = 100'000;
-        scene.add_circle(start, start, 5, 2);
+        setup.add_circle(start, start, 5, 2);
         const long ticks = std::lround(2.4 / GetParam().tick_s);
         for (long tick = 0; tick < ticks; ++tick) {
-            scene.push(0, static_cast<float>(2 * 2 * px_per_metre), 0); // 2 kg at 2 m/s²
-            scene.step();
+            setup.push(0, static_cast<float>(2 * 2 * px_per_metre), 0); // 2 kg at 2 m/s²
+            setup.step();
         }
-        EXPECT_EQ(scene.circles.y[0], to_units(start));
-        return (to_px(scene.circles.x[0]) - start) / px_per_metre;
+        EXPECT_EQ(setup.circles.y[0], to_units(start));
+        return (to_px(setup.circles.x[0]) - start) / px_per_metre;
     }
     // Half a position unit a tick, and the rounding of a velocity of up to 4,800 px/s: below 0.2 px in 240 ticks.
     static constexpr double tolerance = 2e-4;
 };
 
-TEST_P(ConstantForce, MovesAsSymplecticEulerSays) {
+TEST_P(ConstantForce, MovesByTheSymplecticEulerFormula) {
     EXPECT_NEAR(way_after_2_4_s(Integrator::SymplecticEuler), GetParam().symplectic, tolerance);
 }
 
-TEST_P(ConstantForce, MovesAsExplicitEulerSays) {
+TEST_P(ConstantForce, MovesByTheExplicitEulerFormula) {
     EXPECT_NEAR(way_after_2_4_s(Integrator::ExplicitEuler), GetParam().explicit_euler, tolerance);
 }
 
-TEST_P(ConstantForce, MovesUnderBackwardEulerAsUnderSymplecticWithoutDamping) {
+TEST_P(ConstantForce, BackwardEqualsSymplecticWithoutDamping) {
     EXPECT_EQ(way_after_2_4_s(Integrator::BackwardEuler), way_after_2_4_s(Integrator::SymplecticEuler));
 }
 
@@ -54,64 +54,63 @@ INSTANTIATE_TEST_SUITE_P(TickLengths, ConstantForce,
                                          Fall{0.4, 6.72, 4.8}, Fall{0.8, 7.68, 3.84}),
                          [](const auto& fall) { return std::to_string(std::lround(fall.param.tick_s * 100)) + "cs"; });
 
-TEST(BackwardEuler, TakesDampingImplicitly) {
-    // v' = (v + a·dt)/(1 + c·dt), x' = x + v'·dt, worked out in double; 120 ticks of rounding to 1/4096 px and to
-    // float.
+TEST(BackwardEuler, AppliesDampingImplicitly) {
+    // v' = (v + a·dt)/(1 + c·dt), x' = x + v'·dt, computed in double; 120 ticks of rounding to 1/4096 px and to float.
     constexpr double rate = 1.7, tick_s = 0.02, acceleration = 500;
-    Scene scene;
-    scene.parameters.integration = integration(Integrator::BackwardEuler, tick_s, rate);
-    scene.add_circle(100'000, 100'000, 5, 1, 300);
+    TestBodies setup;
+    setup.parameters.integration = integration(Integrator::BackwardEuler, tick_s, rate);
+    setup.add_circle(100'000, 100'000, 5, 1, 300);
     double velocity = 300, way = 0;
     for (int tick = 0; tick < 120; ++tick) {
-        scene.push(0, static_cast<float>(acceleration), 0);
-        scene.step();
+        setup.push(0, static_cast<float>(acceleration), 0);
+        setup.step();
         velocity = (velocity + acceleration * tick_s) / (1 + rate * tick_s);
         way += velocity * tick_s;
-        ASSERT_NEAR(static_cast<double>(scene.circles.velocity_x[0]), velocity, 1e-2);
-        ASSERT_NEAR(to_px(scene.circles.x[0]) - 100'000, way, 0.05) << "after tick " << tick;
+        ASSERT_NEAR(static_cast<double>(setup.circles.velocity_x[0]), velocity, 1e-2);
+        ASSERT_NEAR(to_px(setup.circles.x[0]) - 100'000, way, 0.05) << "after tick " << tick;
     }
 }
 
-TEST(ExplicitEuler, MovesWithTheStartingVelocityPlusTheImpulsesOfTheTick) {
-    Scene scene;
-    scene.parameters.integration = integration(Integrator::ExplicitEuler, 0.1, 0);
-    scene.parameters.restitution = 1;
-    scene.add_circle(1000, 1000, 5, 1, 10);
-    scene.add_circle(1010, 1000, 5, 1); // touching, with depth 0
-    scene.push(0, 50, 0);               // 5 px/s in the tick
-    scene.step();
-    // The bodies approach with 15 px/s and swap velocities: impulses of −15 and +15.
-    EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 0);
-    EXPECT_FLOAT_EQ(scene.circles.velocity_x[1], 15);
-    EXPECT_EQ(scene.circles.x[0], to_units(1000 + (10 - 15) * 0.1));
-    EXPECT_EQ(scene.circles.x[1], to_units(1010 + 15 * 0.1));
+TEST(ExplicitEuler, MovesByTheOldVelocityPlusImpulses) {
+    TestBodies setup;
+    setup.parameters.integration = integration(Integrator::ExplicitEuler, 0.1, 0);
+    setup.parameters.restitution = 1;
+    setup.add_circle(1000, 1000, 5, 1, 10);
+    setup.add_circle(1010, 1000, 5, 1); // touching, with depth 0
+    setup.push(0, 50, 0);               // 5 px/s in the tick
+    setup.step();
+    // The bodies approach each other at 15 px/s and exchange velocities: impulses of −15 and +15.
+    EXPECT_FLOAT_EQ(setup.circles.velocity_x[0], 0);
+    EXPECT_FLOAT_EQ(setup.circles.velocity_x[1], 15);
+    EXPECT_EQ(setup.circles.x[0], to_units(1000 + (10 - 15) * 0.1));
+    EXPECT_EQ(setup.circles.x[1], to_units(1010 + 15 * 0.1));
 }
 
-TEST(ExplicitEuler, MovesWithTheStartingVelocityAlsoAtTheGreatestSpeed) {
-    Scene scene;
-    scene.parameters.integration = integration(Integrator::ExplicitEuler, 0.1, 0);
-    scene.parameters.max_speed_px_s = 600;
-    scene.add_circle(1000, 1000, 5, 1, 600);
-    scene.push(0, 1000, 0); // 100 px/s in the tick, cut off again
-    scene.step();
-    EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 600);
-    EXPECT_EQ(scene.circles.x[0], to_units(1060.0));
-    EXPECT_EQ(scene.counts.speed_limited, 1u);
+TEST(ExplicitEuler, MovesByTheOldVelocityAtTheSpeedLimitToo) {
+    TestBodies setup;
+    setup.parameters.integration = integration(Integrator::ExplicitEuler, 0.1, 0);
+    setup.parameters.max_speed_px_s = 600;
+    setup.add_circle(1000, 1000, 5, 1, 600);
+    setup.push(0, 1000, 0); // 100 px/s in the tick, then limited again
+    setup.step();
+    EXPECT_FLOAT_EQ(setup.circles.velocity_x[0], 600);
+    EXPECT_EQ(setup.circles.x[0], to_units(1060.0));
+    EXPECT_EQ(setup.counts.speed_limited, 1u);
 }
 
 class AnyIntegrator : public testing::TestWithParam<Integrator> {};
 
-TEST_P(AnyIntegrator, NeverMovesABodyFurtherThanTheGreatestSpeedAllows) {
-    Scene scene;
-    scene.area = {to_units(500'000.0), to_units(500'000.0)};
-    scene.parameters.integration = integration(GetParam(), 1, 0);
-    scene.parameters.max_speed_px_s = 5000;
-    scene.add_circle(250'000, 250'000, 5, 0.0001f);
+TEST_P(AnyIntegrator, NeverMovesABodyFasterThanTheSpeedLimit) {
+    TestBodies setup;
+    setup.area = {to_units(500'000.0), to_units(500'000.0)};
+    setup.parameters.integration = integration(GetParam(), 1, 0);
+    setup.parameters.max_speed_px_s = 5000;
+    setup.add_circle(250'000, 250'000, 5, 0.0001f);
     for (int tick = 0; tick < 20; ++tick) {
-        const Coordinate before = scene.circles.x[0];
-        scene.push(0, tick % 2 == 0 ? 1e7f : -1e7f, 0);
-        scene.step();
-        ASSERT_LE(std::abs(to_px(scene.circles.x[0]) - to_px(before)), 5001);
+        const Coordinate before = setup.circles.x[0];
+        setup.push(0, tick % 2 == 0 ? 1e7f : -1e7f, 0);
+        setup.step();
+        ASSERT_LE(std::abs(to_px(setup.circles.x[0]) - to_px(before)), 5001);
     }
 }
 
@@ -122,20 +121,20 @@ INSTANTIATE_TEST_SUITE_P(All, AnyIntegrator,
 
 class DampingOfTheDefaultWorld : public testing::TestWithParam<double> {};
 
-TEST_P(DampingOfTheDefaultWorld, HalvesAVelocityIn692_8SixtiethsWhateverTheTickLength) {
+TEST_P(DampingOfTheDefaultWorld, HalvesAVelocityInTheSameTimeForAnyTick) {
     const double half_life_s = 692.8 / 60, tick_s = GetParam();
-    Scene scene;
-    scene.parameters.integration = integration(Integrator::SymplecticEuler, tick_s, damping_rate(0.999));
-    scene.add_circle(10'000, 10'000, 5, 1, 100);
+    TestBodies setup;
+    setup.parameters.integration = integration(Integrator::SymplecticEuler, tick_s, damping_rate(0.999));
+    setup.add_circle(10'000, 10'000, 5, 1, 100);
     double seconds = 0, before = 100;
-    while (scene.circles.velocity_x[0] > 50) {
-        before = static_cast<double>(scene.circles.velocity_x[0]);
-        scene.step();
+    while (setup.circles.velocity_x[0] > 50) {
+        before = static_cast<double>(setup.circles.velocity_x[0]);
+        setup.step();
         seconds += tick_s;
     }
-    const double after = static_cast<double>(scene.circles.velocity_x[0]);
+    const double after = static_cast<double>(setup.circles.velocity_x[0]);
     const double crossing = seconds - tick_s * (50 - after) / (before - after); // between the last two ticks
-    // The straight line between two ticks; and the factor of a tick, 1 − 0.06/s · tick_s, rounded to a float (3e-8).
+    // A straight line between the two ticks. The factor of a tick, 1 − 0.06/s · tick_s, is rounded to a float (3e-8).
     EXPECT_NEAR(crossing, half_life_s, half_life_s * (1e-4 + 3e-8 / (0.06 * tick_s)));
 }
 

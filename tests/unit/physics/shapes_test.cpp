@@ -16,7 +16,7 @@ void expect_overlap(const Overlap& overlap, float depth, float normal_x, float n
     EXPECT_FLOAT_EQ(overlap.normal_y, normal_y);
 }
 
-TEST(CircleCircle, OverlapByTheSumOfRadiiLessTheDistance) {
+TEST(CircleCircle, OverlapIsTheSumOfRadiiMinusTheDistance) {
     expect_overlap(circle_circle(3, 4, 4, 3), 2, 0.6f, 0.8f);
     expect_overlap(circle_circle(-3, 0, 2, 2), 1, -1, 0);
     EXPECT_FALSE(circle_circle(3, 4, 2, 2.99f).touching);
@@ -27,11 +27,11 @@ TEST(CircleCircle, ThatShareOnePointTouchWithDepthZero) {
     expect_overlap(circle_circle(0, -7, 5, 2), 0, 0, -1);
 }
 
-TEST(CircleCircle, AtEqualCentresPartAlongXByTheSumOfRadii) {
+TEST(CircleCircle, AtEqualCentresSeparateAlongXByTheSumOfRadii) {
     expect_overlap(circle_circle(0, 0, 2, 3), 5, 1, 0);
 }
 
-TEST(CircleCircle, OneInsideTheOtherLeavesTheShortWay) {
+TEST(CircleCircle, OneInsideTheOtherLeavesTheShortestWay) {
     expect_overlap(circle_circle(0, 1, 10, 2), 11, 0, 1);
 }
 
@@ -48,23 +48,23 @@ TEST(BoxBox, ThatShareAnEdgeOrACornerTouchWithDepthZero) {
     expect_overlap(box_box(-4, 4, {2, 2}, {2, 2}), 0, -1, 0);
 }
 
-TEST(BoxBox, OfEqualOverlapsPartAlongX) {
+TEST(BoxBox, OfEqualOverlapsSeparateAlongX) {
     expect_overlap(box_box(-3, 3, {2, 2}, {2, 2}), 1, -1, 0);
 }
 
-TEST(BoxBox, AtEqualCentresPartAlongTheNarrowerAxisTowardPlus) {
+TEST(BoxBox, AtEqualCentresSeparateAlongTheNarrowerAxis) {
     expect_overlap(box_box(0, 0, {2, 3}, {1, 3}), 3, 1, 0);
     expect_overlap(box_box(0, 0, {3, 2}, {3, 1}), 3, 0, 1);
     expect_overlap(box_box(0, 0, {2, 2}, {2, 2}), 4, 1, 0);
 }
 
-TEST(BoxCircle, OverlapAtASideByTheWayToIt) {
+TEST(BoxCircle, OverlapAtASideIsMeasuredToTheSide) {
     expect_overlap(box_circle(4, 0.5f, {2, 3}, 2.5f), 0.5f, 1, 0);
     expect_overlap(box_circle(-1, -4, {2, 3}, 1.5f), 0.5f, 0, -1);
     EXPECT_FALSE(box_circle(4, 0, {2, 3}, 1.99f).touching);
 }
 
-TEST(BoxCircle, OverlapAtACornerByTheWayToIt) {
+TEST(BoxCircle, OverlapAtACornerIsMeasuredToTheCorner) {
     expect_overlap(box_circle(5, 7, {2, 3}, 6), 1, 0.6f, 0.8f);
     EXPECT_FALSE(box_circle(5, 7, {2, 3}, 4.99f).touching) << "the box around the circle overlaps, the circle does not";
 }
@@ -144,7 +144,7 @@ RC_GTEST_PROP(BoxCircle, ApartByTheDepthAlongTheNormalJustTouch, ()) {
     RC_ASSERT(std::abs(std::sqrt(out_x * out_x + out_y * out_y) - radius) < rounding_px);
 }
 
-RC_GTEST_PROP(CircleCircle, SeenFromTheOtherTheNormalIsTurnedRound, ()) {
+RC_GTEST_PROP(CircleCircle, ExchangedShapesReverseTheNormal, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60), a = some(1, 50), b = some(1, 50);
     const Overlap there = circle_circle(dx, dy, a, b), back = circle_circle(-dx, -dy, b, a);
     RC_ASSERT(there.touching == back.touching);
@@ -155,7 +155,7 @@ RC_GTEST_PROP(CircleCircle, SeenFromTheOtherTheNormalIsTurnedRound, ()) {
     }
 }
 
-RC_GTEST_PROP(BoxBox, SeenFromTheOtherTheNormalIsTurnedRound, ()) {
+RC_GTEST_PROP(BoxBox, ExchangedShapesReverseTheNormal, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60);
     if (dx == 0 || dy == 0) {
         return;

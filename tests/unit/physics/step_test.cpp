@@ -1,4 +1,4 @@
-#include "tests/unit/physics/scene.h"
+#include "tests/unit/physics/test_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -25,18 +25,18 @@ void add_totals(const Bodies& bodies, Totals& totals) {
     }
 }
 
-Totals totals(const Scene& scene) {
+Totals totals(const TestBodies& setup) {
     Totals sum;
-    add_totals(scene.circles, sum);
-    add_totals(scene.boxes, sum);
+    add_totals(setup.circles, sum);
+    add_totals(setup.boxes, sum);
     return sum;
 }
 
-/// Circles and crates at random in a square, as far as `share` of its area; obstacles too.
-Scene crowd(double side, double share, int crates, int obstacles, double speed, std::uint64_t seed) {
-    Scene scene;
-    scene.area = {to_units(side), to_units(side)};
-    base::RandomStream random = scene_stream(seed);
+/// Circles and crates at random places in a square that is `share` of its area; also obstacles.
+TestBodies crowd(double side, double share, int crates, int obstacles, double speed, std::uint64_t seed) {
+    TestBodies setup;
+    setup.area = {to_units(side), to_units(side)};
+    base::RandomStream random = test_stream(seed);
     const auto place = [&] { return random.uniform(12, side - 12); };
     const auto velocity = [&] { return uniform_float(random, -speed, speed); };
     double covered = 0;
@@ -45,58 +45,58 @@ Scene crowd(double side, double share, int crates, int obstacles, double speed, 
         covered += 3.14159 * static_cast<double>(radius * radius);
         const double x = place(), y = place();
         const float vx = velocity(), vy = velocity();
-        scene.add_circle(x, y, radius, uniform_float(random, 0.4, 2), vx, vy);
+        setup.add_circle(x, y, radius, uniform_float(random, 0.4, 2), vx, vy);
     }
     for (int i = 0; i < crates + obstacles; ++i) {
         const double x = place(), y = place();
         const float vx = i < crates ? velocity() : 0, vy = i < crates ? velocity() : 0;
-        scene.add_box(x, y, 10, 8, i < crates ? uniform_float(random, 0.1, 2) : 0, vx, vy);
+        setup.add_box(x, y, 10, 8, i < crates ? uniform_float(random, 0.1, 2) : 0, vx, vy);
     }
-    return scene;
+    return setup;
 }
 
 TEST(Collisions, ConserveMomentumAndNeverAddKineticEnergy) {
-    Scene scene = crowd(600, 0.25, 10, 0, 300, 11);
+    TestBodies setup = crowd(600, 0.25, 10, 0, 300, 11);
     std::uint64_t contacts = 0;
     for (int tick = 0; tick < 400; ++tick) {
-        // Without the walls: momentum goes nowhere else. Positions move as they do in a step.
+        // Without walls, momentum is conserved. Positions move as in a step.
         Contacts found;
         base::InlineExecutor executor;
-        found.find(scene.circles, scene.boxes, scene.area, executor);
+        found.find(setup.circles, setup.boxes, setup.area, executor);
         contacts += found.size();
-        const Totals before = totals(scene);
-        found.resolve(scene.circles, scene.boxes, 0.8f, executor);
-        const Totals after = totals(scene);
-        // A float has 24 bits: an impulse rounds a velocity by 6e-8 of it.
+        const Totals before = totals(setup);
+        found.resolve(setup.circles, setup.boxes, 0.8f, executor);
+        const Totals after = totals(setup);
+        // A float has 24 bits: an impulse rounds a velocity by a share of 6e-8.
         ASSERT_NEAR(after.momentum_x, before.momentum_x, before.momentum_size * 1e-6) << "tick " << tick;
         ASSERT_NEAR(after.momentum_y, before.momentum_y, before.momentum_size * 1e-6) << "tick " << tick;
         ASSERT_LE(after.energy, before.energy * (1 + 1e-6)) << "tick " << tick;
-        scene.step();
+        setup.step();
     }
     EXPECT_GT(contacts, 5000u) << "thousands of collisions were seen";
 }
 
-TEST(Collisions, OfPerfectRestitutionKeepTheKineticEnergyOfAPair) {
-    base::RandomStream random = scene_stream(12);
+TEST(Collisions, WithRestitutionOneKeepTheKineticEnergy) {
+    base::RandomStream random = test_stream(12);
     for (int trial = 0; trial < 3000; ++trial) {
-        Scene scene;
-        scene.parameters.restitution = 1;
-        scene.add_circle(1000, 1000, 10, uniform_float(random, 0.1, 5), uniform_float(random, -99, 99),
+        TestBodies setup;
+        setup.parameters.restitution = 1;
+        setup.add_circle(1000, 1000, 10, uniform_float(random, 0.1, 5), uniform_float(random, -99, 99),
                          uniform_float(random, -99, 99));
-        scene.add_circle(1000 + random.uniform(-14, 14), 1000 + random.uniform(-14, 14), 10,
+        setup.add_circle(1000 + random.uniform(-14, 14), 1000 + random.uniform(-14, 14), 10,
                          uniform_float(random, 0.1, 5), uniform_float(random, -99, 99), uniform_float(random, -99, 99));
-        const Totals before = totals(scene);
-        scene.step();
-        ASSERT_NEAR(totals(scene).energy, before.energy, before.energy * 1e-5);
+        const Totals before = totals(setup);
+        setup.step();
+        ASSERT_NEAR(totals(setup).energy, before.energy, before.energy * 1e-5);
     }
 }
 
-TEST(Step, LosesKineticEnergyTickByTickInACrowdAmongWallsAndObstacles) {
-    Scene scene = crowd(500, 0.3, 8, 8, 400, 13);
-    double before = totals(scene).energy;
+TEST(Step, NeverGainsKineticEnergyInACrowd) {
+    TestBodies setup = crowd(500, 0.3, 8, 8, 400, 13);
+    double before = totals(setup).energy;
     for (int tick = 0; tick < 2000; ++tick) {
-        scene.step();
-        const double now = totals(scene).energy;
+        setup.step();
+        const double now = totals(setup).energy;
         ASSERT_LE(now, before * (1 + 1e-6)) << "tick " << tick;
         before = now;
     }
@@ -106,26 +106,26 @@ TEST(Step, LosesKineticEnergyTickByTickInACrowdAmongWallsAndObstacles) {
 class DenseCrowd : public testing::TestWithParam<Integrator> {};
 
 TEST_P(DenseCrowd, StaysInsideTheWallsAtHighSpeeds) {
-    Scene scene = crowd(400, 0.5, 6, 6, 3000, 14);
-    scene.parameters.integration = integration(GetParam(), 1.0 / 60, damping_rate(0.999));
-    scene.parameters.max_speed_px_s = 6000;
-    base::RandomStream random = scene_stream(15);
+    TestBodies setup = crowd(400, 0.5, 6, 6, 3000, 14);
+    setup.parameters.integration = integration(GetParam(), 1.0 / 60, damping_rate(0.999));
+    setup.parameters.max_speed_px_s = 6000;
+    base::RandomStream random = test_stream(15);
     for (int tick = 0; tick < 1000; ++tick) {
-        for (std::size_t i = 0; i < scene.circles.size(); ++i) {
+        for (std::size_t i = 0; i < setup.circles.size(); ++i) {
             const float x = uniform_float(random, -1e5, 1e5);
-            scene.push(i, x, uniform_float(random, -1e5, 1e5));
+            setup.push(i, x, uniform_float(random, -1e5, 1e5));
         }
-        scene.step();
-        for (std::size_t i = 0; i < scene.circles.size(); ++i) {
-            const Coordinate radius = to_units(scene.circles.radius[i]);
-            ASSERT_GE(scene.circles.x[i], radius) << "tick " << tick;
-            ASSERT_LE(scene.circles.x[i], scene.area.width - radius) << "tick " << tick;
-            ASSERT_GE(scene.circles.y[i], radius) << "tick " << tick;
-            ASSERT_LE(scene.circles.y[i], scene.area.height - radius) << "tick " << tick;
+        setup.step();
+        for (std::size_t i = 0; i < setup.circles.size(); ++i) {
+            const Coordinate radius = to_units(setup.circles.radius[i]);
+            ASSERT_GE(setup.circles.x[i], radius) << "tick " << tick;
+            ASSERT_LE(setup.circles.x[i], setup.area.width - radius) << "tick " << tick;
+            ASSERT_GE(setup.circles.y[i], radius) << "tick " << tick;
+            ASSERT_LE(setup.circles.y[i], setup.area.height - radius) << "tick " << tick;
         }
-        for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-            ASSERT_GE(scene.boxes.x[i], to_units(10.0f)) << "tick " << tick;
-            ASSERT_LE(scene.boxes.x[i], scene.area.width - to_units(10.0f)) << "tick " << tick;
+        for (std::size_t i = 0; i < setup.boxes.size(); ++i) {
+            ASSERT_GE(setup.boxes.x[i], to_units(10.0f)) << "tick " << tick;
+            ASSERT_LE(setup.boxes.x[i], setup.area.width - to_units(10.0f)) << "tick " << tick;
         }
     }
 }
@@ -135,66 +135,66 @@ INSTANTIATE_TEST_SUITE_P(All, DenseCrowd,
                                          Integrator::BackwardEuler),
                          testing::PrintToStringParamName());
 
-TEST(Step, CutsSpeedsToTheGreatestAllowedAndCountsEachTime) {
-    Scene scene;
-    scene.parameters.max_speed_px_s = 600;
-    scene.add_circle(1000, 1000, 50, 1, 600, 800);
-    scene.add_circle(2000, 1000, 50, 1, 600, 0); // just allowed
-    scene.add_box(3000, 1000, 50, 50, 1, 0, -900);
-    scene.step();
-    EXPECT_EQ(scene.counts.speed_limited, 2u);
-    EXPECT_NEAR(scene.circles.velocity_x[0], 360, 1e-3);
-    EXPECT_NEAR(scene.circles.velocity_y[0], 480, 1e-3);
-    EXPECT_EQ(scene.circles.velocity_x[1], 600);
-    EXPECT_NEAR(scene.boxes.velocity_y[0], -600, 1e-3);
-    EXPECT_EQ(scene.circles.x[0], to_units(1006.0));
+TEST(Step, LimitsSpeedsAndCountsEachTime) {
+    TestBodies setup;
+    setup.parameters.max_speed_px_s = 600;
+    setup.add_circle(1000, 1000, 50, 1, 600, 800);
+    setup.add_circle(2000, 1000, 50, 1, 600, 0); // exactly the limit
+    setup.add_box(3000, 1000, 50, 50, 1, 0, -900);
+    setup.step();
+    EXPECT_EQ(setup.counts.speed_limited, 2u);
+    EXPECT_NEAR(setup.circles.velocity_x[0], 360, 1e-3);
+    EXPECT_NEAR(setup.circles.velocity_y[0], 480, 1e-3);
+    EXPECT_EQ(setup.circles.velocity_x[1], 600);
+    EXPECT_NEAR(setup.boxes.velocity_y[0], -600, 1e-3);
+    EXPECT_EQ(setup.circles.x[0], to_units(1006.0));
 }
 
 TEST(Step, LimitsSpeedsAfterTheImpulsesOfCollisions) {
-    Scene scene;
-    scene.parameters.max_speed_px_s = 600;
-    scene.parameters.restitution = 1;
-    scene.add_circle(1000, 1000, 50, 0.1f);
-    scene.add_circle(1099, 1000, 50, 10, -600, 0); // throws the light one with nearly 1,200 px/s
-    scene.step();
-    EXPECT_NEAR(scene.circles.velocity_x[0], -600, 1e-3);
-    EXPECT_EQ(scene.counts.speed_limited, 1u);
+    TestBodies setup;
+    setup.parameters.max_speed_px_s = 600;
+    setup.parameters.restitution = 1;
+    setup.add_circle(1000, 1000, 50, 0.1f);
+    setup.add_circle(1099, 1000, 50, 10, -600, 0); // accelerates the light body to nearly 1,200 px/s
+    setup.step();
+    EXPECT_NEAR(setup.circles.velocity_x[0], -600, 1e-3);
+    EXPECT_EQ(setup.counts.speed_limited, 1u);
 }
 
 TEST(Step, CountsBodiesThatMoveMoreThanTheirRadius) {
-    Scene scene;
-    scene.add_circle(1000, 1000, 5, 1, 299);
-    scene.add_circle(2000, 1000, 5, 1, 301);
-    scene.add_box(3000, 1000, 5, 20, 1, 0, 301); // the least half side
-    scene.step();
-    EXPECT_EQ(scene.counts.too_fast, 2u);
+    TestBodies setup;
+    setup.add_circle(1000, 1000, 5, 1, 299);
+    setup.add_circle(2000, 1000, 5, 1, 301);
+    setup.add_box(3000, 1000, 5, 20, 1, 0, 301); // the least half side
+    setup.step();
+    EXPECT_EQ(setup.counts.too_fast, 2u);
 }
 
 TEST(Step, LetsForcesActForOneTick) {
-    Scene scene;
-    scene.add_circle(1000, 1000, 5, 1);
-    scene.push(0, 60, 0);
-    scene.step();
-    scene.step();
-    EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 1);
+    TestBodies setup;
+    setup.add_circle(1000, 1000, 5, 1);
+    setup.push(0, 60, 0);
+    setup.step();
+    setup.step();
+    EXPECT_FLOAT_EQ(setup.circles.velocity_x[0], 1);
 }
 
 TEST(Step, NeverMovesAnObstacle) {
-    Scene scene = crowd(300, 0.4, 0, 5, 500, 16);
-    const auto x = scene.boxes.x, y = scene.boxes.y;
+    TestBodies setup = crowd(300, 0.4, 0, 5, 500, 16);
+    const auto x = setup.boxes.x, y = setup.boxes.y;
     for (int tick = 0; tick < 300; ++tick) {
-        scene.step();
+        setup.step();
     }
-    EXPECT_EQ(scene.boxes.x, x);
-    EXPECT_EQ(scene.boxes.y, y);
+    EXPECT_EQ(setup.boxes.x, x);
+    EXPECT_EQ(setup.boxes.y, y);
 }
 
 class AnywhereOnALargeIsland : public testing::TestWithParam<Integrator> {};
 
-TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
-    // Away from the walls; shifted by whole position units, and by no multiple of a cell.
+TEST_P(AnywhereOnALargeIsland, TheSameBodiesMoveAlikeBitForBit) {
+    // Away from the walls; shifted by whole position units that are no multiple of a cell.
     const Coordinate shift_x = to_units(295'000.0) - 1'277, shift_y = to_units(294'500.0) - 91;
-    Scene near = crowd(400, 0.3, 6, 6, 300, 17);
+    TestBodies near = crowd(400, 0.3, 6, 6, 300, 17);
     near.area = {to_units(300'000.0), to_units(300'000.0)};
     near.parameters.integration = integration(GetParam(), 1.0 / 60, damping_rate(0.999));
     for (Coordinate& x : near.circles.x) {
@@ -209,7 +209,7 @@ TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
     for (Coordinate& y : near.boxes.y) {
         y += to_units(2'000.0);
     }
-    Scene far = near;
+    TestBodies far = near;
     for (std::size_t i = 0; i < far.circles.size(); ++i) {
         far.circles.x[i] += shift_x;
         far.circles.y[i] += shift_y;
@@ -218,7 +218,7 @@ TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
         far.boxes.x[i] += shift_x;
         far.boxes.y[i] += shift_y;
     }
-    base::RandomStream random = scene_stream(18);
+    base::RandomStream random = test_stream(18);
     for (int tick = 0; tick < 120; ++tick) {
         for (std::size_t i = 0; i < near.circles.size(); ++i) {
             const float x = uniform_float(random, -300, 300), y = uniform_float(random, -300, 300);

@@ -169,7 +169,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
                                       .genes = genes});
     }
     parameters::Parameters parameters;
-    parameters.rearranging = evolution::Rearranging::Scramble;
+    parameters.rearranging = evolution::OrderMutationMethod::Scramble;
     const v1::Breeding told = to_proto(record, parameters);
     auto unset = unset_in(told);
     // Those of the request are added by who answers it. The first descendant's id is 0.

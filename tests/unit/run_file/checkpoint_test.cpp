@@ -199,13 +199,13 @@ TEST_F(CheckpointTest, ACheckpointOfAnotherWorldIsReported) {
     expect_reported(other, "another state hash", "the checkpoint: the place of food 3 on island 1");
     other = sound;
     other.state.islands[0].food[3].x = -1;
-    expect_reported(other, "where one is", "the checkpoint: the place of food 3 on island 0");
+    expect_reported(other, "position of an item", "the checkpoint: the place of food 3 on island 0");
     other = sound;
     other.state.islands[0].crates.resize(1);
     expect_reported(other, "another size", "the checkpoint");
     other = sound;
     other.state.parameters.active.damping = 0.5;
-    expect_reported(other, "its parameters", "the checkpoint: the parameter damping, in effect");
+    expect_reported(other, "parameters", "the checkpoint: the parameter damping, in effect");
     other = sound;
     other.state.islands[0].counts.food_eaten += 1; // no hash covers this
     file->begin();

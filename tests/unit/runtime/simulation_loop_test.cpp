@@ -713,7 +713,7 @@ TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
     tell(create("w"));
     EXPECT_EQ(said, "");
     tell(create("w"));
-    EXPECT_THAT(said, testing::HasSubstr("there is a world of that name already"));
+    EXPECT_THAT(said, testing::HasSubstr("a world with that name already exists"));
     tell(simulation::ForkWorld{.world = "w", .name = "taken", .at_generation = {}, .run_id = {4, 4}});
     EXPECT_THAT(said, testing::HasSubstr(taken));
     // A name is free at once, though its file may not be yet.

@@ -19,8 +19,8 @@ using physics::to_units;
 
 using support::alpha;
 
-/// One organism beside at most one food and one poison. The items are put at random, so the organism is put beside
-/// them.
+/// One organism beside at most one food item and one poison item. The items are at random places, so the organism is
+/// moved beside them.
 class OneOrganism : public testing::Test {
   protected:
     Items item_at_most_one(bool there, base::Purpose purpose) {
@@ -40,7 +40,7 @@ class OneOrganism : public testing::Test {
         poison = item_at_most_one(true, base::Purpose::PoisonPlacement);
         none = item_at_most_one(false, base::Purpose::FoodPlacement);
         evolution::Chromosome genes;
-        genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and flees without fail
+        genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and always flees
         bodies.add({.id = 0, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
         living.resize(1);
         living.put(0, genes, parameters::Parameters{});
@@ -62,9 +62,9 @@ class OneOrganism : public testing::Test {
     }
     void look_and_choose(const Items& foods, const Items& poisons, std::uint32_t tick) {
         const base::Range all{0, bodies.size()};
-        sight.begin(bodies, living, foods, poisons);
-        sight.look(bodies, living, foods, poisons, all);
-        live_and_choose(organism_columns(bodies, living, sight, foods, poisons), rules, key, tick, all, forces);
+        perception.begin(bodies, living, foods, poisons);
+        perception.search(bodies, living, foods, poisons, all);
+        live_and_choose(organism_columns(bodies, living, perception, foods, poisons), rules, key, tick, all, forces);
     }
     float dx_to(const Items& items) const { return physics::distance_px(bodies.x[0], items.all()[0].x); }
     float dy_to(const Items& items) const { return physics::distance_px(bodies.y[0], items.all()[0].y); }
@@ -79,12 +79,12 @@ class OneOrganism : public testing::Test {
     physics::Circles bodies;
     BehaviourRules rules{};
     ChosenForces forces;
-    Sight sight;
+    Perception perception;
     base::RandomKey key{base::Seed{2}, base::Purpose::Behaviour, 0, 1};
     base::InlineExecutor executor;
 };
 
-TEST_F(OneOrganism, SteersToSeenFoodAgainstItsOwnVelocity) {
+TEST_F(OneOrganism, SteersToFoodCorrectedForItsVelocity) {
     bodies.velocity_x[0] = 40;
     bodies.velocity_y[0] = -70;
     living.impulse[0] = 90;
@@ -94,7 +94,7 @@ TEST_F(OneOrganism, SteersToSeenFoodAgainstItsOwnVelocity) {
     expect_along(choose(food, none), 20, 10, 180);
 }
 
-TEST_F(OneOrganism, SeesAtExactlyItsRadiusAndNotBeyond) {
+TEST_F(OneOrganism, SeesUpToExactlyItsRadius) {
     living.impulse[0] = 90;
     put_beside(food, 3, 4);
     rules.lookahead_s = 0;
@@ -113,7 +113,7 @@ TEST_F(OneOrganism, SeesAtExactlyItsRadiusAndNotBeyond) {
     EXPECT_NEAR(std::hypot(again.x, again.y), 100, 1e-3);
 }
 
-TEST_F(OneOrganism, FleesPoisonThatIsNearerThanTheNearestFood) {
+TEST_F(OneOrganism, FleesPoisonNearerThanTheNearestFood) {
     rules.lookahead_s = 0;
     put_beside(poison, 1, 2);
     ASSERT_GT(std::hypot(dx_to(food), dy_to(food)), 3);
@@ -121,7 +121,7 @@ TEST_F(OneOrganism, FleesPoisonThatIsNearerThanTheNearestFood) {
     expect_along(choose(food, poison), -1, -2, 400);
 }
 
-TEST_F(OneOrganism, GoesForFoodThatIsNearerThanPoisonUnlessItFleesAlways) {
+TEST_F(OneOrganism, SeeksFoodNearerThanPoisonUnlessItAlwaysFlees) {
     rules.lookahead_s = 0;
     put_beside(food, 1, 2);
     ASSERT_GT(std::hypot(dx_to(poison), dy_to(poison)), 3);
@@ -133,8 +133,8 @@ TEST_F(OneOrganism, GoesForFoodThatIsNearerThanPoisonUnlessItFleesAlways) {
     expect_along(choose(food, poison), 1, 2, 400);
 }
 
-TEST_F(OneOrganism, GoesForFoodThatIsJustAsFarAsPoison) {
-    // A poison that lies as the food does: equal distances to the last bit.
+TEST_F(OneOrganism, SeeksFoodAsFarAwayAsPoison) {
+    // A poison item at the place of the food: the distances are equal to the last bit.
     const Items twin = item_at_most_one(true, base::Purpose::FoodPlacement);
     rules.lookahead_s = 0;
     living.impulse[0] = 200;
@@ -144,8 +144,8 @@ TEST_F(OneOrganism, GoesForFoodThatIsJustAsFarAsPoison) {
     expect_along(choose(food, twin), -7, 3, 400);
 }
 
-TEST_F(OneOrganism, FleesWithChanceImpulseOverTheCertainOne) {
-    // Binomial counts as a chi-square of two cells.
+TEST_F(OneOrganism, FleesWithChanceProportionalToImpulse) {
+    // Binomial counts, as a chi-square test with two cells.
     put_beside(poison, 5, 0);
     rules.lookahead_s = 0;
     for (const float impulse : {0.0f, 20.0f, 100.0f, 190.0f, 200.0f, 250.0f}) {
@@ -166,7 +166,7 @@ TEST_F(OneOrganism, FleesWithChanceImpulseOverTheCertainOne) {
     }
 }
 
-TEST_F(OneOrganism, ThatDoesNotFleeSteersToFoodItSees) {
+TEST_F(OneOrganism, SteersToSeenFoodIfItDoesNotFlee) {
     living.impulse[0] = 0.001f; // almost never flees
     rules.lookahead_s = 0;
     rules.flee_rule = parameters::FleeRule::Always;
@@ -174,7 +174,7 @@ TEST_F(OneOrganism, ThatDoesNotFleeSteersToFoodItSees) {
     expect_along(choose(food, poison), 6, 8, 0.002f);
 }
 
-TEST_F(OneOrganism, WandersInAFreshUniformDirectionEachTick) {
+TEST_F(OneOrganism, WandersInANewUniformDirectionEachTick) {
     // Pearson chi-square over 36 equal sectors.
     std::array<std::uint64_t, 36> sectors{};
     for (std::uint32_t tick = 1; tick <= 36'000; ++tick) {
@@ -187,7 +187,7 @@ TEST_F(OneOrganism, WandersInAFreshUniformDirectionEachTick) {
     EXPECT_GT(support::p_value_of_equal_cells(sectors), alpha);
 }
 
-TEST_F(OneOrganism, GoesInARandomDirectionWhereTheRightOneHasNoLength) {
+TEST_F(OneOrganism, ReplacesADirectionWithoutLengthByARandomOne) {
     living.impulse[0] = 200;
     std::array<std::uint64_t, 4> quarters{};
     const auto count = [&](Force force) {
@@ -200,7 +200,7 @@ TEST_F(OneOrganism, GoesInARandomDirectionWhereTheRightOneHasNoLength) {
     }
     EXPECT_GT(support::p_value_of_equal_cells(quarters), alpha);
     quarters = {};
-    put_beside(food, 3, -6); // the velocity will just bring it there
+    put_beside(food, 3, -6); // the velocity leads exactly there
     rules.lookahead_s = 0.5f;
     bodies.velocity_x[0] = 6;
     bodies.velocity_y[0] = -12;
@@ -237,21 +237,21 @@ TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
     }
 }
 
-TEST_F(OneOrganism, TellsWhatItIsAboutToDoAndDoesIt) {
+TEST_F(OneOrganism, DoesWhatIsPredicted) {
     living.impulse[0] = 200;
     const auto expect = [&](const Items& foods, const Items& poisons, Choice choice, const Items* target) {
         const Coordinate x = bodies.x[0], y = bodies.y[0];
         const float health = living.health[0];
-        const std::uint32_t who[] = {0};
-        Intention told[1];
-        foresee(bodies, living, foods, poisons, rules, key, 5, who, told);
+        const std::uint32_t asked[] = {0};
+        Intention predicted[1];
+        predict_intentions(bodies, living, foods, poisons, rules, key, 5, asked, predicted);
         EXPECT_EQ(living.health[0], health);
         const Force done = choose(foods, poisons, 5);
-        EXPECT_EQ(told->choice, choice);
-        EXPECT_EQ(told->force_x, done.x);
-        EXPECT_EQ(told->force_y, done.y);
-        EXPECT_EQ(told->target_x, target ? target->all()[0].x : x);
-        EXPECT_EQ(told->target_y, target ? target->all()[0].y : y);
+        EXPECT_EQ(predicted->choice, choice);
+        EXPECT_EQ(predicted->force_x, done.x);
+        EXPECT_EQ(predicted->force_y, done.y);
+        EXPECT_EQ(predicted->target_x, target ? target->all()[0].x : x);
+        EXPECT_EQ(predicted->target_y, target ? target->all()[0].y : y);
     };
     put_beside(food, 20, 10);
     expect(food, none, Choice::Seek, &food);
@@ -259,14 +259,14 @@ TEST_F(OneOrganism, TellsWhatItIsAboutToDoAndDoesIt) {
     expect(none, poison, Choice::Flee, &poison);
     expect(food, poison, Choice::Flee, &poison);
     expect(none, none, Choice::Wander, nullptr);
-    put_beside(food, 0, 0); // steered to, though the way there has no length
+    put_beside(food, 0, 0); // steered to, although the direction has no length
     expect(food, none, Choice::Seek, &food);
     living.impulse[0] = 0; // never flees
     put_beside(poison, 3, -8);
     expect(none, poison, Choice::Wander, nullptr);
 }
 
-TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
+TEST(Foreseeing, EqualsWhatACrowdThenDoesBitForBit) {
     Meadow meadow;
     meadow.area = {to_units(1600.0), to_units(1200.0)};
     base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
@@ -284,37 +284,37 @@ TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
     std::ranges::generate(poisons, place);
     meadow.put_items(foods, poisons, 4, true);
     meadow.begin();
-    meadow.bodies.remove(5); // who is gone is not asked for
-    meadow.sight.remove(5);
+    meadow.bodies.remove(5); // dead organisms are not asked for
+    meadow.perception.remove(5);
 
-    std::vector<std::uint32_t> who; // more than a block of them, from the last to the first
+    std::vector<std::uint32_t> asked; // more than a block of bodies, from the last to the first
     for (std::uint32_t i = 700; i-- > 0;) {
         if (i != 5) {
-            who.push_back(i);
+            asked.push_back(i);
         }
     }
     std::array<int, 4> counts{};
     for (int tick = 0; tick < 40; ++tick) {
         meadow.perceive();
-        std::vector<Intention> told(who.size());
-        foresee(meadow.bodies, meadow.living, meadow.food, meadow.poison, meadow.rules, meadow.key, meadow.tick, who,
-                told);
+        std::vector<Intention> predicted(asked.size());
+        predict_intentions(meadow.bodies, meadow.living, meadow.food, meadow.poison, meadow.rules, meadow.key,
+                           meadow.tick, asked, predicted);
         std::vector<float> x(meadow.bodies.x.size()), y(x);
         for (std::size_t block = 0; block < physics::block_count(700); ++block) {
             ChosenForces forces;
             const base::Range range = physics::circles_of_block(700, block);
-            auto copy = meadow.living; // whose health is lost instead
-            live_and_choose(organism_columns(meadow.bodies, copy, meadow.sight, meadow.food, meadow.poison),
+            auto copy = meadow.living; // loses its health instead of the original
+            live_and_choose(organism_columns(meadow.bodies, copy, meadow.perception, meadow.food, meadow.poison),
                             meadow.rules, meadow.key, meadow.tick, range, forces);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 x[i] = forces.x[i - range.begin];
                 y[i] = forces.y[i - range.begin];
             }
         }
-        for (std::size_t k = 0; k < who.size(); ++k) {
-            ASSERT_EQ(told[k].force_x, x[who[k]]) << "body " << who[k] << " in tick " << meadow.tick;
-            ASSERT_EQ(told[k].force_y, y[who[k]]) << "body " << who[k] << " in tick " << meadow.tick;
-            ++counts[static_cast<std::size_t>(told[k].choice)];
+        for (std::size_t k = 0; k < asked.size(); ++k) {
+            ASSERT_EQ(predicted[k].force_x, x[asked[k]]) << "body " << asked[k] << " in tick " << meadow.tick;
+            ASSERT_EQ(predicted[k].force_y, y[asked[k]]) << "body " << asked[k] << " in tick " << meadow.tick;
+            ++counts[static_cast<std::size_t>(predicted[k].choice)];
         }
         meadow.act();
         meadow.eat();

@@ -20,7 +20,7 @@ void count() {
 
 } // namespace
 
-// g++ does not see that both halves of a pair are replaced.
+// g++ does not detect that both functions of a pair are replaced.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 
 void* operator new(std::size_t size) {

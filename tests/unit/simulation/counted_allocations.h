@@ -1,4 +1,4 @@
-// Counted allocations: operators new and delete of a test program, which has one thread.
+// Counted allocations: replaces operators new and delete in a test program that has one thread.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,6 @@
 namespace evod::tests {
 
 extern std::size_t allocations;               // so far
-extern std::size_t allocations_until_failure; // the last of so many throws std::bad_alloc; 0: none does
+extern std::size_t allocations_until_failure; // the allocation with this number throws std::bad_alloc; 0: none does
 
 } // namespace evod::tests

@@ -1,4 +1,4 @@
-// What has happened in a world, one kind at a time, for tests.
+// The events of a world, filtered by kind, for tests.
 #pragma once
 
 #include "server/simulation/world.h"
@@ -9,7 +9,7 @@
 
 namespace evod::simulation {
 
-/// Those of one kind since events were taken last; the others are forgotten.
+/// The events of one kind since events were last taken; the others are dropped.
 template <class Kind>
 std::vector<Kind> events(World& world) {
     std::vector<Kind> found;

@@ -1,4 +1,4 @@
-// The same scene moves, sees and feeds the same way wherever on an island it is: bit for bit.
+// Organisms move, perceive and eat in the same way everywhere on an island, bit for bit.
 #include "tests/unit/simulation/meadow.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 using physics::Coordinate;
 using physics::to_units;
 
-/// A crowd of organisms, crates, food and poison without respawn, walls out of reach, shifted by whole units.
+/// A crowd of organisms, crates, food and poison without respawn, far from the walls, shifted by whole units.
 Meadow meadow_at(Coordinate shift_x, Coordinate shift_y) {
     Meadow meadow;
     meadow.area = {to_units(300'000.0), to_units(300'000.0)};
@@ -45,7 +45,7 @@ Meadow meadow_at(Coordinate shift_x, Coordinate shift_y) {
 }
 
 TEST(TheFarCorner, HasTheSameMotionsBitForBit) {
-    // By no multiple of a cell or strip, and by odd numbers of units.
+    // By odd numbers of units that are no multiple of a cell or strip.
     const Coordinate shift_x = to_units(295'000.0) - 1'277, shift_y = to_units(294'500.0) - 91;
     Meadow here = meadow_at(0, 0), there = meadow_at(shift_x, shift_y);
     std::size_t eaten = 0;

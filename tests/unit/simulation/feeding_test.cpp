@@ -30,7 +30,7 @@ Items items_of(std::uint32_t count, base::Purpose placement, physics::Area area,
     return items;
 }
 
-/// As if everybody might touch something.
+/// As if every body might touch an item.
 using Meal = Meadow::Meal;
 
 std::vector<Meal> awarded(Feeding& feeding) {
@@ -63,7 +63,7 @@ std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Item
         float best = 0;
         std::size_t eater = bodies.size();
         for (std::size_t i = 0; i < bodies.size();
-             ++i) { // ids rise with the index, so the first of equals has the lower
+             ++i) { // ids increase with the index, so the first of equals has the lower id
             const float dx = physics::distance_px(bodies.x[i], items.all()[item].x);
             const float dy = physics::distance_px(bodies.y[i], items.all()[item].y);
             const float reach = bodies.radius[i] + items.radius_px(), square = dx * dx + dy * dy;
@@ -88,7 +88,7 @@ void expect_equal(std::vector<Meal> meals, const std::vector<Meal>& expected, co
     }
 }
 
-TEST(Feeding, GivesAnItemToItsNearestToucherAndOfEquallyNearOnesToTheLowestId) {
+TEST(Feeding, GivesAnItemToTheNearestBodyThenTheLowestId) {
     const Items items = items_of(1, base::Purpose::FoodPlacement, {to_units(500.0), to_units(500.0)});
     const auto meal = [&](std::vector<std::pair<double, double>> offsets) {
         physics::Circles bodies;
@@ -108,7 +108,7 @@ TEST(Feeding, GivesAnItemToItsNearestToucherAndOfEquallyNearOnesToTheLowestId) {
     EXPECT_EQ(meal({{8, 0}, {5, 5}, {-3, 4}, {0, 5}, {4, -3}}).front().body, 2u);
 }
 
-TEST(Feeding, LetsOneOrganismEatSeveral) {
+TEST(Feeding, LetsOneOrganismEatSeveralItems) {
     const Items items = items_of(30, base::Purpose::FoodPlacement, {to_units(20.0), to_units(20.0)});
     physics::Circles bodies;
     bodies.add({.id = 0, .x = to_units(10.0), .y = to_units(10.0), .radius = 15, .mass = 1});
@@ -121,8 +121,8 @@ TEST(Feeding, LetsOneOrganismEatSeveral) {
     EXPECT_EQ(eaten.size(), 30u);
 }
 
-/// Whom each body takes for nearest, against trying all items: the same within its radius, and no other is nearer than
-/// it believes.
+/// Compares the nearest item that each body stores with a test of all items: the same within its radius, and no other
+/// item is nearer than the stored bound.
 void expect_nearest_are_known(const ViewColumns& view, const physics::Circles& bodies, const Items& items,
                               std::uint32_t tick) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -141,7 +141,7 @@ void expect_nearest_are_known(const ViewColumns& view, const physics::Circles& b
         }
         if (least > view.radius[i] * view.radius[i]) {
             ASSERT_GT(known, view.radius[i] * view.radius[i])
-                << "sees what is not there: body " << i << ", tick " << tick;
+                << "perceives a missing item: body " << i << ", tick " << tick;
             continue;
         }
         ASSERT_EQ(view.x[i], items.all()[nearest].x) << "body " << i << ", tick " << tick;
@@ -160,7 +160,7 @@ struct Conditions {
     double width, height; // px
     std::uint32_t organisms, foods, poisons;
     double sight;           // px; greatest
-    double crowd_side;      // px; where the organisms are at first
+    double crowd_side;      // px; side of the square in which the organisms start
     float max_speed, force; // px/s; kg px/s² a gene unit
     float item_radius;      // px
 };
@@ -170,7 +170,7 @@ void PrintTo(const Conditions& conditions, std::ostream* out) {
 
 class AMeadow : public testing::TestWithParam<Conditions> {};
 
-TEST_P(AMeadow, SeesAndFeedsAsLookingAtEverythingInEveryTickWould) {
+TEST_P(AMeadow, PerceivesAndFeedsLikeATestOfAllItems) {
     const Conditions& c = GetParam();
     Meadow meadow;
     meadow.area = {to_units(c.width), to_units(c.height)};
@@ -219,7 +219,7 @@ TEST_P(AMeadow, SeesAndFeedsAsLookingAtEverythingInEveryTickWould) {
     }
     EXPECT_GT(eaten, 100u);
     EXPECT_GT(looked, 100u);
-    EXPECT_LT(looked, std::size_t{400} * c.organisms) << "nobody has to look in every tick";
+    EXPECT_LT(looked, std::size_t{400} * c.organisms) << "no organism searches in every tick";
 }
 
 INSTANTIATE_TEST_SUITE_P(Conditions, AMeadow,

@@ -20,7 +20,7 @@ evolution::Chromosome genes_of(float normal_speed, float impulse, float body_siz
     return genes;
 }
 
-/// An island of 200 × 200 px with what a test asks for and nothing else.
+/// An island of 200 × 200 px with the contents that a test sets.
 class SmallIsland : public testing::Test {
   protected:
     SmallIsland() {
@@ -66,7 +66,7 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     EXPECT_NEAR(fitness()[1], 250 / 60.0 + 5, 1e-2);
 }
 
-TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickInWhichItKills) {
+TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickOfDeath) {
     parameters.poison_count = 2000; // everywhere
     parameters.respawn = false;
     parameters.poison_harm = 1e4;
@@ -80,7 +80,7 @@ TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickInWhichItKills) {
     EXPECT_EQ(island.counts().poison_eaten, island.fate().poison_eaten[0]);
 }
 
-TEST_F(SmallIsland, StarvesWhenHungerTakesTheLastHealthLongAfterPoison) {
+TEST_F(SmallIsland, CountsStarvingLongAfterPoison) {
     parameters.poison_count = 300;
     parameters.respawn = false;
     parameters.poison_harm = 0.01;
@@ -92,10 +92,10 @@ TEST_F(SmallIsland, StarvesWhenHungerTakesTheLastHealthLongAfterPoison) {
     EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
 }
 
-TEST_F(SmallIsland, LivesIfFoodInTheTickInWhichHealthRunsOutBringsTheSumAboveNothing) {
+TEST_F(SmallIsland, LivesIfFoodRaisesHealthAboveZeroInTime) {
     parameters.food_count = 3000;
     parameters.health_cap_per_size = 0;
-    begin({genes_of(0, 0, 100, 0.05f, 0, 0)}); // less than a tick costs
+    begin({genes_of(0, 0, 100, 0.05f, 0, 0)}); // less than the loss of a tick
     tick();
     ASSERT_EQ(island.alive_count(), 1u);
     const std::uint32_t meals = island.fate().food_eaten[0];
@@ -103,9 +103,9 @@ TEST_F(SmallIsland, LivesIfFoodInTheTickInWhichHealthRunsOutBringsTheSumAboveNot
     EXPECT_NEAR(health(0), 0.05f - 0.1f + 25 * static_cast<float>(meals), 1e-3);
 }
 
-TEST_F(SmallIsland, DiesIfTheSumOfATickIsNotAboveNothing) {
+TEST_F(SmallIsland, DiesIfHealthIsNotAboveZeroAfterATick) {
     parameters.food_count = parameters.poison_count = 3000;
-    parameters.food_health = 0.05; // and as much poison: the sum stays below
+    parameters.food_health = 0.05; // the same amount of poison: the sum stays below
     parameters.poison_harm = 10;
     begin({genes_of(0, 0, 100, 20, 0, 0)});
     tick();
@@ -113,7 +113,7 @@ TEST_F(SmallIsland, DiesIfTheSumOfATickIsNotAboveNothing) {
     EXPECT_GT(island.fate().food_eaten[0], 0u);
 }
 
-TEST_F(SmallIsland, CutsHealthToTheCapAtAMealAndOnlyThen) {
+TEST_F(SmallIsland, LimitsHealthToTheCapOnlyAtMeals) {
     parameters.health_cap_per_size = 3;
     begin({genes_of(0, 0, 40, 190, 0, 0)});
     tick();
@@ -125,7 +125,7 @@ TEST_F(SmallIsland, CutsHealthToTheCapAtAMealAndOnlyThen) {
     EXPECT_FLOAT_EQ(health(0), 120);
 }
 
-TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
+TEST(LossPerTick, IsTheRateTimesTheCostsOfGenes) {
     parameters::Parameters p;
     p.normal_speed_cost = 0.1;
     p.impulse_cost = 0.2;
@@ -146,7 +146,7 @@ TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
     EXPECT_EQ(loss(genes_of(20, 20, 100, 20, 20, 20)), 0) << "never a gain";
 }
 
-TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
+TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
     parameters.food_count = 1000;
     for (std::uint32_t ticks = 0; ticks <= 600; ++ticks) {
         parameters.respawn_s = ticks / 60.0;
@@ -171,7 +171,7 @@ TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
     EXPECT_LE(island.food().present_count(), left);
 }
 
-TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
+TEST_F(SmallIsland, HashCoversEverything) {
     parameters.island_width_px = parameters.island_height_px = 600;
     parameters.food_count = parameters.poison_count = 40;
     parameters.crate_count = 3;
@@ -220,14 +220,14 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
         add_items(island.poison(), 3);
         return sum;
     };
-    while (island.alive_count() > 0) { // deaths included
+    while (island.alive_count() > 0) { // includes deaths
         tick();
         ASSERT_EQ(island.hash(), recomputed()) << "tick " << now;
     }
     EXPECT_GT(now, 150u);
 }
 
-TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
+TEST_F(SmallIsland, FindsTheBodyOfEachId) {
     std::vector<evolution::Chromosome> chromosomes;
     for (int i = 0; i < 8; ++i) {
         chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
@@ -240,7 +240,7 @@ TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
         EXPECT_EQ(island.bodies().id[*island.body_of(alive)], alive);
         EXPECT_FALSE(island.bodies().is_void(*island.body_of(alive)));
     }
-    tick(); // when the dead have left their places
+    tick(); // when the places of the dead have been reused
     tick();
     EXPECT_EQ(island.bodies().id[island.body_of(4).value()], 4u);
     for (const std::uint32_t dead : {0u, 3u, 6u, 8u, 1000u}) {
@@ -248,7 +248,7 @@ TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
     }
 }
 
-TEST_F(SmallIsland, StartsAtRestWithTheSizesOfItsGenes) {
+TEST_F(SmallIsland, OrganismsStartAtRestWithTheSizesOfTheirGenes) {
     begin({genes_of(0, 0, 80, 50, 0, 0), genes_of(0, 0, 160, 50, 0, 0)});
     ASSERT_EQ(island.bodies().size(), 2u);
     EXPECT_EQ(island.bodies().radius[0], 8);
@@ -262,7 +262,7 @@ TEST(GeneSum, IsTheSumOfTheGenes) {
     EXPECT_EQ(gene_sum(genes_of(1, 2, 3, 4, 5, 6.5f)), 21.5);
 }
 
-TEST(Rastrigin, IsGreatestWhereEveryGeneIs150AndFollowsItsFormula) {
+TEST(Rastrigin, FollowsItsFormulaWithItsMaximumAt150) {
     EXPECT_NEAR(rastrigin(genes_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);
     const evolution::Chromosome genes = genes_of(100, 103, 151, 20, 249.5f, 175);
     double sum = 60;
@@ -274,7 +274,7 @@ TEST(Rastrigin, IsGreatestWhereEveryGeneIs150AndFollowsItsFormula) {
     EXPECT_LT(rastrigin(genes), 0);
 }
 
-TEST_F(SmallIsland, OfAFunctionOfTheChromosomeHasNoBodies) {
+TEST_F(SmallIsland, HasNoBodiesForAChromosomeFitness) {
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     begin({genes_of(1, 2, 3, 4, 5, 6), genes_of(10, 20, 30, 40, 50, 60)});
     EXPECT_EQ(island.bodies().size(), 0u);

@@ -92,7 +92,7 @@ Found within(const Items& items, Coordinate x, Coordinate y, float radius) {
 
 void expect_queries_agree(const Items& items, const Area& area, base::RandomStream& random, int queries) {
     for (int i = 0; i < queries; ++i) {
-        // From up to 10 px beyond the walls, with radii from nothing to the greatest that a gene can have.
+        // From up to 10 px beyond the walls, with radii from 0 to the greatest that a gene can have.
         const auto place = [&](Coordinate size) { return to_units(random.uniform(-10, physics::to_px(size) + 10)); };
         const Coordinate x = place(area.width), y = place(area.height);
         const auto radius = static_cast<float>(random.chance(0.2) ? random.uniform(0, 10'000) : random.uniform(0, 200));
@@ -123,7 +123,7 @@ base::StateHash recomputed_hash(const Items& items, const std::vector<std::uint3
     return hash;
 }
 
-TEST(Items, AreFoundAsByTryingAll) {
+TEST(Items, AreFoundAsByTestingAll) {
     base::RandomStream random = stream(1);
     for (const std::uint32_t count : {0u, 1u, 7u, 100u, 3000u}) {
         for (const auto& [width, height] : {std::pair{1280.0, 720.0}, {150.0, 5000.0}, {100.0, 100.0}, {5e5, 5e5}}) {
@@ -134,7 +134,7 @@ TEST(Items, AreFoundAsByTryingAll) {
 }
 
 TEST(Items, AreFoundWhenThousandsShareACell) {
-    // Only a corner is free of obstacles, so all items lie in a few cells, far more than a bucket holds.
+    // Only a corner is free of obstacles, so all items are in a few cells, far more than fit into a bucket.
     const Area area{to_units(2000.0), to_units(2000.0)};
     Boxes obstacles;
     obstacles.add(to_units(1020.0), to_units(1000.0), 980, 1000, 0);
@@ -147,7 +147,7 @@ TEST(Items, AreFoundWhenThousandsShareACell) {
     base::RandomStream random = stream(2);
     const Area corner{to_units(60.0), to_units(80.0)};
     expect_queries_agree(items, corner, random, 50);
-    for (std::uint32_t tick = 1; tick <= 40; ++tick) { // and while they come and go
+    for (std::uint32_t tick = 1; tick <= 40; ++tick) { // and also while they come and go
         items.reappear(tick, BoxGrid{area, obstacles}, executor);
         for (int eaten = 0; eaten < 150; ++eaten) {
             if (const std::uint32_t item = random.below(items.size()); items.present(item)) {
@@ -158,13 +158,13 @@ TEST(Items, AreFoundWhenThousandsShareACell) {
     }
 }
 
-TEST(Items, AtExactlyTheRadiusAreFoundAndOfEquallyNearOnesTheLowestIdIsNearest) {
+TEST(Items, AtTheRadiusAreFoundAndTiesGoToTheLowestId) {
     Items items = some_items(400, {to_units(300.0), to_units(300.0)});
     base::RandomStream random = stream(3);
     int ties = 0;
     for (int i = 0; i < 4000; ++i) {
         const std::uint32_t a = random.below(400), b = random.below(400);
-        // A place just as far from both, on the whole units there are.
+        // A place equally far from both, in whole units.
         const Coordinate x = items.all()[a].x / 2 + items.all()[b].x / 2,
                          y = items.all()[a].y / 2 + items.all()[b].y / 2;
         const float square = square_to(items, a, x, y);
@@ -181,8 +181,8 @@ TEST(Items, AtExactlyTheRadiusAreFoundAndOfEquallyNearOnesTheLowestIdIsNearest) 
     EXPECT_FALSE(std::ranges::any_of(within(items, x, y, 4.9999f), [](const auto& found) { return found.first == 7; }));
 }
 
-TEST(Items, OfTheSamePlaceGoByTheLowestId) {
-    // An island with one place for an item: all lie on it.
+TEST(Items, AtTheSamePlaceTheLowestIdWins) {
+    // An island with room for one item: all items are at the same place.
     Items items = some_items(50, {to_units(8.0), to_units(8.0)});
     EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 0), 0u);
     items.consume(0, 1);
@@ -194,7 +194,7 @@ TEST(Items, OfTheSamePlaceGoByTheLowestId) {
     EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 1), 0u);
 }
 
-TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
+TEST(Items, ComeAndGoByTheirRulesWithTheRightHash) {
     for (const std::uint32_t respawn_ticks : {1u, 2u, 17u, 100u}) {
         const Area area{to_units(600.0), to_units(400.0)};
         Items items;
@@ -227,7 +227,7 @@ TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
     }
 }
 
-TEST(Items, ThatDoNotReappearStayAway) {
+TEST(Items, WithoutRespawnStayAway) {
     Items items;
     items.begin_generation(rules(20, 1, false), base::Seed{5}, 0, 1, {to_units(500.0), to_units(500.0)}, {}, executor);
     items.consume(3, 1);
@@ -238,7 +238,7 @@ TEST(Items, ThatDoNotReappearStayAway) {
     EXPECT_EQ(items.present_count(), 19u);
 }
 
-TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
+TEST(Items, AreAlwaysClearOfWallsAndObstacles) {
     const Area area{to_units(400.0), to_units(300.0)};
     Boxes obstacles;
     base::RandomStream random = stream(6);
@@ -270,7 +270,7 @@ TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
     expect_clear();
 }
 
-TEST(Items, ReappearElsewhere) {
+TEST(Items, ReappearAtAnotherPlace) {
     Items items = some_items(100, {to_units(1000.0), to_units(1000.0)});
     const auto before = items.all();
     for (std::uint32_t item = 0; item < items.size(); ++item) {

@@ -26,7 +26,7 @@ class OneWorld : public testing::Test {
         EXPECT_TRUE(laboratory.apply(CreateWorld{"w", parameters, base::Seed{1}, RunId{1, 2}}).has_value());
     }
     Entry& entry() { return *laboratory.entries().front(); }
-    /// Ticks for as long as the world wants them; at most `limit`.
+    /// Performs ticks while the world wants them; at most `limit`.
     std::uint64_t run_on(std::uint64_t limit = 1000) {
         std::uint64_t ticks = 0;
         for (; ticks < limit && entry().wants_tick(); ++ticks) {
@@ -56,7 +56,7 @@ class OneWorld : public testing::Test {
     base::InlineExecutor executor;
 };
 
-TEST_F(OneWorld, WaitsAfterItsCreationAtItsFirstMoment) {
+TEST_F(OneWorld, WaitsAtItsFirstMomentAfterCreation) {
     EXPECT_EQ(entry().state(), RunState::Waiting);
     EXPECT_FALSE(entry().wants_tick());
     EXPECT_EQ(entry().world.moment().tick, 0u);
@@ -65,7 +65,7 @@ TEST_F(OneWorld, WaitsAfterItsCreationAtItsFirstMoment) {
     EXPECT_EQ(entry().run_id, (RunId{1, 2}));
 }
 
-TEST_F(OneWorld, RunsTheGenerationsItIsTold) {
+TEST_F(OneWorld, RunsTheRequestedGenerations) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 3}).has_value());
     EXPECT_EQ(entry().state(), RunState::Running);
     EXPECT_EQ(run_on(), 18u);
@@ -74,30 +74,31 @@ TEST_F(OneWorld, RunsTheGenerationsItIsTold) {
     EXPECT_EQ(count_events<GoalReached>(), 1u);
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}).has_value());
     EXPECT_EQ(run_on(4), 4u);
-    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}).has_value()) << "again, amid a generation: that one counts";
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}).has_value())
+        << "again, within a generation: that generation counts";
     EXPECT_EQ(run_on(), 2u);
     EXPECT_EQ(entry().world.moment().generation, 4u);
 }
 
-TEST_F(OneWorld, RunsEndlesslyIfToldNoNumber) {
+TEST_F(OneWorld, RunsWithoutEndIfNoNumberIsGiven) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
     EXPECT_EQ(run_on(), 1000u);
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", ~std::uint64_t{0}}).has_value()) << "more than can be counted";
     EXPECT_EQ(run_on(100), 100u);
 }
 
-TEST_F(OneWorld, PausesAndResumesWhereItWas) {
+TEST_F(OneWorld, ResumesWhereItWasPaused) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
     EXPECT_EQ(run_on(5), 5u);
     ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
     EXPECT_EQ(entry().state(), RunState::Paused);
     EXPECT_EQ(run_on(), 0u);
-    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value()) << "pausing twice is pausing";
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value()) << "a second pause has no effect";
     ASSERT_TRUE(laboratory.apply(Resume{"w"}).has_value());
     EXPECT_EQ(run_on(), 7u);
 }
 
-TEST_F(OneWorld, HasNothingToResumeWithoutAGoal) {
+TEST_F(OneWorld, CannotResumeWithoutAGoal) {
     EXPECT_EQ(code_of(Resume{"w"}), RefusalCode::FailedPrecondition);
     ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
     EXPECT_EQ(entry().state(), RunState::Paused);
@@ -113,7 +114,7 @@ TEST_F(OneWorld, StepsUntilATickThenIsPaused) {
     EXPECT_EQ(run_on(), 4u);
     EXPECT_EQ(entry().state(), RunState::Paused);
     EXPECT_EQ(count_events<GoalReached>(), 1u);
-    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 4}).has_value()) << "a tick that is past";
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 4}).has_value()) << "an earlier tick";
     EXPECT_EQ(run_on(), 0u);
     ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 9}).has_value());
     EXPECT_EQ(run_on(), 5u);
@@ -130,7 +131,7 @@ TEST_F(OneWorld, KeepsItsGoalWhileItIsStepped) {
     EXPECT_EQ(run_on(), 9u);
 }
 
-TEST_F(OneWorld, IsLentForAStepOnlyIfItRan) {
+TEST_F(OneWorld, IsLeasedForAStepOnlyIfItRan) {
     ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 1}).has_value());
     EXPECT_FALSE(entry().control.leased) << "it waited";
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
@@ -138,11 +139,11 @@ TEST_F(OneWorld, IsLentForAStepOnlyIfItRan) {
     ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 2}).has_value());
     EXPECT_FALSE(entry().control.leased) << "it was paused";
     ASSERT_TRUE(laboratory.apply(ReleaseLease{"w"}).has_value());
-    EXPECT_EQ(run_on(), 2u) << "which nobody gives back";
+    EXPECT_EQ(run_on(), 2u) << "no client gives it back";
     EXPECT_EQ(entry().state(), RunState::Paused);
 }
 
-TEST_F(OneWorld, GoesOnTowardsItsGoalWhenALeaseIsOver) {
+TEST_F(OneWorld, ResumesItsGoalWhenALeaseEnds) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
     for (const std::uint64_t tick : {3, 5}) {
         ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", tick}).has_value());
@@ -170,7 +171,7 @@ TEST_F(OneWorld, KeepsItsLeaseWhenAnEarlierOneEnds) {
     EXPECT_FALSE(entry().control.leased);
 }
 
-TEST_F(OneWorld, IsNotLentAnyMoreWhenItIsToldWhatToDo) {
+TEST_F(OneWorld, LosesItsLeaseWhenRunControlChanges) {
     for (const Command& command : {Command{simulation::Run{"w", {}}}, Command{Pause{"w"}}, Command{Resume{"w"}},
                                    Command{ResetWorld{.world = "w", .seed = {}, .run_id = {}}}}) {
         ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
@@ -180,20 +181,20 @@ TEST_F(OneWorld, IsNotLentAnyMoreWhenItIsToldWhatToDo) {
         EXPECT_TRUE(entry().control.leased) << "whatever its speed";
         ASSERT_TRUE(laboratory.apply(command).has_value());
         EXPECT_FALSE(entry().control.leased);
-        const RunState told = entry().state();
+        const RunState state = entry().state();
         ASSERT_TRUE(laboratory.apply(ReleaseLease{"w"}).has_value());
-        EXPECT_EQ(entry().state(), told);
+        EXPECT_EQ(entry().state(), state);
     }
 }
 
-TEST_F(OneWorld, ForgetsAStepWhenPausedOrResumed) {
+TEST_F(OneWorld, DropsAStepWhenPausedOrResumed) {
     ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 50}).has_value());
     EXPECT_EQ(run_on(3), 3u);
     ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
     EXPECT_EQ(run_on(), 0u);
 }
 
-TEST_F(OneWorld, IsTerminatedByACriterionUntilItIsChangedOrReset) {
+TEST_F(OneWorld, IsTerminatedByACriterionUntilChangedOrReset) {
     ASSERT_TRUE(laboratory.apply(set({{"generation_limit", std::uint32_t{2}}})).has_value());
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
     EXPECT_EQ(run_on(), 12u);
@@ -218,7 +219,7 @@ TEST_F(OneWorld, IsTerminatedByACriterionUntilItIsChangedOrReset) {
     EXPECT_EQ(entry().world.moment().tick, 0u);
 }
 
-TEST_F(OneWorld, ResetKeepsSpeedSeedAndParametersAskedForUnlessToldOtherwise) {
+TEST_F(OneWorld, ResetKeepsSpeedSeedAndRequestedParameters) {
     ASSERT_TRUE(laboratory.apply(SetSpeed{"w", 8.0}).has_value());
     ASSERT_TRUE(laboratory.apply(set({{"population_size", std::uint32_t{12}}, {"island_count", std::uint32_t{2}}}))
                     .has_value());
@@ -234,7 +235,7 @@ TEST_F(OneWorld, ResetKeepsSpeedSeedAndParametersAskedForUnlessToldOtherwise) {
     EXPECT_EQ(entry().world.seed(), base::Seed{77});
 }
 
-TEST_F(OneWorld, AGivenFirstPopulationIsBegunWithAgainAsLongAsItCanBe) {
+TEST_F(OneWorld, ResetUsesTheFirstPopulationWhileItIsValid) {
     const auto population = std::make_shared<const std::vector<evolution::GeneMatrix>>(
         1, evolution::initial_population(10, parameters, base::Seed{99}, 0));
     ASSERT_TRUE(laboratory.apply(CreateWorld{"given", parameters, base::Seed{1}, {}, population}).has_value());
@@ -265,7 +266,7 @@ TEST_F(OneWorld, AGivenFirstPopulationIsBegunWithAgainAsLongAsItCanBe) {
     EXPECT_TRUE(laboratory.apply(ResetWorld{"given", {}, {}}).has_value());
 }
 
-TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
+TEST_F(OneWorld, RefusedParametersChangeNothing) {
     const parameters::Parameters before = entry().world.parameters().requested;
     EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);
     SetParameters stale = set({{"food_health", 30.0}});
@@ -275,7 +276,7 @@ TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
     EXPECT_EQ(entry().world.parameters().revision, 1u);
 }
 
-TEST_F(OneWorld, AnswersADryRunWithWhatWouldBeAndChangesNothing) {
+TEST_F(OneWorld, ADryRunReturnsTheResultAndChangesNothing) {
     SetParameters dry = set({{"food_health", 30.0}, {"population_size", std::uint32_t{20}}});
     dry.dry_run = true;
     dry.expected_revision = 1;
@@ -288,8 +289,9 @@ TEST_F(OneWorld, AnswersADryRunWithWhatWouldBeAndChangesNothing) {
     EXPECT_EQ(entry().world.parameters().revision, 1u);
 }
 
-TEST_F(OneWorld, RefusesWhatDoesNotGoTogetherUntilTheReset) {
-    // The fitness changes at the reset, the population with the next generation: until then it has bodies without room.
+TEST_F(OneWorld, RefusesParametersInvalidUntilTheReset) {
+    // The fitness changes at the reset, the population at the next generation: until then there are bodies without
+    // room.
     EXPECT_EQ(code_of(set({{"fitness", std::string{"gene_sum"}}, {"population_size", std::uint32_t{5000}}})),
               RefusalCode::InvalidArgument);
     EXPECT_TRUE(laboratory.apply(set({{"fitness", std::string{"gene_sum"}}})).has_value());
@@ -300,7 +302,7 @@ TEST_F(OneWorld, RefusesWhatDoesNotGoTogetherUntilTheReset) {
     EXPECT_EQ(run_on(), 3u) << "a generation is a tick";
 }
 
-TEST_F(OneWorld, TellsOfEachGeneration) {
+TEST_F(OneWorld, ReportsEachGeneration) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
     run_on();
     std::vector<std::uint64_t> ticks;
@@ -316,7 +318,7 @@ TEST_F(OneWorld, TellsOfEachGeneration) {
     EXPECT_TRUE(laboratory.take_events().empty());
 }
 
-TEST(Laboratory, CreatesUpToItsLimitAndDeletes) {
+TEST(Laboratory, CreatesWorldsUpToItsLimitAndDeletesThem) {
     Laboratory laboratory;
     parameters::Parameters small;
     small.population_size = 1;
@@ -351,7 +353,7 @@ TEST(Laboratory, FindsTheOnlyWorldOrDefaultForAnEmptyName) {
     EXPECT_EQ((*laboratory.find("b"))->name, "b");
 }
 
-TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
+TEST(Laboratory, RefusesEveryCommandToAMissingWorld) {
     Laboratory laboratory;
     ASSERT_TRUE(laboratory.apply(CreateWorld{"a", {}, base::Seed{1}, {}}).has_value());
     ASSERT_TRUE(laboratory.apply(CreateWorld{"b", {}, base::Seed{1}, {}}).has_value());
@@ -365,8 +367,8 @@ TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
     }
 }
 
-TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
-    // Random values of random parameters; what is accepted must not stop a world, however the effects fall together.
+TEST(Laboratory, SurvivesAcceptedParametersAtAnyTick) {
+    // Random values of random parameters. An accepted value must not stop a world, whatever the combination of effects.
     base::InlineExecutor executor;
     std::uint64_t accepted = 0, refused = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -385,7 +387,7 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
                 const auto& description = parameters::parameter_registry()[random.below(
                     static_cast<std::uint32_t>(parameters::parameter_registry().size()))];
                 if (description.name == "island_count" || description.name == "generation_s") {
-                    continue; // costly only
+                    continue; // such values only take long
                 }
                 parameters::ParameterValue value;
                 if (const auto* real = std::get_if<parameters::RealParameter>(&description.kind)) {
@@ -429,7 +431,7 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
     EXPECT_GT(refused, 100u);
 }
 
-TEST(WorldNames, AreOfAFewPlainCharactersAndNotLong) {
+TEST(WorldNames, HaveFewKindsOfCharactersAndALimit) {
     for (const char* good : {"a", "A-z_09", "default"}) {
         EXPECT_TRUE(is_world_name(good)) << good;
     }

@@ -1,5 +1,5 @@
-// Meadow: organisms, food and poison put where a test wants them, and their ticks in the order of an island's
-// (server/simulation/island.h), one part after the other, so that a test can look between them.
+// Meadow: organisms, food and poison at places that a test chooses. Its ticks run in the order of an island's
+// (server/simulation/island.h), one part after another, so that a test can inspect the state between them.
 #pragma once
 
 #include "server/base/inline_executor.h"
@@ -8,7 +8,7 @@
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
-#include "server/simulation/sight.h"
+#include "server/simulation/perception.h"
 
 #include <cstdint>
 #include <vector>
@@ -30,11 +30,11 @@ struct Meadow {
     base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
     base::InlineExecutor executor;
     physics::Stepper stepper;
-    Sight sight;
+    Perception perception;
     Feeding food_feeding, poison_feeding;
     std::uint32_t tick = 0;
 
-    /// At rest; the id is its number among those added.
+    /// At rest; the id is the number of organisms added before.
     void add_organism(physics::Coordinate x, physics::Coordinate y, const evolution::Chromosome& genes) {
         const BodyShape shape = body_shape(genes(evolution::BodySize), parameters::Parameters{});
         const auto id = static_cast<std::uint32_t>(bodies.size());
@@ -58,28 +58,28 @@ struct Meadow {
         put(poison, poisons, base::Purpose::PoisonRespawn);
     }
 
-    /// Once everything is in its place.
+    /// Call it when everything has been placed.
     void begin() {
-        sight.begin(bodies, living, food, poison);
-        stepper.near().forget();
+        perception.begin(bodies, living, food, poison);
+        stepper.near().invalidate();
     }
 
-    OrganismColumns columns() { return organism_columns(bodies, living, sight, food, poison); }
+    OrganismColumns columns() { return organism_columns(bodies, living, perception, food, poison); }
 
-    /// Items reappear, and all know what is nearest.
+    /// Items reappear, and views are updated.
     void perceive() {
         ++tick;
-        if (stepper.near().worn(bodies, boxes)) {
+        if (stepper.near().stale(bodies, boxes)) {
             stepper.near().renew(bodies, boxes, area, executor);
         }
         food.reappear(tick, {}, executor);
         poison.reappear(tick, {}, executor);
-        sight.notice_food(bodies, stepper.near(), living, food, executor);
-        sight.notice_poison(bodies, stepper.near(), living, poison, executor);
-        sight.look(bodies, living, food, poison, {0, bodies.size()});
+        perception.notice_food(bodies, stepper.near(), living, food, executor);
+        perception.notice_poison(bodies, stepper.near(), living, poison, executor);
+        perception.search(bodies, living, food, poison, {0, bodies.size()});
     }
 
-    /// All choose and move, and touch what they touch.
+    /// All organisms choose and move, and touches are found.
     void act() {
         const std::size_t blocks = physics::block_count(bodies.size());
         stepper.begin(bodies, boxes, area, step);

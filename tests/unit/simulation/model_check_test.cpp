@@ -1,9 +1,10 @@
-// The default world behaves and evolves as it did in the independent program that was used to choose its parameters.
+// Checks that the default world behaves and evolves as in the independent program by which its parameters were chosen.
 //
-// Worlds of 24 seeds run side by side, each on one thread. The figures compared with, and their standard errors, are
-// the other program's: fitness 79 → 106 → 161 → 203 at generations 1, 10, 30 and 60 with roulette, 79 → 121 → 191 → 248
-// with truncation, flat with random selection; in generation 1 a survival of 0.48, and for each living organism-second
-// 0.217 food and 0.028 poison. Every comparison allows 4 standard errors of the difference (6e-5 each, two-sided).
+// Worlds of 24 seeds run in parallel, each on one thread. The reference figures and their standard errors are the other
+// program's. Fitness at generations 1, 10, 30 and 60: 79, 106, 161, 203 with roulette; 79, 121, 191, 248 with
+// truncation; constant with random selection. In generation 1, a share of 0.48 survives, and a living organism eats
+// 0.217 food and 0.028 poison per second. Every comparison allows 4 standard errors of the difference (6e-5 each,
+// two-sided).
 
 #include "server/base/inline_executor.h"
 #include "server/simulation/world.h"
@@ -150,7 +151,7 @@ void expect_near(const Estimate& measured, double known, double known_error, con
     EXPECT_NEAR(measured.mean, known, allowed) << what;
 }
 
-TEST(TheDefaultWorld, BehavesAndEvolvesAsItWasMeasuredToDo) {
+TEST(TheDefaultWorld, BehavesAndEvolvesAsMeasured) {
     std::vector<Series> all(5);
     all[0] = {SelectionMethod::Roulette, "roulette", generations_max, {}};
     all[1] = {SelectionMethod::Truncation, "truncation", generations_max, {}};

@@ -1,4 +1,4 @@
-// A command that builds a world and finds too little memory for it has changed nothing, whichever allocation fails.
+// A command that finds too little memory for a new world changes nothing, whichever allocation fails.
 #include "server/base/inline_executor.h"
 #include "server/base/within_memory.h"
 #include "server/simulation/laboratory.h"
@@ -26,7 +26,7 @@ class NoMemory : public testing::Test {
 
     const World& world() { return (*laboratory.find("w"))->world; }
 
-    /// Has every allocation of the command fail, one after another, until it succeeds.
+    /// Lets every allocation of the command fail, one after another, until it succeeds.
     Applied expect_nothing_changes_until_done(const Command& command) {
         const base::StateHash hash = world().hash();
         const Moment moment = world().moment();

@@ -1,4 +1,5 @@
-// What parameters do to worlds: accepted sets have room for everything, and each takes effect when the registry says.
+// The effects of parameters on worlds: accepted sets have room for all bodies, and each change takes effect when the
+// registry says.
 
 #include "server/base/inline_executor.h"
 #include "server/simulation/world.h"
@@ -12,29 +13,30 @@
 namespace evod::simulation {
 namespace {
 
-RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForEverythingInIt, ()) {
+RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForAllBodies, ()) {
     const auto count = [](std::uint32_t max) { return *rc::gen::resize(100, rc::gen::inRange(0u, max)); };
     const auto real = [&](double min, double max) { return min + (max - min) * count(1001) / 1000.0; };
     const double size = real(1, 200);
-    const auto parameters = parameters::assign({}, std::vector<parameters::Assignment>{{"population_size", 1 + count(80)},
-                                                               {"island_width_px", real(150, 1200)},
-                                                               {"island_height_px", real(150, 1200)},
-                                                               {"body_size_min", 1.0},
-                                                               {"body_size_max", size},
-                                                               {"initial_gene_min", size * 0.9},
-                                                               {"initial_gene_max", size},
-                                                               {"item_radius_px", real(0.5, 20)},
-                                                               {"obstacle_count", count(40)},
-                                                               {"obstacle_size_px", real(5, 60)},
-                                                               {"crate_count", count(40)},
-                                                               {"crate_size_px", real(5, 60)}});
+    const auto parameters =
+        parameters::assign({}, std::vector<parameters::Assignment>{{"population_size", 1 + count(80)},
+                                                                   {"island_width_px", real(150, 1200)},
+                                                                   {"island_height_px", real(150, 1200)},
+                                                                   {"body_size_min", 1.0},
+                                                                   {"body_size_max", size},
+                                                                   {"initial_gene_min", size * 0.9},
+                                                                   {"initial_gene_max", size},
+                                                                   {"item_radius_px", real(0.5, 20)},
+                                                                   {"obstacle_count", count(40)},
+                                                                   {"obstacle_size_px", real(5, 60)},
+                                                                   {"crate_count", count(40)},
+                                                                   {"crate_size_px", real(5, 60)}});
     RC_CLASSIFY(parameters.has_value());
     if (parameters) {
         World{*parameters, base::Seed{count(1000)}}; // aborts if it runs out of room
     }
 }
 
-// When a parameter takes effect.
+// The moment at which a parameter takes effect.
 
 World small_world() {
     parameters::Parameters p;

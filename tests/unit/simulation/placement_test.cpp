@@ -26,7 +26,7 @@ using physics::to_units;
 using support::alpha;
 
 TEST(RandomPlace, IsUniformWithinTheWallsByItsRadius) {
-    // Pearson chi-square over 10 × 10 equal cells of where a centre can be, 99 degrees of freedom.
+    // Pearson chi-square over 10 × 10 equal cells of the places possible for a centre, 99 degrees of freedom.
     const Area area{to_units(300.0), to_units(200.0)};
     const base::RandomKey key{base::Seed{1}, base::Purpose::ScenarioTest, 0, 0};
     std::array<std::uint64_t, 100> cells{};
@@ -40,8 +40,8 @@ TEST(RandomPlace, IsUniformWithinTheWallsByItsRadius) {
     EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
 }
 
-TEST(RandomPlace, ReachesBothEndsOfWhatTheWallsLeave) {
-    const Area area{to_units(20.0) + 3, to_units(20.0)}; // four places for a circle of 10 px
+TEST(RandomPlace, ReachesBothWalls) {
+    const Area area{to_units(20.0) + 3, to_units(20.0)}; // a circle of radius 10 px has four places
     const base::RandomKey key{base::Seed{2}, base::Purpose::ScenarioTest, 0, 0};
     std::array<std::uint64_t, 4> seen{};
     for (std::uint32_t i = 0; i < 4000; ++i) {
@@ -53,10 +53,11 @@ TEST(RandomPlace, ReachesBothEndsOfWhatTheWallsLeave) {
     EXPECT_GT(support::p_value_of_equal_cells(seen), alpha);
 }
 
-TEST(RandomPlace, IsUniformOverWhatTheBoxesLeave) {
+TEST(RandomPlace, IsUniformOutsideTheBoxes) {
     const Area area{to_units(300.0), to_units(300.0)};
     Boxes boxes;
-    boxes.add(to_units(150.0), to_units(150.0), 40, 40, 0); // with a radius of 10 px: no centre in the middle 100 × 100
+    boxes.add(to_units(150.0), to_units(150.0), 40, 40, 0); // a circle of radius 10 px: no centre in the middle 100 ×
+                                                            // 100 px
     const base::RandomKey key{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0};
     std::array<std::uint64_t, 4> quarters{};
     for (std::uint32_t i = 0; i < 20'000; ++i) {
@@ -75,7 +76,7 @@ bool circles_touch(const Place& a, float radius_a, const Place& b, float radius_
         .touching;
 }
 
-TEST(PlaceCircles, ClearOfWallsBoxesAndEachOtherInACrowd) {
+TEST(PlaceCircles, AreClearOfWallsBoxesAndEachOther) {
     const Area area{to_units(700.0), to_units(500.0)};
     const PlacedBoxes boxes = place_boxes({.obstacle_count = 8,
                                            .crate_count = 8,
@@ -123,7 +124,7 @@ bool clear_of_all(Place place, float radius, const Boxes& boxes) {
     return true;
 }
 
-/// The law, literally: one organism after another, each at the first of its attempts that is clear of everything.
+/// The rule, literally: one organism after another, each at the first of its attempts that is clear of everything.
 std::vector<Place> place_one_by_one(const std::vector<float>& radius, base::Seed seed, const Area& area,
                                     const Boxes& boxes) {
     const base::RandomKey key{seed, base::Purpose::OrganismPlacement, 2, 3};
@@ -149,7 +150,7 @@ std::vector<Place> place_one_by_one(const std::vector<float>& radius, base::Seed
     return places;
 }
 
-/// An island of which circles of the radii given, and a few boxes, cover two fifths.
+/// An island on which circles of the given radii and a few boxes cover two fifths.
 struct Crowd {
     std::vector<float> radius;
     Area area;
@@ -162,7 +163,7 @@ struct Crowd {
             radius.push_back(static_cast<float>(random.uniform(least, greatest)));
             covered += std::numbers::pi * static_cast<double>(radius.back()) * static_cast<double>(radius.back());
         }
-        // As the room for a centre ends before the walls, there is more of it where walls matter.
+        // The room for a centre ends before the walls, so there is more of it where walls matter.
         const double side = std::sqrt(covered / 0.4) + 2 * static_cast<double>(greatest);
         area = {to_units(1.25 * side), to_units(0.8 * side)};
         const auto half = static_cast<float>(side / 100);
@@ -180,7 +181,7 @@ bool operator==(const Place& a, const Place& b) {
 
 class PlaceCirclesOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(PlaceCirclesOnAnyThreadCount, PutsThemWherePuttingThemOneByOneWould) {
+TEST_P(PlaceCirclesOnAnyThreadCount, EqualsPlacingThemOneByOne) {
     support::ThreadExecutor executor{GetParam()};
     for (const auto& [least, greatest] : {std::pair{20.0f, 20.0f}, {1.0f, 30.0f}}) {
         for (const std::size_t count : {1u, 50u, 6000u}) {
@@ -196,7 +197,7 @@ TEST_P(PlaceCirclesOnAnyThreadCount, PutsThemWherePuttingThemOneByOneWould) {
 }
 INSTANTIATE_TEST_SUITE_P(Threads, PlaceCirclesOnAnyThreadCount, testing::Values(1, 2, 3, 8, 13));
 
-TEST(PlaceCircles, ManyAreClearOfEachOtherWhereTheyCoverTwoFifthsOfTheIsland) {
+TEST(PlaceCircles, ManyAreClearOfEachOtherOnACrowdedIsland) {
     const Crowd crowd{40'000, 4, 24};
     support::ThreadExecutor executor{3};
     const auto places =
@@ -218,7 +219,7 @@ TEST(PlaceCircles, ManyAreClearOfEachOtherWhereTheyCoverTwoFifthsOfTheIsland) {
 }
 
 TEST(PlaceCircles, FindsRoomOnTheLargestIsland) {
-    // Coordinates near the end of 32 bits, and radii as large as there can be.
+    // Coordinates near the limit of 32 bits, and the largest possible radii.
     const Area area{to_units(500'000.0), to_units(500'000.0)};
     base::InlineExecutor executor;
     const std::vector<float> radius(300, 10'000);
@@ -229,7 +230,7 @@ TEST(PlaceCircles, FindsRoomOnTheLargestIsland) {
     }
 }
 
-TEST(BoxGrid, SaysWhatAskingEveryBoxSays) {
+TEST(BoxGrid, EqualsATestOfEveryBox) {
     const Area area{to_units(3000.0), to_units(1000.0)};
     base::RandomStream random{base::RandomKey{base::Seed{14}, base::Purpose::ScenarioTest, 0, 0}, 0};
     const auto somewhere = [&] {
@@ -263,7 +264,7 @@ TEST(BoxGrid, SaysWhatAskingEveryBoxSays) {
     }
 }
 
-TEST(PlaceCircles, AnOrganismDoesNotMoveWhenOthersAreBornAfterIt) {
+TEST(PlaceCircles, LaterOrganismsDoNotChangeEarlierPlaces) {
     const Area area{to_units(500.0), to_units(500.0)};
     base::InlineExecutor executor;
     const auto few = place_circles(std::vector<float>(20, 8), base::Seed{7}, 3, 2, area, {}, executor);
@@ -274,7 +275,7 @@ TEST(PlaceCircles, AnOrganismDoesNotMoveWhenOthersAreBornAfterIt) {
     }
 }
 
-TEST(PlaceBoxes, CratesClearOfObstaclesAndOfEachOtherAllInsideTheWalls) {
+TEST(PlaceBoxes, AreInsideTheWallsWithCratesClearOfOthers) {
     const Area area{to_units(600.0), to_units(600.0)};
     const PlacedBoxes placed = place_boxes({.obstacle_count = 20,
                                             .crate_count = 30,
@@ -307,7 +308,7 @@ TEST(PlaceBoxes, CratesClearOfObstaclesAndOfEachOtherAllInsideTheWalls) {
     }
 }
 
-TEST(PlaceBoxes, ObstaclesStayFromGenerationToGenerationAndCratesDoNot) {
+TEST(PlaceBoxes, ObstaclesStayInPlaceAndCratesDoNot) {
     const Area area{to_units(600.0), to_units(600.0)};
     const BoxRules rules{.obstacle_count = 5,
                          .crate_count = 5,

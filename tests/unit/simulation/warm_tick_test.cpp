@@ -1,4 +1,4 @@
-// A tick allocates nothing once its working memory is warm.
+// A tick allocates no memory once its working memory has grown.
 #include "server/base/inline_executor.h"
 #include "server/parameters/experiment.h"
 #include "server/simulation/world.h"
@@ -14,7 +14,7 @@ class AWarmTick : public testing::TestWithParam<const char*> {};
 TEST_P(AWarmTick, AllocatesNothing) {
     World world{parameters::parse_experiment(GetParam()).value().parameters, base::Seed{1}};
     base::InlineExecutor executor;
-    // A generation, its turnover, and part of the next: everything has been as large as it gets.
+    // A generation, its turnover, and part of the next: all working memory has reached its full size.
     while (world.moment().generation < 2 || world.moment().generation_tick < 300) {
         world.advance_tick(executor);
     }

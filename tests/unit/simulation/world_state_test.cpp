@@ -1,4 +1,4 @@
-// A world that is laid over the beginning of its generation goes on as the one whose state it was.
+// A state restored at the beginning of its generation continues like the original world.
 #include "server/simulation/world_state.h"
 
 #include "server/base/inline_executor.h"
@@ -29,7 +29,7 @@ parameters::Parameters with(std::vector<parameters::Assignment> assignments) {
     return parameters::assign(parameters, assignments).value();
 }
 
-/// Worlds that differ in what their state is made of.
+/// Worlds that differ in the parts of their state.
 std::vector<parameters::Parameters> varied_worlds() {
     return {
         with({}),
@@ -38,11 +38,11 @@ std::vector<parameters::Parameters> varied_worlds() {
         with({{"respawn", false}, {"integrator", std::string{"backward_euler"}}}),
         with({{"island_count", 5u},
               {"population_size", 9u},
-              {"poison_count", 400u}, // some islands die out, and wait
+              {"poison_count", 400u}, // some islands die out and wait
               {"respawn_s", 3.0},
               {"migration", std::string{"ring"}},
               {"migration_epoch", 1u}}),
-        with({{"population_size", 1500u}, // put in order in memory as they move
+        with({{"population_size", 1500u}, // sorted in memory as they move
               {"island_width_px", 8000.0},
               {"food_count", 900u},
               {"generation_s", 3.0}}),
@@ -52,7 +52,7 @@ std::vector<parameters::Parameters> varied_worlds() {
 
 class WorldStateTest : public testing::Test {
   protected:
-    /// The world at the beginning of its generation, made anew, brought to the state.
+    /// A copy of the world at the beginning of its generation, brought to the state.
     base::Result<World> again(const World& world, const WorldState& state, base::Executor& with) {
         std::vector<evolution::NextGeneration> born;
         for (const Island& island : world.islands()) {
@@ -90,7 +90,7 @@ class WorldStateTest : public testing::Test {
     support::ThreadExecutor three_threads{3};
 };
 
-TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
+TEST_F(WorldStateTest, ARestoredWorldContinuesLikeTheOriginal) {
     std::mt19937 random{3};
     int over = 0, moments = 0;
     for (const parameters::Parameters& parameters : varied_worlds()) {
@@ -135,14 +135,14 @@ TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
     EXPECT_GE(over, 5);
 }
 
-TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
+TEST_F(WorldStateTest, IsRestoredAtTheEndOfAGeneration) {
     parameters::Parameters parameters = with({{"generation_s", 1.0}, {"island_count", 2u}});
     World world{parameters, base::Seed{2}};
     for (int tick = 0; tick < 120; ++tick) {
         world.advance_tick(executor);
     }
     ASSERT_TRUE(world.generation_over());
-    // What the generation's statistics were made with is not what holds now.
+    // The parameters that the generation's statistics used differ from those in effect now.
     world.request_parameters(
         parameters::assign(world.parameters().requested,
                            std::vector<parameters::Assignment>{{"base_health_min", 90.0}, {"base_health_max", 95.0}})
@@ -158,7 +158,7 @@ TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
     }
 }
 
-TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
+TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
     const parameters::Parameters parameters = with({{"crate_count", 3u}, {"respawn_s", 2.0}, {"poison_count", 200u}});
     World world{parameters, base::Seed{9}};
     for (int tick = 0; tick < 200; ++tick) {
@@ -181,21 +181,21 @@ TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
         {"parameters", [](WorldState& s) { s.parameters.active.damping = 0.5; }},
         {"parameters", [](WorldState& s) { s.parameters.requested.body_size_min = 300; }},
         {"islands", [](WorldState& s) { s.islands.clear(); }},
-        {"over", [](WorldState& s) { s.ended.resize(1); }},
-        {"number of its organisms", [](WorldState& s) { s.islands[0].fate.lived_ticks.pop_back(); }},
-        {"number of its organisms", [](WorldState& s) { s.islands[0].organisms.pop_back(); }},
+        {"end of the generation", [](WorldState& s) { s.ended.resize(1); }},
+        {"number of organisms", [](WorldState& s) { s.islands[0].fate.lived_ticks.pop_back(); }},
+        {"number of organisms", [](WorldState& s) { s.islands[0].organisms.pop_back(); }},
         {"crates", [](WorldState& s) { s.islands[0].crates.pop_back(); }},
-        {"crate", [](WorldState& s) { s.islands[0].crates[1].x = -1; }},
-        {"crate", [](WorldState& s) { s.islands[0].crates[1].velocity_x = 1e30f; }},
-        {"fast", [&](WorldState& s) { s.islands[0].organisms[living].velocity_y = nan; }},
-        {"fast", [&](WorldState& s) { s.islands[0].organisms[living].x = physics::elsewhere; }},
+        {"of a crate", [](WorldState& s) { s.islands[0].crates[1].x = -1; }},
+        {"of a crate", [](WorldState& s) { s.islands[0].crates[1].velocity_x = 1e30f; }},
+        {"position or speed", [&](WorldState& s) { s.islands[0].organisms[living].velocity_y = nan; }},
+        {"position or speed", [&](WorldState& s) { s.islands[0].organisms[living].x = physics::void_position; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = nan; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 0; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 1e12f; }},
-        {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
-        {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
-        {"lost", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(3); }},
-        {"lost", [&](WorldState& s) { s.islands[0].organisms[gone].health = 1; }},
+        {"lived_ticks", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
+        {"death", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
+        {"death", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(3); }},
+        {"death", [&](WorldState& s) { s.islands[0].organisms[gone].health = 1; }},
         {"dead", [&](WorldState& s) { s.islands[0].fate.cause[gone] = CauseOfDeath::Starved; }},
         {"food", [](WorldState& s) { s.islands[0].food.pop_back(); }},
         {"food", [](WorldState& s) { s.islands[0].food[3].y = 1 << 30; }},
@@ -214,7 +214,7 @@ TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
     EXPECT_TRUE(again(world, sound, executor));
 }
 
-TEST_F(WorldStateTest, TheMostHealthThatMealsLeadToIsSummed) {
+TEST_F(WorldStateTest, TheGreatestReachableHealthIsSummed) {
     const float most = 0x1p38f;
     ASSERT_EQ(most + 10'000, most);
     World world{with({{"population_size", 1000u}, {"island_width_px", 9000.0}}), base::Seed{9}};

@@ -44,7 +44,7 @@ class WorldTest : public testing::Test {
     base::InlineExecutor executor;
 };
 
-TEST_F(WorldTest, EndsAGenerationAfterItsTimeExactly) {
+TEST_F(WorldTest, EndsAGenerationExactlyOnTime) {
     for (const auto& [generation_s, tick_s, ticks] : {std::tuple{0.2, 1.0 / 60, 12u},
                                                       {40.0, 1.0 / 60, 2400u},
                                                       {1.0, 0.1, 10u},
@@ -63,7 +63,7 @@ TEST_F(WorldTest, EndsAGenerationAfterItsTimeExactly) {
     }
 }
 
-TEST_F(WorldTest, StandsAtTheEndOfAGenerationUntilTheNextTickBreedsTheNext) {
+TEST_F(WorldTest, WaitsAtTheEndOfAGeneration) {
     World world = make();
     run_generation(world);
     EXPECT_EQ(world.moment().generation, 1u);
@@ -77,21 +77,21 @@ TEST_F(WorldTest, StandsAtTheEndOfAGenerationUntilTheNextTickBreedsTheNext) {
     EXPECT_EQ(world.moment().tick, 13u);
 }
 
-TEST_F(WorldTest, TurnsOverAsTheNextTickWould) {
+TEST_F(WorldTest, TurnOverEqualsThatOfTheNextTick) {
     World at_once = make(), in_two = make();
     run_generation(at_once);
     run_generation(in_two);
     in_two.turn_over(executor);
     EXPECT_EQ(in_two.moment().generation, 2u);
     EXPECT_EQ(in_two.moment().generation_tick, 0u);
-    in_two.turn_over(executor); // nothing has ended
+    in_two.turn_over(executor); // no generation has ended
     EXPECT_EQ(in_two.moment().generation, 2u);
     at_once.advance_tick(executor);
     in_two.advance_tick(executor);
     EXPECT_EQ(in_two.hash(), at_once.hash());
 }
 
-TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
+TEST_F(WorldTest, EndsAGenerationWhenAllIslandsAreDead) {
     parameters.island_count = 3;
     parameters.generation_s = 1000;
     parameters.health_loss_per_s = 100;
@@ -124,7 +124,7 @@ TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
     EXPECT_EQ(world.alive_count(), 36u) << "and everything is replaced";
 }
 
-TEST_F(WorldTest, TakesParametersOfTheTickAtOnceAndOthersWithTheGeneration) {
+TEST_F(WorldTest, AppliesParametersAtTickOrGeneration) {
     World world = make();
     world.advance_tick(executor);
     request(world, {{"food_health", 0.0},
@@ -158,7 +158,7 @@ TEST_F(WorldTest, GrowsAndShrinksWithEveryModelAndSelection) {
     }
 }
 
-TEST_F(WorldTest, LetsMigrantsGoOncePerEpochAndOnlyThen) {
+TEST_F(WorldTest, MigratesExactlyOncePerEpoch) {
     parameters.island_count = 3;
     parameters.migration = evolution::Topology::Ring;
     parameters.migration_epoch = 2;
@@ -181,7 +181,7 @@ TEST_F(WorldTest, LetsMigrantsGoOncePerEpochAndOnlyThen) {
 }
 
 TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
-    // Only the first island can have large genes; without migration no other would ever have any.
+    // Only the first island can have large genes; without migration no other island would ever have them.
     parameters.island_count = 2;
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.migration = evolution::Topology::Ring;
@@ -204,8 +204,8 @@ TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
     }
 }
 
-TEST_F(WorldTest, AccountsForWhatItsGenesDidFromOneGenerationToTheNext) {
-    // Of as many organisms that an island's are cut among threads; their number changes.
+TEST_F(WorldTest, AccountsForTheChangeOfGeneMeans) {
+    // With enough organisms to divide an island among threads, and changing numbers.
     parameters.island_count = 2;
     parameters.population_size = 20'000;
     parameters.fitness = parameters::FitnessFunction::GeneSum;
@@ -241,7 +241,7 @@ TEST_F(WorldTest, AccountsForWhatItsGenesDidFromOneGenerationToTheNext) {
     }
 }
 
-TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
+TEST_F(WorldTest, BreedsByShuffledFitnessAndReportsTheTrueOne) {
     parameters.island_count = 3;
     parameters.elite_count = 2;
     parameters.migration = evolution::Topology::Ring;
@@ -257,7 +257,7 @@ TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
         EXPECT_EQ(world.fitness()[i], plain.fitness()[i]);
         EXPECT_EQ(world.history()[0][i].fitness_best, plain.history()[0][i].fitness_best);
     }
-    // The same by hand: shuffled, then migrated, then bred.
+    // The same, step by step: shuffle, migration, breeding.
     std::vector<std::vector<double>> fitness(world.fitness().begin(), world.fitness().end());
     std::vector<evolution::GeneMatrix> genes;
     std::vector<evolution::IslandPopulation> populations;
@@ -283,8 +283,8 @@ TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
     }
 }
 
-TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
-    // All are survivors and nothing changes a chromosome, so everybody has that of a founder.
+TEST_F(WorldTest, FindsFoundersAcrossIslands) {
+    // All organisms survive and no chromosome changes, so every organism has that of a founder.
     parameters.island_count = 3;
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.migration = evolution::Topology::Ring;
@@ -325,12 +325,12 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     World later{base::Seed{5}, world.opening(), std::move(born), {}, executor};
     later.advance_tick(executor);
     later.turn_over(executor);
-    EXPECT_TRUE(later.founders(later.islands()[0]).empty()) << "who came later does not know";
+    EXPECT_TRUE(later.founders(later.islands()[0]).empty()) << "unknown without the first generation";
     later.reset(base::Seed{6});
     EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
 }
 
-TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
+TEST_F(WorldTest, WithoutCrossoverGenesEqualTheFounders) {
     parameters.population_size = 50;
     parameters.island_count = 2;
     parameters.fitness = parameters::FitnessFunction::GeneSum;
@@ -361,7 +361,7 @@ TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
     }
 }
 
-TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
+TEST_F(WorldTest, ChildrenHaveHalfTheirGenesFromTheFounder) {
     parameters.population_size = 2'000;
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.mutation_chance = 0;
@@ -379,7 +379,7 @@ TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
 }
 
 /// docs/MODEL.md states these figures.
-TEST_F(WorldTest, OrganismsStarveATickLateAsHealthIsAFloat) {
+TEST_F(WorldTest, FloatHealthDelaysStarvingByOneTick) {
     parameters.generation_s = 40;
     parameters.food_count = parameters.poison_count = 0;
     for (const auto& [base_health, tick] : {std::pair{80, 801u}, {100, 1001u}, {120, 1201u}}) {
@@ -392,8 +392,8 @@ TEST_F(WorldTest, OrganismsStarveATickLateAsHealthIsAFloat) {
 }
 
 /// docs/MODEL.md states these figures.
-TEST_F(WorldTest, SurvivorsHealthIsExactToAFiftieth) {
-    // What a survivor has in exact numbers: its base health, its meals, and a tenth less for each of 2,400 ticks.
+TEST_F(WorldTest, SurvivorsHealthHasAnErrorBelowAFiftieth) {
+    // The health of a survivor in exact numbers: its base health, its meals, and a tenth less for each of 2,400 ticks.
     parameters.population_size = 500;
     parameters.scale_with_population = true;
     parameters.reference_population = 50;
@@ -418,7 +418,7 @@ TEST_F(WorldTest, SurvivorsHealthIsExactToAFiftieth) {
     EXPECT_TRUE(rounded);
 }
 
-TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
+TEST_F(WorldTest, LimitsTheStatisticsKept) {
     EXPECT_EQ(World::history_generations_kept_of(1), World::history_generations_kept);
     EXPECT_EQ(World::history_generations_kept_of(4096), 32u);
     EXPECT_EQ(World::history_generations_kept_of(10 * World::history_rows_kept), 1u);
@@ -433,7 +433,7 @@ TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
     EXPECT_EQ(world.history().front().front().generation, 7u);
 }
 
-TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
+TEST_F(WorldTest, AForkDropsOldStatistics) {
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     World world = make();
     while (world.moment().generation < 1'005 || !world.generation_over()) {
@@ -446,7 +446,7 @@ TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     EXPECT_EQ(world.history().front().front().generation, 5u);
 }
 
-TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
+TEST_F(WorldTest, EndsByEachCriterionAndReportsIt) {
     const auto outcome_with = [&](std::vector<parameters::Assignment> assignments) {
         World world{*parameters::assign(parameters, assignments), base::Seed{5}};
         for (int generation = 0; generation < 50 && world.outcome() == evolution::Outcome::Running; ++generation) {
@@ -472,7 +472,7 @@ TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
               (std::pair{Outcome::Stagnation, std::uint64_t{4}}));
 }
 
-TEST_F(WorldTest, OfAFunctionOfTheChromosomeTakesATickAGeneration) {
+TEST_F(WorldTest, TakesOneTickForAChromosomeFitness) {
     parameters.fitness = parameters::FitnessFunction::Rastrigin;
     World world = make();
     for (std::uint64_t tick = 1; tick <= 20; ++tick) {
@@ -513,7 +513,7 @@ TEST_F(WorldTest, ReplacesEverythingAtUniformPlacesEachGeneration) {
     EXPECT_EQ(world.islands()[0].food().present_count(), 25u);
 }
 
-TEST_F(WorldTest, GivesTheSameStatisticsOfManyOnAnyThreadCount) {
+TEST_F(WorldTest, HasTheSameStatisticsOnAnyThreadCount) {
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.population_size = 30'000;
     const auto statistics = [&](base::Executor& with) {
@@ -547,7 +547,7 @@ TEST_F(WorldTest, GivesTheSameStatisticsOfManyOnAnyThreadCount) {
     EXPECT_EQ(reference.fitness_worst, std::ranges::min(fitness));
 }
 
-TEST_F(WorldTest, GivesTheStatisticsThatItsOrganismsAddUpTo) {
+TEST_F(WorldTest, StatisticsEqualSumsOverOrganisms) {
     parameters.island_count = 2;
     parameters.population_size = 25;
     parameters.generation_s = 12;

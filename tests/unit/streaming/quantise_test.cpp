@@ -24,20 +24,20 @@ runtime::OrganismsSnapshot lying(std::uint32_t born, std::initializer_list<Organ
     runtime::OrganismsSnapshot to;
     to.place_of.assign(born, simulation::Island::no_body);
     for (const Organism& organism : organisms) {
-        if (organism.x != physics::elsewhere) {
+        if (organism.x != physics::void_position) {
             to.place_of[organism.id] = static_cast<std::uint32_t>(to.x.size());
         }
         to.x.push_back(organism.x);
         to.y.push_back(organism.y);
         to.radius_px.push_back(organism.radius_px);
         to.health.push_back(organism.health);
-        to.alive_count += organism.x != physics::elsewhere;
+        to.alive_count += organism.x != physics::void_position;
     }
     return to;
 }
 
 TEST(Quantise, LivingOrganismsAreSortedById) {
-    constexpr std::int32_t away = physics::elsewhere;
+    constexpr std::int32_t away = physics::void_position;
     runtime::IslandSnapshot island;
     island.organisms = lying(11, {{7, 70 * step, 71 * step, 7.5F, 77.F},
                                   {3, away, away, 0, -1},

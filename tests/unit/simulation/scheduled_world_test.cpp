@@ -1,4 +1,4 @@
-#include "server/parameters/schedule.h"
+// Worlds with schedules and planned changes.
 
 #include "server/base/inline_executor.h"
 #include "server/parameters/experiment.h"
@@ -61,12 +61,12 @@ TEST_F(ScheduleTest, AValueHoldsFromTheFirstTickOfItsGeneration) {
     World world =
         make(read(R"("mutation_chance": {"1": 0.2, "3": 0.05}, "food_count": {"3": 7}, "elite_count": {"4": 2})"));
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.2);
-    EXPECT_EQ(world.parameters().active.elite_count, 0u) << "the default until the first of them";
+    EXPECT_EQ(world.parameters().active.elite_count, 0u) << "the default before the first scheduled value";
     end_generation(world, 2);
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.2);
     world.take_events();
 
-    world.turn_over(executor); // bred by what held before; so much food is there
+    world.turn_over(executor); // bred with the previous values; the food is already the new amount
     EXPECT_EQ(world.opening().parameters.active.mutation_chance, 0.2);
     EXPECT_EQ(world.opening().parameters.active.food_count, 7u);
     EXPECT_EQ(world.islands()[0].food().size(), 7u);
@@ -82,13 +82,13 @@ TEST_F(ScheduleTest, AValueHoldsFromTheFirstTickOfItsGeneration) {
     EXPECT_EQ(world.parameters().active.elite_count, 2u);
 }
 
-TEST_F(ScheduleTest, ComesToTheSameAsCommandsAtThoseTicks) {
+TEST_F(ScheduleTest, EqualsCommandsAtTheSameTicks) {
     World scheduled = make(read(R"("mutation_chance": {"1": 0.9, "3": 0.05}, "food_health": {"1": 25, "2": 90},
                                    "population_size": {"1": 12, "4": 30}, "food_count": {"1": 40, "3": 8})"));
     World commanded = make(read(R"("mutation_chance": 0.9, "food_count": 40)"));
     for (int tick = 0; tick < 12 * 7; ++tick) {
         const Moment& at = commanded.moment();
-        // What the next generation is to have, at the end of the one before; what breeding goes by, after it.
+        // Values for the next generation are set at the end of the one before; values of breeding after its first tick.
         if (at.generation == 1 && commanded.generation_over()) {
             set(commanded, "food_health", 90.0);
         }
@@ -103,7 +103,7 @@ TEST_F(ScheduleTest, ComesToTheSameAsCommandsAtThoseTicks) {
         }
         scheduled.advance_tick(executor);
         commanded.advance_tick(executor);
-        ASSERT_EQ(scheduled.hash(), commanded.hash()) << "states part at tick " << scheduled.moment().tick;
+        ASSERT_EQ(scheduled.hash(), commanded.hash()) << "states differ at tick " << scheduled.moment().tick;
     }
     EXPECT_EQ(scheduled.islands()[1].born().genes.cols(), 30);
     EXPECT_TRUE(scheduled.parameters().active == commanded.parameters().active);
@@ -113,7 +113,7 @@ TEST_F(ScheduleTest, ComesToTheSameAsCommandsAtThoseTicks) {
     EXPECT_NE(plain.hash(), scheduled.hash());
 }
 
-TEST_F(ScheduleTest, GivesTheSameOnAnyNumberOfThreads) {
+TEST_F(ScheduleTest, IsTheSameOnAnyThreadCount) {
     const parameters::Experiment experiment =
         read(R"("mutation_chance": {"2": 0.5}, "population_size": {"1": 12, "2": 200, "4": 20},
         "body_size_max": {"3": 150}, "selection": {"4": "tournament"})");
@@ -122,12 +122,12 @@ TEST_F(ScheduleTest, GivesTheSameOnAnyNumberOfThreads) {
     for (int tick = 0; tick < 12 * 5; ++tick) {
         alone.advance_tick(executor);
         many.advance_tick(threads);
-        ASSERT_EQ(alone.hash(), many.hash()) << "states part at tick " << alone.moment().tick;
+        ASSERT_EQ(alone.hash(), many.hash()) << "states differ at tick " << alone.moment().tick;
     }
     EXPECT_TRUE(alone.parameters().active == many.parameters().active);
 }
 
-TEST_F(ScheduleTest, AChangeInBetweenHoldsUntilTheNextOfThatParameter) {
+TEST_F(ScheduleTest, ACommandHoldsUntilTheNextScheduledValue) {
     World world = make(read(R"("mutation_chance": {"2": 0.3, "4": 0.1}, "mutation_step": {"3": 9})"));
     advance_to(world, 2, 5);
     set(world, "mutation_chance", 0.7);
@@ -138,7 +138,7 @@ TEST_F(ScheduleTest, AChangeInBetweenHoldsUntilTheNextOfThatParameter) {
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.1);
 }
 
-TEST_F(ScheduleTest, WhatNoLongerFitsIsLeftOutAndTold) {
+TEST_F(ScheduleTest, ReportsValuesThatNoLongerFit) {
     World world = make(read(R"("impulse_min": {"3": 200}, "mutation_step": {"3": 9, "4": 8})"));
     advance_to(world, 2, 1);
     set(world, "impulse_max", 150.0);
@@ -146,7 +146,7 @@ TEST_F(ScheduleTest, WhatNoLongerFitsIsLeftOutAndTold) {
     advance_to(world, 3, 1);
     const parameters::Parameters& held = world.parameters().active;
     EXPECT_EQ(held.impulse_min, 20);
-    EXPECT_EQ(held.mutation_step, 15) << "all of it or nothing";
+    EXPECT_EQ(held.mutation_step, 15) << "applied completely or not at all";
     const auto dropped = events<ChangeDropped>(world);
     ASSERT_EQ(dropped.size(), 1u);
     EXPECT_THAT(dropped[0].names, ElementsAre("mutation_step", "impulse_min"));
@@ -156,12 +156,12 @@ TEST_F(ScheduleTest, WhatNoLongerFitsIsLeftOutAndTold) {
     EXPECT_EQ(held.mutation_step, 8);
 }
 
-TEST_F(ScheduleTest, AWorldThatBeginsWithAGenerationGoesOnAlike) {
+TEST_F(ScheduleTest, AForkAtAnOpeningContinuesAlike) {
     World world = make(read(R"("mutation_chance": {"3": 0.6, "5": 0.1}, "population_size": {"1": 12, "3": 20})"));
     end_generation(world, 2);
     world.turn_over(executor);
     World fork = world.at_its_opening(executor), asked = world.at_its_opening(executor);
-    set(asked, "mutation_chance", 0.33); // what was scheduled for this generation is asked for already
+    set(asked, "mutation_chance", 0.33); // the value scheduled for this generation is already requested
     asked.advance_tick(executor);
     EXPECT_EQ(asked.parameters().active.mutation_chance, 0.33);
     for (int tick = 0; tick < 12 * 4; ++tick) {
@@ -172,7 +172,7 @@ TEST_F(ScheduleTest, AWorldThatBeginsWithAGenerationGoesOnAlike) {
     EXPECT_EQ(fork.parameters().active.mutation_chance, 0.1);
 }
 
-TEST_F(ScheduleTest, AResetBeginsWithItAgain) {
+TEST_F(ScheduleTest, AResetRestartsTheSchedule) {
     World world = make(read(R"("mutation_chance": {"1": 0.3, "2": 0.1}, "generation_limit": 9)"));
     const World first = world;
     advance_to(world, 2, 3);
@@ -180,13 +180,13 @@ TEST_F(ScheduleTest, AResetBeginsWithItAgain) {
     world.reset(base::Seed{5});
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.3);
     EXPECT_EQ(world.parameters().requested.mutation_chance, 0.3);
-    EXPECT_EQ(world.parameters().active.food_health, 30) << "what is not scheduled stays as it was asked for";
+    EXPECT_EQ(world.parameters().active.food_health, 30) << "unscheduled parameters keep their requested values";
     EXPECT_EQ(world.hash(), first.hash());
     advance_to(world, 2, 1);
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.1);
 }
 
-TEST_F(ScheduleTest, AResetThatCannotBeginSoIsRefused) {
+TEST_F(ScheduleTest, AResetToInvalidValuesIsRefused) {
     const parameters::Experiment experiment = read(R"("impulse_min": {"1": 100, "2": 20})");
     Laboratory laboratory;
     ASSERT_TRUE(laboratory.apply(CreateWorld{.name = "w",
@@ -204,19 +204,19 @@ TEST_F(ScheduleTest, AResetThatCannotBeginSoIsRefused) {
     EXPECT_EQ(entry.world.moment().generation, 2u);
 }
 
-TEST_F(ScheduleTest, OfAFunctionOfTheChromosomeHoldsToo) {
+TEST_F(ScheduleTest, AppliesToAChromosomeFitnessToo) {
     World world = make(read(R"("fitness": "gene_sum", "mutation_step": {"3": 0}, "reset_chance": {"1": 0.5, "3": 0},
         "crossover": {"3": "none"})"));
     for (int generation = 1; generation <= 3; ++generation) {
         world.advance_tick(executor);
     }
     EXPECT_EQ(world.parameters().active.mutation_step, 0);
-    EXPECT_EQ(world.opening().parameters.active.reset_chance, 0.5) << "bred by what held before";
+    EXPECT_EQ(world.opening().parameters.active.reset_chance, 0.5) << "bred with the previous values";
     world.advance_tick(executor);
     EXPECT_EQ(world.opening().parameters.active.reset_chance, 0);
 }
 
-/// A world in a laboratory, for which things are planned.
+/// A world in a laboratory, for planned changes.
 class PlannedTest : public ScheduleTest {
   protected:
     PlannedTest() { create(laboratory, R"("mutation_chance": 0.4)"); }
@@ -237,7 +237,7 @@ class PlannedTest : public ScheduleTest {
                 .dry_run = false,
                 .expected_revision = {},
                 .at = at,
-                .by = "somebody"};
+                .by = "anna"};
     }
     static parameters::PlannedMoment generation(std::uint64_t generation) {
         return {.generation = generation, .tick = {}};
@@ -257,7 +257,7 @@ class PlannedTest : public ScheduleTest {
     Laboratory laboratory;
 };
 
-TEST_F(PlannedTest, AtAGenerationItIsAsIfItWereScheduled) {
+TEST_F(PlannedTest, AtAGenerationItEqualsASchedule) {
     Laboratory scheduled;
     create(scheduled, R"("mutation_chance": {"1": 0.4, "3": 0.9}, "population_size": {"1": 12, "4": 30})");
     world().advance_tick(executor);
@@ -269,7 +269,7 @@ TEST_F(PlannedTest, AtAGenerationItIsAsIfItWereScheduled) {
     for (int i = 0; i < 12 * 6; ++i) {
         world().advance_tick(executor);
         world_of(scheduled).advance_tick(executor);
-        ASSERT_EQ(world().hash(), world_of(scheduled).hash()) << "states part at tick " << world().moment().tick;
+        ASSERT_EQ(world().hash(), world_of(scheduled).hash()) << "states differ at tick " << world().moment().tick;
         ASSERT_TRUE(world().parameters().active == world_of(scheduled).parameters().active);
         ASSERT_EQ(world().parameters().revision, world_of(scheduled).parameters().revision);
     }
@@ -277,12 +277,12 @@ TEST_F(PlannedTest, AtAGenerationItIsAsIfItWereScheduled) {
     const auto changed = events<ParametersChanged>(world());
     ASSERT_EQ(changed.size(), 2u);
     EXPECT_EQ(changed[0].planned, 1u);
-    EXPECT_EQ(changed[0].by, "somebody");
+    EXPECT_EQ(changed[0].by, "anna");
     EXPECT_THAT(changed[1].names, ElementsAre("population_size"));
 }
 
-TEST_F(PlannedTest, AtATickItIsAsIfTheCommandCameThere) {
-    for (const std::uint64_t at : {1u, 11u, 12u, 13u, 30u}) { // a generation is over after 12
+TEST_F(PlannedTest, AtATickItEqualsACommandThere) {
+    for (const std::uint64_t at : {1u, 11u, 12u, 13u, 30u}) { // a generation ends after 12
         for (const auto& [name, value] : {std::pair<std::string, parameters::ParameterValue>{"food_health", 60.0},
                                           {"mutation_chance", 0.0},
                                           {"population_size", 17u}}) {
@@ -305,7 +305,7 @@ TEST_F(PlannedTest, AtATickItIsAsIfTheCommandCameThere) {
     }
 }
 
-TEST_F(PlannedTest, WhatIsDueTogetherIsMadeInOrderAfterTheSchedule) {
+TEST_F(PlannedTest, ChangesDueTogetherFollowTheScheduleInOrder) {
     Laboratory both;
     create(both, R"("mutation_chance": {"2": 0.1}, "mutation_step": {"2": 1})");
     ASSERT_TRUE(both.apply(set("mutation_chance", 0.2, generation(2))));
@@ -320,7 +320,7 @@ TEST_F(PlannedTest, WhatIsDueTogetherIsMadeInOrderAfterTheSchedule) {
     EXPECT_THAT(order, ElementsAre(0, 1, 2));
 }
 
-TEST_F(PlannedTest, WhatNoLongerFitsWhenItIsDueIsDropped) {
+TEST_F(PlannedTest, AnInvalidChangeIsDroppedWhenDue) {
     plan(set("impulse_min", 200.0, generation(2)));
     plan(set("impulse_max", 30.0, tick(5)));
     ASSERT_TRUE(laboratory.apply(set("impulse_max", 150.0)));
@@ -333,7 +333,7 @@ TEST_F(PlannedTest, WhatNoLongerFitsWhenItIsDueIsDropped) {
     ASSERT_EQ(dropped.size(), 2u);
     EXPECT_EQ(dropped[0].planned, 2u);
     EXPECT_EQ(dropped[1].planned, 1u);
-    EXPECT_EQ(dropped[1].by, "somebody");
+    EXPECT_EQ(dropped[1].by, "anna");
     EXPECT_FALSE(dropped[0].violations.empty());
 }
 
@@ -352,7 +352,7 @@ TEST_F(PlannedTest, CanBeCancelledUntilItIsDue) {
     EXPECT_EQ(plan(set("food_health", 3.0, tick(9))), 3u) << "an id is never given twice";
 }
 
-TEST_F(PlannedTest, WhatCannotBePlannedIsRefusedAndNothingWaits) {
+TEST_F(PlannedTest, RefusesWhatCannotBePlanned) {
     advance_to(world(), 2, 3); // tick 15
     const auto field = [&](const SetParameters& command) {
         const auto refusal = refused(command);
@@ -378,7 +378,7 @@ TEST_F(PlannedTest, WhatCannotBePlannedIsRefusedAndNothingWaits) {
     EXPECT_EQ(refused(set("food_health", 1.0, tick(16))).code, base::RefusalCode::ResourceExhausted);
 }
 
-TEST_F(PlannedTest, NeitherAResetNorAForkHasIt) {
+TEST_F(PlannedTest, IsDroppedByResetAndFork) {
     plan(set("food_health", 1.0, generation(3)));
     ASSERT_TRUE(laboratory.apply(ForkWorld{.world = "w", .name = "fork", .at_generation = {}, .run_id = {}}));
     EXPECT_TRUE((*laboratory.find("fork"))->world.planned().empty());
@@ -386,7 +386,7 @@ TEST_F(PlannedTest, NeitherAResetNorAForkHasIt) {
     EXPECT_TRUE(world().at_its_opening(executor).planned().empty());
     ASSERT_TRUE(laboratory.apply(ResetWorld{.world = "w", .seed = {}, .run_id = {}}));
     EXPECT_TRUE(world().planned().empty());
-    EXPECT_EQ(plan(set("food_health", 1.0, generation(3))), 1u) << "of another run";
+    EXPECT_EQ(plan(set("food_health", 1.0, generation(3))), 1u) << "ids start again in another run";
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "server/evolution/rearranging.h"
+#include "server/evolution/order_mutation.h"
 
 #include "tests/unit/evolution/draws.h"
 
@@ -15,7 +15,7 @@ namespace {
 using Order = std::array<float, gene_count>;
 constexpr Order in_order = {0, 1, 2, 3, 4, 5};
 
-Parameters with(Rearranging method, double chance = 1) {
+Parameters with(OrderMutationMethod method, double chance = 1) {
     Parameters parameters;
     parameters.rearranging = method;
     parameters.rearrange_chance = chance;
@@ -23,7 +23,7 @@ Parameters with(Rearranging method, double chance = 1) {
 }
 
 std::map<Order, std::uint64_t> outcomes(const Parameters& parameters, std::uint32_t draws, std::uint64_t seed) {
-    const RearrangingMutation mutation{parameters};
+    const OrderMutation mutation{parameters};
     std::map<Order, std::uint64_t> counts;
     for (std::uint32_t i = 0; i < draws; ++i) {
         Order genes = in_order;
@@ -36,7 +36,7 @@ std::map<Order, std::uint64_t> outcomes(const Parameters& parameters, std::uint3
 
 using Law = std::map<Order, double>;
 
-/// Pearson's test of the outcomes against a law over all of them.
+/// Pearson's test of the outcomes against the probabilities of all of them.
 double p_value_of(std::map<Order, std::uint64_t> counts, const Law& law) {
     std::vector<std::uint64_t> observed;
     std::vector<double> expected;
@@ -45,7 +45,7 @@ double p_value_of(std::map<Order, std::uint64_t> counts, const Law& law) {
         expected.push_back(probability);
         counts.erase(order);
     }
-    return counts.empty() ? p_value_of_law(observed, expected) : 0; // 0: something happened that the law excludes
+    return counts.empty() ? p_value_of_law(observed, expected) : 0; // 0: an outcome that the law excludes
 }
 
 Order swapped(Order order, unsigned a, unsigned b) {
@@ -71,7 +71,7 @@ TEST(Swap, TradesOneOrTwoPairsWithEvenChance) {
         for_each_pair([&](unsigned c, unsigned d) { law[swapped(once, c, d)] += 0.5 / 15 / 15; });
     });
     ASSERT_EQ(law.size(), 101u);
-    EXPECT_GT(p_value_of(outcomes(with(Rearranging::Swap), 500'000, 191), law), alpha);
+    EXPECT_GT(p_value_of(outcomes(with(OrderMutationMethod::Swap), 500'000, 191), law), alpha);
 }
 
 TEST(Scramble, PutsASliceInAnyOrder) {
@@ -89,18 +89,18 @@ TEST(Scramble, PutsASliceInAnyOrder) {
     });
     ASSERT_EQ(law.size(), 720u);
     EXPECT_NEAR(law[in_order], 2383.0 / 10800, 1e-12);
-    EXPECT_GT(p_value_of(outcomes(with(Rearranging::Scramble), 2'000'000, 192), law), alpha);
+    EXPECT_GT(p_value_of(outcomes(with(OrderMutationMethod::Scramble), 2'000'000, 192), law), alpha);
 }
 
-TEST(Scramble, LeavesTheChromosomeUnchangedWithItsKnownProbability) {
+TEST(Scramble, LeavesChromosomesUnchangedAsOftenAsComputed) {
     // Law: 2383/10800. Chi-square, 1 degree of freedom.
-    const std::uint64_t unchanged = outcomes(with(Rearranging::Scramble), 1'000'000, 193)[in_order];
+    const std::uint64_t unchanged = outcomes(with(OrderMutationMethod::Scramble), 1'000'000, 193)[in_order];
     EXPECT_GT(
         p_value_of_law(std::vector{unchanged, 1'000'000 - unchanged}, std::vector{2383.0 / 10800, 1 - 2383.0 / 10800}),
         alpha);
 }
 
-TEST(Inversion, TurnsEachOfThe15SlicesAboutEquallyOften) {
+TEST(Inversion, ReversesEachOfThe15SlicesEquallyOften) {
     // Law: 1/15 for each. Chi-square, 14 degrees of freedom.
     Law law;
     for_each_pair([&](unsigned a, unsigned b) {
@@ -109,27 +109,28 @@ TEST(Inversion, TurnsEachOfThe15SlicesAboutEquallyOften) {
         law[order] += 1 / 15.0;
     });
     ASSERT_EQ(law.size(), 15u);
-    EXPECT_GT(p_value_of(outcomes(with(Rearranging::Inversion), 150'000, 194), law), alpha);
+    EXPECT_GT(p_value_of(outcomes(with(OrderMutationMethod::Inversion), 150'000, 194), law), alpha);
 }
 
-TEST(Rearranging, HappensWithItsChance) {
+TEST(OrderMutation, HappensWithItsChance) {
     // Law: inversion always changes something, so a share of 0.2 is changed. Chi-square, 1 degree of freedom.
-    const std::uint64_t unchanged = outcomes(with(Rearranging::Inversion, 0.2), 200'000, 195)[in_order];
+    const std::uint64_t unchanged = outcomes(with(OrderMutationMethod::Inversion, 0.2), 200'000, 195)[in_order];
     EXPECT_GT(p_value_of_law(std::vector{unchanged, 200'000 - unchanged}, std::vector{0.8, 0.2}), alpha);
-    EXPECT_EQ(outcomes(with(Rearranging::None, 1), 100, 196)[in_order], 100u);
-    EXPECT_EQ(outcomes(with(Rearranging::Scramble, 0), 100, 197)[in_order], 100u);
-    EXPECT_TRUE(RearrangingMutation{with(Rearranging::Swap, 0)}.is_off());
+    EXPECT_EQ(outcomes(with(OrderMutationMethod::None, 1), 100, 196)[in_order], 100u);
+    EXPECT_EQ(outcomes(with(OrderMutationMethod::Scramble, 0), 100, 197)[in_order], 100u);
+    EXPECT_TRUE(OrderMutation{with(OrderMutationMethod::Swap, 0)}.is_off());
 }
 
-RC_GTEST_PROP(Rearranging, NeverMakesANewValue, ()) {
+RC_GTEST_PROP(OrderMutation, NeverMakesANewValue, ()) {
     Order genes;
     for (float& gene : genes) {
         gene = static_cast<float>(*rc::gen::inRange(0, 8)); // equal values included
     }
     Order rearranged = genes;
-    const auto method = *rc::gen::element(Rearranging::Swap, Rearranging::Scramble, Rearranging::Inversion);
+    const auto method =
+        *rc::gen::element(OrderMutationMethod::Swap, OrderMutationMethod::Scramble, OrderMutationMethod::Inversion);
     base::RandomStream random = stream_of(*rc::gen::arbitrary<std::uint64_t>());
-    RearrangingMutation{with(method)}.apply(rearranged, random);
+    OrderMutation{with(method)}.apply(rearranged, random);
     std::sort(genes.begin(), genes.end());
     std::sort(rearranged.begin(), rearranged.end());
     RC_ASSERT(genes == rearranged);

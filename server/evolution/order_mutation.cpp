@@ -1,4 +1,4 @@
-#include "server/evolution/rearranging.h"
+#include "server/evolution/order_mutation.h"
 
 #include <algorithm>
 #include <utility>
@@ -25,26 +25,26 @@ void swap_pair(std::span<T, gene_count> genes, base::RandomStream& random) {
 
 } // namespace
 
-RearrangingMutation::RearrangingMutation(const Parameters& parameters)
+OrderMutation::OrderMutation(const Parameters& parameters)
     : method_{parameters.rearranging}, chance_{parameters.rearrange_chance} {}
 
-bool RearrangingMutation::apply(Genes genes, base::RandomStream& random) const {
-    return rearrange(genes, random);
+bool OrderMutation::apply(Genes genes, base::RandomStream& random) const {
+    return mutate_order(genes, random);
 }
 
-bool RearrangingMutation::apply(GeneOrder order, base::RandomStream& random) const {
-    return rearrange(order, random);
+bool OrderMutation::apply(GeneOrder order, base::RandomStream& random) const {
+    return mutate_order(order, random);
 }
 
 template <class T>
-bool RearrangingMutation::rearrange(std::span<T, gene_count> genes, base::RandomStream& random) const {
+bool OrderMutation::mutate_order(std::span<T, gene_count> genes, base::RandomStream& random) const {
     if (is_off() || !chance_.draw(random)) {
         return false;
     }
     switch (method_) {
-    case Rearranging::None:
+    case OrderMutationMethod::None:
         break;
-    case Rearranging::Swap: {
+    case OrderMutationMethod::Swap: {
         const bool twice = random.below(2) == 1;
         swap_pair(genes, random);
         if (twice) {
@@ -52,12 +52,12 @@ bool RearrangingMutation::rearrange(std::span<T, gene_count> genes, base::Random
         }
         break;
     }
-    case Rearranging::Scramble: {
+    case OrderMutationMethod::Scramble: {
         const Slice slice = draw_slice(random);
         random.shuffle(std::span<T>{genes}.subspan(slice.first, slice.last - slice.first + 1));
         break;
     }
-    case Rearranging::Inversion: {
+    case OrderMutationMethod::Inversion: {
         const Slice slice = draw_slice(random);
         std::reverse(genes.begin() + slice.first, genes.begin() + slice.last + 1);
         break;

@@ -16,9 +16,9 @@ namespace evod::evolution {
 /// Which gene's value each gene received.
 using GeneOrder = std::span<std::uint32_t, gene_count>;
 
-class RearrangingMutation {
+class OrderMutation {
   public:
-    explicit RearrangingMutation(const Parameters& parameters);
+    explicit OrderMutation(const Parameters& parameters);
 
     /// Mutates with probability rearrange_chance. Every slice or pair below has two different indices, each pair of
     /// indices equally likely.
@@ -35,13 +35,13 @@ class RearrangingMutation {
     /// Applies the same operation to gene numbers instead of genes.
     bool apply(GeneOrder order, base::RandomStream& random) const;
 
-    bool is_off() const { return method_ == Rearranging::None || chance_.is_never(); }
+    bool is_off() const { return method_ == OrderMutationMethod::None || chance_.is_never(); }
 
   private:
     template <class T>
-    bool rearrange(std::span<T, gene_count> items, base::RandomStream& random) const;
+    bool mutate_order(std::span<T, gene_count> items, base::RandomStream& random) const;
 
-    Rearranging method_;
+    OrderMutationMethod method_;
     Chance chance_;
 };
 

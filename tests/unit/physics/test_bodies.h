@@ -1,4 +1,4 @@
-// Scene: circles and boxes in an area, and the steps of them, for tests of physics.
+// TestBodies: circles and boxes in an area, and their steps, for tests of physics.
 #pragma once
 
 #include "server/base/inline_executor.h"
@@ -12,7 +12,7 @@
 
 namespace evod::physics {
 
-struct Scene {
+struct TestBodies {
     Area area{to_units(300'000.0), to_units(300'000.0)};
     Circles circles;
     Boxes boxes;
@@ -66,7 +66,7 @@ inline void PrintTo(Integrator integrator, std::ostream* out) {
     *out << names[static_cast<std::size_t>(integrator)];
 }
 
-inline base::RandomStream scene_stream(std::uint64_t seed) {
+inline base::RandomStream test_stream(std::uint64_t seed) {
     return {base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};
 }
 
