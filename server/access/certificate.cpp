@@ -38,7 +38,7 @@ bool is_host_name(const std::string& host) {
     });
 }
 
-/// "IP:10.0.0.7" or "DNS:lab.example"; nothing for neither.
+/// "IP:10.0.0.7" or "DNS:lab.example"; empty if it is neither.
 std::string alternative_name(const std::string& host) {
     boost::system::error_code error;
     const auto address = boost::asio::ip::make_address(host, error);
@@ -60,11 +60,11 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
     Certificate certificate{X509_new()};
     unsigned char serial[16];
     bool good = certificate && RAND_bytes(serial, sizeof serial) == 1;
-    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // positive, and of all its bytes
+    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // positive, and of full length
     constexpr long day_s = 24 * 60 * 60;
     good = good && X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
            ASN1_STRING_set(X509_get_serialNumber(certificate.get()), serial, sizeof serial) == 1 &&
-           X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr && // clocks differ
+           X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr && // allows for wrong clocks
            X509_gmtime_adj(X509_getm_notAfter(certificate.get()), certificate_days * day_s) != nullptr &&
            X509_set_pubkey(certificate.get(), key) == 1;
     if (!good) {
@@ -88,14 +88,14 @@ Result<void> write_pem(const std::string& path, mode_t mode, const Write& write)
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor < 0) {
         return refusal(errno == EEXIST ? RefusalCode::AlreadyExists : RefusalCode::Unavailable,
-                       errno == EEXIST ? path + " is there already"
+                       errno == EEXIST ? path + " exists already"
                                        : path + ": cannot be written: " + std::strerror(errno));
     }
     std::FILE* file = ::fdopen(descriptor, "w");
     const bool written = write(file) == 1;
     if (std::fclose(file) != 0 || !written) {
         ::unlink(path.c_str());
-        return refusal(RefusalCode::Unavailable, path + ": cannot be written, the disk may be full");
+        return refusal(RefusalCode::Unavailable, path + ": cannot be written: the disk may be full");
     }
     return {};
 }
@@ -107,7 +107,7 @@ Result<void> make_certificate(const std::vector<std::string>& hosts, const std::
     for (const std::string& host : hosts) {
         const std::string name = alternative_name(host);
         if (name.empty()) {
-            return refusal(RefusalCode::InvalidArgument, "\"" + host + "\" is no host name or IP address");
+            return refusal(RefusalCode::InvalidArgument, "\"" + host + "\" is not a host name or IP address");
         }
         names += (names.empty() ? "" : ",") + name;
     }
@@ -115,11 +115,11 @@ Result<void> make_certificate(const std::vector<std::string>& hosts, const std::
     const std::string common_name = hosts.front().substr(0, 64);
     const Certificate certificate = key ? certificate_of(key.get(), names, common_name) : nullptr;
     if (!certificate) {
-        return refusal(RefusalCode::Unavailable, "OpenSSL cannot make such a certificate");
+        return refusal(RefusalCode::Unavailable, "OpenSSL cannot create the certificate");
     }
     const std::string key_path = folder + "/evod.key", certificate_path = folder + "/evod.crt";
     if (::access(certificate_path.c_str(), F_OK) == 0) {
-        return refusal(RefusalCode::AlreadyExists, certificate_path + " is there already");
+        return refusal(RefusalCode::AlreadyExists, certificate_path + " exists already");
     }
     if (auto written = write_pem(key_path, 0600,
                                  [&](std::FILE* file) {

@@ -1,4 +1,4 @@
-// Certificates: a self-signed pair for a laboratory without an authority of its own.
+// Certificates: creates a self-signed key pair for a laboratory without its own certificate authority.
 #pragma once
 
 #include "server/base/result.h"
@@ -10,11 +10,11 @@ namespace evod::access {
 
 constexpr int certificate_days = 825;
 
-/// A key (EC P-256) and a certificate that vouches for itself, in PEM: `evod.key`, for its owner alone, and `evod.crt`,
-/// which clients are given with --ca. Refused where one of the files is there already.
+/// Writes a key (EC P-256) and a self-signed certificate in PEM: `evod.key`, readable by its owner only, and
+/// `evod.crt`, which clients use with --ca. Refused if one of the files exists.
 ///
-/// hosts   names or IP addresses under which clients will reach the server; at least one.
-/// folder  is there.
+/// hosts   names or IP addresses under which clients reach the server; at least one.
+/// folder  must exist.
 base::Result<void> make_certificate(const std::vector<std::string>& hosts, const std::string& folder);
 
 } // namespace evod::access

@@ -27,19 +27,20 @@ Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
         return *gate.trouble_;
     }
     if (token_needed && gate.tokens_.empty()) {
-        return refusal(RefusalCode::FailedPrecondition,
-                       folder.empty()
-                           ? "others could command this server, and without a folder there are no tokens to tell who "
-                             "may: listen on 127.0.0.1, or name a folder with --data"
-                           : "others could command this server, and there are no tokens yet to tell who may: make one "
-                             "with `evod token add NAME --role admin --data " +
-                                 folder + "`, or listen on 127.0.0.1 without --require-token");
+        return refusal(
+            RefusalCode::FailedPrecondition,
+            folder.empty()
+                ? "any client on the network could control this server, and tokens need a folder: "
+                  "listen on 127.0.0.1, or name a folder with --data"
+                : "any client on the network could control this server, and there is no token yet: create one "
+                  "with `evod token add NAME --role admin --data " +
+                      folder + "`, or listen on 127.0.0.1 without --require-token");
     }
     return gate;
 }
 
 bool Gate::refresh() {
-    // Taken before the reading, so that what comes in between is seen the next time.
+    // Taken before reading, so that a later change is detected the next time.
     const Stamp now = stamp();
     if (now == stamp_) {
         return false;
@@ -80,7 +81,7 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
     }
     if (trouble_) {
         return refusal(RefusalCode::Unavailable,
-                       "the server cannot tell at present who may come in: its log says why, to whoever runs it",
+                       "authentication is unavailable: the token file cannot be used (see the server log)",
                        base::Reason::AuthenticationUnavailable);
     }
     const Digest digest = digest_of(token);
@@ -90,18 +91,20 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
         return Visitor{known->name, known->role, digest};
     }
     if (token.empty()) {
-        return refusal(RefusalCode::Unauthenticated,
-                       "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them",
-                       base::Reason::TokenMissing);
+        return refusal(
+            RefusalCode::Unauthenticated,
+            "this server requires a token: set EVOD_TOKEN or --token-file; the operator of the server creates tokens",
+            base::Reason::TokenMissing);
     }
     if (const auto before = failures_.find(address); before != failures_.end() && now < before->second.not_before) {
         const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
         return refusal(RefusalCode::ResourceExhausted,
-                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s",
+                       "a login from this address failed: try again in " + std::to_string(wait.count()) + " s",
                        base::Reason::LoginTooSoon);
     }
     fail(address, now);
-    return refusal(RefusalCode::Unauthenticated, "this server does not know the token: ask whoever runs it for one",
+    return refusal(RefusalCode::Unauthenticated,
+                   "this server does not know the token: ask the operator of the server for one",
                    base::Reason::TokenUnknown);
 }
 

@@ -1,7 +1,7 @@
-// Gate: lets sessions in, as whom their tokens say.
+// Gate: authenticates sessions by their tokens.
 //
-// Owner     the server; on the network thread.
-// Full      failed logins are remembered of addresses_max addresses; beyond, the oldest are forgotten.
+// Owner        the server, on the network thread.
+// Full         remembers failed logins of addresses_max addresses; beyond that it forgets the oldest.
 #pragma once
 
 #include "server/access/token_file.h"
@@ -15,9 +15,9 @@
 
 namespace evod::access {
 
-/// Who a session is for.
+/// The user behind a session.
 struct Visitor {
-    std::string name; // of the token; empty: came without one
+    std::string name; // of the token; empty: no token
     Role role = Role::Admin;
     Digest token{};
 };
@@ -25,30 +25,31 @@ struct Visitor {
 class Gate {
   public:
     using Clock = std::chrono::steady_clock;
-    // After a failed login, further unknown tokens from its address are refused unexamined for this long; twice as long
-    // after each further one. A known token is always admitted: it cannot be guessed, so there is nothing to slow down.
+    // After a failed login the gate refuses unknown tokens from that address for this long, and twice as long after
+    // each further failure. A known token is always admitted: tokens cannot be guessed, so it needs no rate limit.
     static constexpr std::chrono::milliseconds delay_min{500};
     static constexpr std::chrono::milliseconds delay_max{30'000};
     static constexpr std::chrono::minutes forgotten_after{10}; // without another failure
     static constexpr std::size_t addresses_max = 10'000;
 
-    /// folder   where the token file is; empty: there are no tokens.
-    /// token_needed  whoever comes without one is refused, and is an admin otherwise.
-    /// Refused where the file cannot be believed, or a token is needed and there is none.
+    /// folder        of the token file; empty: there are no tokens.
+    /// token_needed  false: a client without a token is an admin; true: it is refused.
+    ///
+    /// Refused if the token file is not trustworthy, or if a token is needed and there is none.
     static base::Result<Gate> open(const std::string& folder, bool token_needed);
 
-    /// UNAUTHENTICATED for an unknown token, or none where one is needed; RESOURCE_EXHAUSTED for an unknown one while the
-    /// address has to wait.
+    /// UNAUTHENTICATED for an unknown or missing token; RESOURCE_EXHAUSTED for an unknown token while the address must
+    /// wait.
     ///
-    /// address  as far as it tells people apart.
+    /// address  the key of the rate limit: an IPv4 address or an IPv6 /64.
     base::Result<Visitor> admit(const std::string& token, const std::string& address, Clock::time_point now);
 
-    /// Reads the token file again if it is another one than before. Returns whether it was. One that cannot be believed
-    /// lets nobody new in, and leaves those who are in.
+    /// Reads the token file again if it has changed, and returns whether it has. While the file is not trustworthy, new
+    /// sessions are refused and existing ones continue.
     bool refresh();
-    /// Whether the token by which somebody came in is still good.
+    /// Whether the token of an admitted session is still valid.
     bool knows(const Visitor& visitor) const;
-    /// What is wrong with the token file at present.
+    /// Why the token file is currently not usable; nullopt: it is.
     const std::optional<base::Refusal>& trouble() const { return trouble_; }
 
     std::uint64_t failed_login_count() const { return failed_login_count_; }
@@ -58,7 +59,7 @@ class Gate {
         int count = 0;
         Clock::time_point last, not_before;
     };
-    /// To tell one state of the file from another.
+    /// Identifies a version of the file.
     struct Stamp {
         bool there = false;
         ino_t inode = 0;

@@ -1,4 +1,6 @@
-// Roles: what a session may ask for.
+// Roles: the permissions of a session.
+//
+// Threads      any; no state.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -8,21 +10,21 @@
 
 namespace evod::access {
 
-/// Each may do what those before it may.
+/// Each role includes those before it.
 enum class Role {
-    Viewer,     // looks
-    Controller, // and changes how worlds run
-    Admin,      // and makes and deletes worlds, and ends the server
+    Viewer,     // queries, subscriptions, exports and replays
+    Controller, // also run control and parameters
+    Admin,      // also creates and deletes worlds, and ends the server
 };
 
 /// "viewer", "controller", "admin".
 const char* name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
+v1::Role to_proto(Role role);
 
-/// The least role that may send such a request. Of what somebody opened to look at the past, they may run, step and
-/// seek it as viewers.
+/// The lowest role that may send a request with these rules. A request without a role needs Admin.
 ///
-/// request  of a kind this server knows.
-Role role_needed(v1::Request::KindCase request, bool of_own_past);
+/// in_own_replay  the request names a replay that its session has opened.
+Role role_needed(const v1::RequestRules& rules, bool in_own_replay);
 
 } // namespace evod::access

@@ -19,7 +19,7 @@ using base::Result;
 
 namespace {
 
-constexpr std::size_t pem_bytes_max = 4 << 20; // all authorities that a system knows take some 200 KiB
+constexpr std::size_t pem_bytes_max = 4 << 20; // all authorities of a usual system are about 200 KiB
 
 Refusal refusal(std::string message) {
     return {.code = RefusalCode::FailedPrecondition, .message = std::move(message), .violations = {}};
@@ -29,23 +29,23 @@ Refusal refusal(std::string message) {
 
 Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
     if (files.certificate.empty() != files.key.empty()) {
-        return refusal(files.key.empty() ? "--tls-cert needs --tls-key too" : "--tls-key needs --tls-cert too");
+        return refusal(files.key.empty() ? "--tls-cert requires --tls-key" : "--tls-key requires --tls-cert");
     }
     if (files.certificate.empty()) {
         return files.client_ca.empty() ? Result<std::unique_ptr<ssl::context>>{nullptr}
-                                       : refusal("--tls-client-ca needs --tls-cert and --tls-key too");
+                                       : refusal("--tls-client-ca requires --tls-cert and --tls-key");
     }
     struct stat about {};
     if (::stat(files.key.c_str(), &about) != 0) {
         return refusal("--tls-key: " + files.key + " cannot be read: " + std::strerror(errno));
     }
     if ((about.st_mode & 007) != 0) {
-        return refusal("--tls-key: everybody can read " + files.key + ": chmod 600 it");
+        return refusal("--tls-key: all users can read " + files.key + ": run chmod 600 on it");
     }
     auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
     SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
-    // Hands what a file holds to `use`.
+    // Passes the contents of a file to `use`.
     const auto load = [](const char* option, const std::string& file, const auto& use) -> Result<void> {
         const auto text = files::read_file(file, "a PEM file", pem_bytes_max);
         if (!text) {

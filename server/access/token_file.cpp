@@ -67,7 +67,7 @@ std::optional<Digest> from_hex(std::string_view text) {
     return bytes;
 }
 
-/// A file descriptor that is closed with its owner; -1 for none.
+/// A file descriptor that closes with its owner; -1: none.
 class Descriptor {
   public:
     explicit Descriptor(int number) : number_{number} {}
@@ -95,17 +95,17 @@ std::string today() {
     return text;
 }
 
-/// folder_descriptor: of the same.
+/// folder_descriptor: the folder of `path`.
 Result<void> write_tokens(const std::string& folder, int folder_descriptor, const Tokens& tokens) {
     const std::string path = token_file_of(folder), next = path + "-next";
     const std::string text = to_text(tokens);
     {
-        ::unlink(next.c_str()); // of somebody who was interrupted
+        ::unlink(next.c_str()); // left by an interrupted process
         const Descriptor file{::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
         if (!file.open()) {
             return cannot("written", next);
         }
-        errno = ENOSPC; // of a write that takes only a part
+        errno = ENOSPC; // write() wrote only a part
         if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0) {
             return cannot("written", next);
         }
@@ -113,14 +113,14 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
     if (::rename(next.c_str(), path.c_str()) != 0) {
         return cannot("replaced", path);
     }
-    // Otherwise a token that was revoked could be back after a power cut.
+    // Otherwise a revoked token could reappear after a power failure.
     if (::fsync(folder_descriptor) != 0) {
         return cannot("written", folder);
     }
     return {};
 }
 
-/// Reads the file, lets `change` change what it says, and writes it; one process at a time.
+/// Reads the file, applies `change` and writes it, while a lock excludes other processes.
 template <class Change>
 Result<void> change_tokens(const std::string& folder, const Change& change) {
     std::error_code error;
@@ -196,10 +196,10 @@ Result<Tokens> parse_tokens(std::string_view text) {
             return wrong(number, "NAME ROLE SHA256 DATE");
         }
         if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; })) {
-            return wrong(number, "a token of another name than those before");
+            return wrong(number, "a token with a new name");
         }
         if (tokens.size() == tokens_max) {
-            return wrong(number, "among the " + std::to_string(tokens_max) + " that there may be");
+            return wrong(number, "within the limit of " + std::to_string(tokens_max) + " tokens");
         }
         tokens.push_back({name, *role_of, *bytes, made_on});
     }
@@ -208,15 +208,15 @@ Result<Tokens> parse_tokens(std::string_view text) {
 
 Result<Tokens> read_tokens(const std::string& folder) {
     const std::string path = token_file_of(folder);
-    const auto file = files::RegularFile::open(path, "a file of tokens", files::Links::Refused);
+    const auto file = files::RegularFile::open(path, "a token file", files::Links::Refused);
     if (!file) {
         return file.error().code == RefusalCode::NotFound ? Result<Tokens>{Tokens{}} : file.error();
     }
     const struct stat& about = file->about();
     if (about.st_uid != ::geteuid() || (about.st_mode & 077) != 0) {
         return refusal(RefusalCode::FailedPrecondition,
-                       path + " is not for its owner alone, so it cannot be believed: chown it to the user who runs "
-                              "evod, and chmod 600");
+                       path + " is accessible to other users and therefore refused: chown it to the user that runs "
+                              "evod, and chmod it to 600");
     }
     const auto text = file->read(file_bytes_max);
     if (!text) {
@@ -236,17 +236,17 @@ Result<std::string> add_token(const std::string& folder, const std::string& name
     }
     Digest drawn;
     if (RAND_bytes(drawn.data(), static_cast<int>(drawn.size())) != 1) {
-        return refusal(RefusalCode::Unavailable, "the system gives no random numbers");
+        return refusal(RefusalCode::Unavailable, "the system provides no random numbers");
     }
     const std::string secret = "evod_" + to_hex(drawn);
     const auto added = change_tokens(folder, [&](Tokens& tokens) -> Result<void> {
         if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; })) {
             return refusal(RefusalCode::AlreadyExists,
-                           "there is a token of the name " + name + " already: revoke it, or choose another name");
+                           "a token named " + name + " exists already: revoke it, or choose another name");
         }
         if (tokens.size() >= tokens_max) {
             return refusal(RefusalCode::ResourceExhausted,
-                           "there are " + std::to_string(tokens_max) + " tokens already");
+                           "the limit of " + std::to_string(tokens_max) + " tokens is reached: revoke one first");
         }
         tokens.push_back({name, role, digest_of(secret), today()});
         return {};
@@ -260,7 +260,7 @@ Result<std::string> add_token(const std::string& folder, const std::string& name
 Result<void> revoke_token(const std::string& folder, const std::string& name) {
     return change_tokens(folder, [&](Tokens& tokens) -> Result<void> {
         if (std::erase_if(tokens, [&](const Token& token) { return token.name == name; }) == 0) {
-            return refusal(RefusalCode::NotFound, "there is no token of the name \"" + name + '"');
+            return refusal(RefusalCode::NotFound, "there is no token named \"" + name + '"');
         }
         return {};
     });

@@ -1,12 +1,14 @@
-// Token file: who may come in, and as what. `tokens` in a folder, that of the runs, a line for each:
+// Token file: users and their roles. The file is called `tokens`, is stored in the data folder and has a line per
+// token:
 //
 //   # evod tokens 1
 //   NAME ROLE SHA256 DATE
 //
-// A token is 256 bits drawn by the system, told once and never stored: the file has its SHA-256. So much chance cannot
-// be guessed, so nothing slower than a plain hash is needed.
+// A token is 256 random bits of the system. The server prints it once and stores only its SHA-256. Guessing it is
+// impossible, so a fast hash is enough.
 //
-// Safety  the file is for its owner alone (mode 0600), and is not believed otherwise. It is replaced as a whole.
+// Safety  the file must be accessible to its owner only (mode 0600), otherwise it is refused. It is replaced
+//         atomically.
 #pragma once
 
 #include "server/access/role.h"
@@ -34,23 +36,23 @@ struct Token {
     friend bool operator==(const Token&, const Token&) = default;
 };
 
-/// In the order in which they were made; each name once.
+/// In order of creation; each name once.
 using Tokens = std::vector<Token>;
 
-/// Of a token as its owner has it.
+/// The SHA-256 of a token.
 Digest digest_of(std::string_view secret);
-/// In a time that tells nothing about the digests; nullptr if there is none.
+/// Compares in constant time. nullptr: the token is unknown.
 const Token* find(const Tokens& tokens, const Digest& digest);
 
-/// Refused with the number of the line that is wrong.
+/// A refusal names the invalid line.
 base::Result<Tokens> parse_tokens(std::string_view text);
 std::string to_text(const Tokens& tokens);
 
 std::string token_file_of(const std::string& folder);
 
-/// None if there is no file. Refused where it cannot be read, is damaged, or others can read or change it.
+/// Empty if there is no file. Refused if the file cannot be read, is damaged, or is accessible to other users.
 base::Result<Tokens> read_tokens(const std::string& folder);
-/// Makes one. Returns its secret, "evod_" and 64 hexadecimal digits, which nobody is told again.
+/// Creates a token. Returns its secret: "evod_" and 64 hexadecimal digits. It cannot be read again later.
 base::Result<std::string> add_token(const std::string& folder, const std::string& name, Role role);
 base::Result<void> revoke_token(const std::string& folder, const std::string& name);
 

@@ -56,7 +56,7 @@ enum class Reason {
     RunsNotKept = 50,
     MomentNotFound = 51,
     SeekSuperseded = 52,
-    PastsMax = 53,
+    ReplaysMax = 53,
     ExportsMax = 54,
     ExportNotFound = 55,
     ExportEnded = 56,

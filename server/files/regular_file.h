@@ -1,7 +1,7 @@
-// Regular file: opens and reads files that a user names or that others may have put there. A pipe, which would be
-// waited for, and a device, which may have no end, are refused at once; a file is read up to a number of bytes.
+// Regular file: opens and reads files that a user names or that another user may have created. It refuses a pipe, which
+// would block, and a device, which may have no end. Reading is bounded.
 //
-// Threads  any; each object on one.
+// Threads  any; one object per thread.
 #pragma once
 
 #include "server/base/result.h"
@@ -20,10 +20,10 @@ enum class Links { Followed, Refused };
 
 class RegularFile {
   public:
-    /// kind  what it should be, as a message says it: "an experiment file".
+    /// kind  what the file should be, for messages: "an experiment file".
     ///
-    /// Refused with the path in the message: NotFound if there is no such file, InvalidArgument if it is a folder, a
-    /// pipe, a device or a socket, otherwise Unavailable.
+    /// A refusal names the path. NotFound: no such file. InvalidArgument: a folder, pipe, device or socket.
+    /// Unavailable: other errors.
     static base::Result<RegularFile> open(const std::string& path, std::string_view kind,
                                           Links links = Links::Followed);
 
@@ -31,11 +31,11 @@ class RegularFile {
     RegularFile& operator=(RegularFile&&) = delete;
     ~RegularFile();
 
-    /// As it was when it was opened.
+    /// The size when the file was opened.
     const struct stat& about() const { return about_; }
-    /// All of it. Refused as InvalidArgument if it has more bytes.
+    /// The whole file. InvalidArgument if it has more than bytes_max bytes.
     base::Result<std::string> read(std::size_t bytes_max) const;
-    /// Fills `bytes` from that offset. Returns how many there were before the end of the file, or a failure to read.
+    /// Reads into `bytes` from that offset. Returns how many bytes there were before the end of the file.
     std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
 
   private:
@@ -47,10 +47,11 @@ class RegularFile {
     struct stat about_;
 };
 
-/// The same in one step.
+/// Opens and reads in one step.
 base::Result<std::string> read_file(const std::string& path, std::string_view kind, std::size_t bytes_max);
 
-/// What there is instead of a regular file: "a folder", "a pipe", "a device", "a socket", "a link"; empty for one.
+/// The kind of a path that is not a regular file: "a folder", "a pipe", "a device", "a socket", "a link"; empty for a
+/// regular file.
 std::string_view other_than_file(mode_t mode);
 
 } // namespace evod::files

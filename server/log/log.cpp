@@ -17,7 +17,7 @@ spdlog::level::level_enum to_spdlog(Level level) {
 static_assert(static_cast<int>(Level::Trace) == static_cast<int>(spdlog::level::trace) &&
               static_cast<int>(Level::Error) == static_cast<int>(spdlog::level::err));
 
-/// Bytes of the character of UTF-8 that `text` begins with, 1 to 4; 0: it begins with none.
+/// The bytes of the UTF-8 character at the start of `text`, 1 to 4; 0: invalid UTF-8.
 std::size_t character_bytes(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const std::size_t count = byte(0) < 0x80    ? 1
@@ -34,7 +34,7 @@ std::size_t character_bytes(std::string_view text) {
             return 0;
         }
     }
-    // Longer than needed, half of a pair of UTF-16, or beyond the last character: RFC 3629 §4.
+    // Overlong, a UTF-16 surrogate, or above U+10FFFF: RFC 3629 §4.
     if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
         (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f)) {
         return 0;
@@ -47,7 +47,7 @@ std::string json_text(std::string_view text) {
     while (!text.empty()) {
         const std::size_t count = character_bytes(text);
         const auto first = static_cast<unsigned char>(text[0]);
-        // Those that steer terminals are U+0080 to U+009F, too.
+        // U+0080 to U+009F control terminals, too.
         const unsigned control = count == 1 && (first < 0x20 || first == 0x7f) ? first
                                  : count == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0
                                      ? static_cast<unsigned char>(text[1])

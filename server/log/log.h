@@ -1,10 +1,9 @@
-// Log: what the server says to whoever looks after it, on standard output: sentences to read, or an object of JSON a
-// line.
+// Log: messages for the operator on standard output, as sentences or as one JSON object per line.
 //
 //   log::info({.session = 3, .client = "anna"}, "session {}: {} connected", 3, "anna");
 //
 // Threads      any.
-// Outside text what clients send is made harmless here, too: no byte of it ends a line or steers a terminal.
+// Untrusted    text from clients is sanitised here: no byte of it ends a line or controls a terminal.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -23,24 +22,24 @@ enum class Level { Trace, Debug, Info, Warn, Error };
 constexpr std::array<const char*, 5> level_names{"trace", "debug", "info", "warn", "error"};
 enum class Format { Text, Json };
 
-/// What a message is about, as far as that is known. The sentence says it, too.
+/// The subject of a message, as far as it is known. The sentence contains it, too.
 struct Fields {
     std::optional<std::uint64_t> session = {};
-    std::string client = {}, world = {}, code = {}; // empty: not known
+    std::string client = {}, world = {}, code = {}; // empty: unknown
 };
 
-/// From now on; until then, text from Level::Info on.
+/// Applies from now on. Before the first call: text from Level::Info.
 void begin(Level least, Format format);
 Level level_named(std::string_view name); // one of level_names
 
 bool wanted(Level level);
 void write(Level level, const Fields& fields, std::string_view message);
 
-/// {"time":"2025-01-31T23:59:59.123Z","level":"info","message":"…","session":3,…}: the time is UTC, and of the fields
-/// those are there that are known. Bytes that are no UTF-8 become U+FFFD.
+/// {"time":"2025-01-31T23:59:59.123Z","level":"info","message":"…","session":3,…}: the time in UTC and the known
+/// fields. Invalid UTF-8 becomes U+FFFD.
 std::string json_line(std::chrono::system_clock::time_point time, Level level, const Fields& fields,
                       std::string_view message);
-/// Control characters but the ends of lines become '?'.
+/// Control characters except line ends become '?'.
 std::string plain_line(std::string_view message);
 
 template <Level level>

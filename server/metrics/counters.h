@@ -1,7 +1,7 @@
-// Counters: numbers that one thread writes and any may read, at the price of a plain store.
+// Counters: numbers that one thread writes and any thread reads, at the cost of a plain store.
 //
-// Threads      each is written by one thread, ever; read by any. What a reader gets of two of them need not be of the
-//              same instant.
+// Threads      each counter has one writing thread, and any number of readers. Two counters read together may be of
+//              different instants.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace evod::metrics {
 /// Rises from 0.
 class Counter {
   public:
-    // One writes, so that no other store can come between: a locked instruction would cost more than what is counted.
+    // With a single writer no locked instruction is needed, which would cost more than the counted work.
     void add(std::uint64_t count = 1) { value_.store(value() + count, std::memory_order_relaxed); }
     std::uint64_t value() const { return value_.load(std::memory_order_relaxed); }
 
@@ -25,7 +25,7 @@ class Counter {
     std::atomic<std::uint64_t> value_ = 0;
 };
 
-/// What holds now.
+/// A current value.
 class Gauge {
   public:
     void set(double value) { value_.store(value, std::memory_order_relaxed); }
@@ -35,13 +35,12 @@ class Gauge {
     std::atomic<double> value_ = 0;
 };
 
-/// How often something took how long.
+/// A histogram of durations.
 class TimeHistogram {
   public:
     using duration = std::chrono::nanoseconds;
 
-    /// Upper bounds, each within its bucket: 1, 2 and 5 of every decade from 0.1 µs to 1 s. One more bucket has no
-    /// bound.
+    /// Inclusive upper bounds: 1, 2 and 5 of every decade from 0.1 µs to 1 s. The last bucket has no bound.
     static constexpr std::array<duration, 22> bounds = [] {
         std::array<duration, 22> made{};
         duration decade{100};
@@ -54,14 +53,14 @@ class TimeHistogram {
         return made;
     }();
 
-    /// times: things that took so long each.
+    /// times: the number of measurements with this duration.
     void add(duration took, std::uint64_t times = 1) {
         const auto ns = static_cast<std::uint64_t>(std::max(took, duration{0}).count());
         counts_[bucket_of(ns)].add(times);
         sum_ns_.add(ns * times);
     }
 
-    /// Of a bucket, 0 to bounds.size().
+    /// bucket: 0 to bounds.size().
     std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
     std::uint64_t count() const {
         std::uint64_t all = 0;
@@ -73,8 +72,8 @@ class TimeHistogram {
     double sum_s() const { return static_cast<double>(sum_ns_.value()) * 1e-9; }
 
   private:
-    /// Without a branch, for which bucket is next is unpredictable. Of numbers that are as many bits wide, which are
-    /// less than a factor of 2 apart, one bound at most lies among them.
+    /// Branch-free, because the bucket is unpredictable. Numbers of equal bit width differ by less than a factor of 2,
+    /// so at most one bound lies between them.
     static std::size_t bucket_of(std::uint64_t ns) {
         const std::size_t bucket = first_bucket[static_cast<std::size_t>(std::bit_width(ns))];
         return bucket + (ns > bounds_ns[bucket] ? 1 : 0);
@@ -85,7 +84,7 @@ class TimeHistogram {
         made.back() = ~std::uint64_t{0};
         return made;
     }();
-    /// By width in bits: the bucket of the least number of that width.
+    /// By bit width: the bucket of the smallest number of that width.
     static constexpr std::array<std::size_t, 65> first_bucket = [] {
         std::array<std::size_t, 65> made{};
         for (std::size_t width = 1; width < made.size(); ++width) {

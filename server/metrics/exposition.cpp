@@ -1,6 +1,7 @@
 #include "server/metrics/exposition.h"
 
-#include <charconv>
+#include "server/base/number_text.h"
+
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -8,7 +9,7 @@
 namespace evod::metrics {
 namespace {
 
-/// Backslashes and ends of lines, and of a label's value its quotes, too.
+/// Escapes backslashes and line ends, and quotes in label values.
 std::string escaped(std::string_view text, bool quotes) {
     std::string safe;
     for (const char c : text) {
@@ -24,23 +25,20 @@ std::string escaped(std::string_view text, bool quotes) {
     return safe;
 }
 
-/// Shortest text that reads back as the same number; whole numbers without an exponent as far as they are exact.
-std::string number_text(double value) {
+/// A number in the format of Prometheus. Whole numbers have no exponent as long as a double holds them exactly.
+std::string sample_text(double value) {
     if (std::isnan(value)) {
         return "NaN";
     }
     if (std::isinf(value)) {
         return value > 0 ? "+Inf" : "-Inf";
     }
-    char digits[32];
     constexpr double exact_max = 9007199254740992; // 2^53
-    const auto end = value == std::trunc(value) && std::abs(value) <= exact_max
-                         ? std::to_chars(digits, digits + sizeof digits, static_cast<std::int64_t>(value))
-                         : std::to_chars(digits, digits + sizeof digits, value);
-    return {digits, end.ptr};
+    return value == std::trunc(value) && std::abs(value) <= exact_max ? std::to_string(static_cast<std::int64_t>(value))
+                                                                      : base::number_text(value);
 }
 
-/// {world="default",le="0.1"}; nothing without labels.
+/// {world="default",le="0.1"}; empty without labels.
 std::string labels_text(const v1::MetricSample& sample, const std::string& bound = {}) {
     std::string text;
     const auto add = [&text](std::string_view name, std::string_view value) {
@@ -82,18 +80,18 @@ std::string to_prometheus(const v1::Metrics& metrics) {
         text += "# TYPE " + name + ' ' + type_of(family.kind()) + '\n';
         for (const v1::MetricSample& sample : family.samples()) {
             if (family.kind() != v1::METRIC_KIND_HISTOGRAM) {
-                line(name, labels_text(sample), number_text(sample.value()));
+                line(name, labels_text(sample), sample_text(sample.value()));
                 continue;
             }
             const v1::MetricHistogram& histogram = sample.histogram();
-            std::uint64_t so_far = 0; // a bucket of this format holds all that is in those before it
+            std::uint64_t so_far = 0; // buckets of this format are cumulative
             for (int i = 0; i < histogram.counts_size(); ++i) {
                 so_far += histogram.counts(i);
                 const bool bounded = i < histogram.bounds_size();
-                line(name + "_bucket", labels_text(sample, bounded ? number_text(histogram.bounds(i)) : "+Inf"),
+                line(name + "_bucket", labels_text(sample, bounded ? sample_text(histogram.bounds(i)) : "+Inf"),
                      std::to_string(so_far));
             }
-            line(name + "_sum", labels_text(sample), number_text(histogram.sum()));
+            line(name + "_sum", labels_text(sample), sample_text(histogram.sum()));
             line(name + "_count", labels_text(sample), std::to_string(so_far));
         }
     }

@@ -33,14 +33,14 @@ Family& Family::add(double value, Labels labels) {
 }
 
 Family& Family::add(const TimeHistogram& histogram, Labels labels) {
-    v1::MetricHistogram& told = *sample(labels).mutable_histogram();
+    v1::MetricHistogram& to = *sample(labels).mutable_histogram();
     for (const auto bound : TimeHistogram::bounds) {
-        told.add_bounds(seconds(bound));
+        to.add_bounds(seconds(bound));
     }
     for (std::size_t bucket = 0; bucket <= TimeHistogram::bounds.size(); ++bucket) {
-        told.add_counts(histogram.count(bucket));
+        to.add_counts(histogram.count(bucket));
     }
-    told.set_sum(histogram.sum_s());
+    to.set_sum(histogram.sum_s());
     return *this;
 }
 

@@ -1,4 +1,4 @@
-// Families: what is counted, as clients are told it.
+// Families: metrics as the message that clients read.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -12,7 +12,7 @@ namespace evod::metrics {
 
 using Labels = std::initializer_list<std::pair<const char*, std::string>>;
 
-/// One family as it is filled in: samples that differ in their labels.
+/// Fills in one family: samples that differ in their labels.
 class Family {
   public:
     explicit Family(v1::MetricFamily& family) : family_{&family} {}
@@ -24,9 +24,9 @@ class Family {
     v1::MetricFamily* family_;
 };
 
-/// Names are those of Prometheus: a counter's ends in _total, what has a unit ends in it.
+/// Names follow Prometheus: a counter ends in _total, a metric with a unit ends in the unit.
 ///
-/// help  one sentence, without a full stop.
+/// help  one sentence without a full stop.
 Family add_counter(v1::Metrics& to, const char* name, const char* help);
 Family add_gauge(v1::Metrics& to, const char* name, const char* help);
 Family add_histogram(v1::Metrics& to, const char* name, const char* help);

@@ -1,4 +1,4 @@
-// Process: what the system says of this process.
+// Process: what the operating system reports about this process.
 #pragma once
 
 #include <pthread.h>
@@ -9,16 +9,16 @@
 namespace evod::metrics {
 
 struct Process {
-    double start_time_s = 0; // since 1970
-    double cpu_s = 0;        // of all threads, those that have ended too
+    double start_time_s = 0; // seconds since 1970
+    double cpu_s = 0;        // all threads, including ended ones
     std::uint64_t resident_bytes = 0, virtual_bytes = 0;
     std::uint64_t open_files = 0, open_files_max = 0;
 };
 
-/// What cannot be found out stays 0.
-Process look_at_process();
+/// Unknown values are 0.
+Process read_process();
 
-/// Processor time of a thread that has not been joined; nullopt if the system does not say.
+/// CPU time of a thread that is not yet joined; nullopt if the system does not report it.
 std::optional<double> cpu_s_of(pthread_t thread);
 
 } // namespace evod::metrics

@@ -1,4 +1,4 @@
-// Traffic: what goes over the sessions of a server.
+// Traffic: counters of all sessions of a server.
 //
 // Threads      counted on the network thread.
 #pragma once
@@ -8,12 +8,12 @@
 namespace evod::metrics {
 
 struct Traffic {
-    Counter connections;                                           // that came
-    Counter requests;                                              // that could be read, those refused too
-    Counter received_bytes, sent_control_bytes, sent_stream_bytes; // without what TLS adds
-    Counter pictures_sent;                                         // to somebody, of one island
-    Counter pictures_dropped;                                      // for somebody: replaced by newer ones
-    Counter events_dropped;                                        // for somebody
+    Counter connections;                                           // accepted connections
+    Counter requests;                                              // readable requests, including refused ones
+    Counter received_bytes, sent_control_bytes, sent_stream_bytes; // without the overhead of TLS
+    Counter snapshots_sent;                                        // of one island to one subscription
+    Counter snapshots_dropped;                                     // replaced by newer ones before they were sent
+    Counter events_dropped;                                        // not sent to a session, because it was too slow
 };
 
 } // namespace evod::metrics

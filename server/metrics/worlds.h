@@ -1,7 +1,7 @@
-// Worlds: what is counted of each while it is there.
+// Worlds: metrics of each world while it exists.
 //
-// Threads      worlds come and go on the simulation thread, which counts; list() is for any.
-// Full         as many as there are worlds.
+// Threads      the simulation thread adds worlds and counts; any thread calls list().
+// Full         bounded by the number of worlds.
 #pragma once
 
 #include "server/metrics/counters.h"
@@ -15,20 +15,20 @@ namespace evod::metrics {
 
 struct World {
     std::string name;
-    TimeHistogram tick_time;    // with what was written down and shown of the tick; the mean of those timed together
-    TimeHistogram picture_time; // that the simulation took to give a picture away
-    Gauge ticks_per_s;          // measured; 0 while it stands
+    TimeHistogram tick_time;     // per tick, with journal and snapshots; for ticks timed together, their mean
+    TimeHistogram snapshot_time; // of the simulation thread, to copy a snapshot
+    Gauge ticks_per_s;           // measured; 0 while the world does not run
 };
 
 class Worlds {
   public:
-    /// It is listed as long as somebody holds it besides this.
+    /// Listed as long as the caller holds it.
     std::shared_ptr<World> add(std::string name);
-    /// By name.
+    /// Sorted by name.
     std::vector<std::shared_ptr<const World>> list() const;
 
   private:
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     std::vector<std::weak_ptr<World>> worlds_;
 };
 

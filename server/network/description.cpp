@@ -11,7 +11,7 @@
 namespace evod::network {
 namespace {
 
-/// A file after all that it imports.
+/// Adds a file after all files that it imports.
 void add(const google::protobuf::FileDescriptor& file, google::protobuf::FileDescriptorSet& set,
          std::set<std::string>& added) {
     if (!added.insert(file.name()).second) {

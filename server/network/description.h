@@ -1,11 +1,11 @@
-// Description: the server tells what it is: its messages and its parameters.
+// Description: the message schema and the parameters of this server, for Describe.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
 
 namespace evod::network {
 
-/// All but the limits, which depend on how the server was started. Made on the first call, and the same ever after.
+/// Everything but the limits, which depend on the server's options. Built on the first call.
 const v1::Description& description();
 
 } // namespace evod::network

@@ -1,5 +1,5 @@
-// Detached: the end of a coroutine that nothing waits for. A coroutine that ran out of memory has left its work half
-// done, so std::bad_alloc leaves the loop of the network thread, and ends the program; asio::detached would hide it.
+// Detached: the completion token of a coroutine without a caller. If the coroutine runs out of memory, its work is
+// incomplete, so std::bad_alloc leaves the network thread's loop and ends the program. asio::detached would hide it.
 #pragma once
 
 #include <exception>
@@ -15,7 +15,7 @@ inline constexpr auto detached = [](const std::exception_ptr& error) {
         std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
         throw;
-    } catch (...) { // NOLINT(bugprone-empty-catch): a coroutine that was cancelled
+    } catch (...) { // NOLINT(bugprone-empty-catch): the coroutine was cancelled
     }
 };
 

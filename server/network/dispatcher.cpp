@@ -11,6 +11,7 @@
 #include "server/protocol/parameters.h"
 #include "server/protocol/queries.h"
 #include "server/protocol/refusals.h"
+#include "server/protocol/request_rules.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"
 
@@ -20,7 +21,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 namespace evod::network {
@@ -33,12 +33,7 @@ base::Refusal no_such_subscription(const char* field, std::uint32_t subscription
             .reason = base::Reason::SubscriptionNotFound};
 }
 
-/// "set_parameters"
-std::string name_of(const v1::Request& request) {
-    return v1::Request::descriptor()->FindFieldByNumber(request.kind_case())->name();
-}
-
-/// The same bytes for the same request.
+/// Equal bytes for equal requests.
 std::string bytes_of(const v1::Request& request) {
     std::string bytes;
     google::protobuf::io::StringOutputStream stream{&bytes};
@@ -55,23 +50,6 @@ v1::Response response_to(std::uint64_t request_id) {
     return response;
 }
 
-v1::Response response_to(const v1::Request& request, const simulation::Laboratory& laboratory,
-                         const base::Result<simulation::Applied>& applied) {
-    if (!applied) {
-        return protocol::refusing(request.request_id(), protocol::with_paths(applied.error(), name_of(request)));
-    }
-    v1::Response response = response_to(request.request_id());
-    response.set_applied_tick(applied->tick);
-    if (applied->planned) {
-        *response.mutable_planned_change() = protocol::to_proto(*applied->planned);
-    } else if (applied->parameters) {
-        *response.mutable_parameters() = protocol::to_proto(*applied->parameters);
-    } else if (const auto entry = laboratory.find(applied->world); entry && !request.has_delete_world()) {
-        *response.mutable_world() = protocol::to_proto(**entry);
-    }
-    return response;
-}
-
 replay::WantedMoment wanted(const v1::RunMoment& moment) {
     replay::WantedMoment to;
     if (moment.has_generation()) {
@@ -83,8 +61,8 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
     return to;
 }
 
-/// request  of RequestKind::Past.
-runtime::ReplayMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::ReplayReply reply) {
+/// request  of REQUEST_KIND_REPLAY.
+runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t owner, runtime::ReplayReply reply) {
     if (request.has_open_replay()) {
         return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
                                     .at = wanted(request.open_replay().at()),
@@ -100,7 +78,7 @@ runtime::ReplayMail past_mail(const v1::Request& request, std::uint64_t owner, r
     return {runtime::CloseReplay{protocol::lookup_name(request.close_replay().world())}, std::move(reply)};
 }
 
-/// request  without faults.
+/// request  valid.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
     to.only_users = role < access::Role::Admin;
@@ -116,29 +94,7 @@ replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     return to;
 }
 
-/// Whether the world that a request names is one that its session has opened to look at the past.
-bool is_of_own_past(const Session& session, const v1::Request& request) {
-    switch (request.kind_case()) {
-    case v1::Request::kRun:
-        return session.pasts.contains(request.run().world());
-    case v1::Request::kRunUntilTick:
-        return session.pasts.contains(request.run_until_tick().world());
-    case v1::Request::kPause:
-        return session.pasts.contains(request.pause().world());
-    case v1::Request::kResume:
-        return session.pasts.contains(request.resume().world());
-    case v1::Request::kSetSpeed:
-        return session.pasts.contains(request.set_speed().world());
-    case v1::Request::kSeek:
-        return session.pasts.contains(request.seek().world());
-    case v1::Request::kCloseReplay:
-        return session.pasts.contains(request.close_replay().world());
-    default:
-        return false;
-    }
-}
-
-/// Of a command that is wrong in itself.
+/// Counts the limits that an invalid command has reached.
 void count_limits_met(const v1::Request& request, LimitCounters& counters) {
     if (request.client_key().size() > protocol::client_key_bytes_max) {
         counters.met(Limit::ClientKeyBytes);
@@ -149,12 +105,29 @@ void count_limits_met(const v1::Request& request, LimitCounters& counters) {
     }
 }
 
+/// Counts the limits that have shortened an answer.
+void count_cuts(const protocol::QueryRows& rows, LimitCounters& counters) {
+    if (const auto* part = std::get_if<protocol::HistoryPart>(&rows)) {
+        if (part->begins_late) {
+            counters.met(Limit::HistoryGenerationsKept);
+        }
+        if (part->next_generation) {
+            counters.met(Limit::HistoryGenerations);
+        }
+    } else if (const auto* part = std::get_if<protocol::PopulationRows>(&rows)) {
+        if (part->first + part->genes.size() < part->organism_count) {
+            counters.met(Limit::PopulationRows);
+        }
+    }
+}
+
 base::Refusal server_goes_away() {
-    return refusal(base::RefusalCode::Unavailable, "the server is going away: send it again when it is back",
+    return refusal(base::RefusalCode::Unavailable,
+                   "the server is shutting down: send the request again after the restart",
                    base::Reason::ServerGoingAway);
 }
 
-/// Puts a refusal in the place of an answer.
+/// Turns a response into a refusal.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
     response.clear_answer();
@@ -173,7 +146,7 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
     , shut_down_{std::move(shut_down)}
     , metrics_{std::move(metrics)}
     , exports_{outbox, limit_counters}
-    , breedings_{outbox, limit_counters}
+    , breeding_queries_{outbox, limit_counters}
     , leases_{context,
               [this](const std::string& world, std::uint64_t lease) {
                   limit_counters_.met(Limit::Lease);
@@ -181,16 +154,16 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
                   request.mutable_release_lease()->set_world(world);
                   handle_own(std::move(request), lease);
               }}
-    , retries_{{.kept_per_key = retries_kept,
-                .keys_max = client_keys_max,
-                .bytes_max = retry_bytes_max,
-                .evicted_max = evicted_keys_max},
-               [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
+    , reply_cache_{{.kept_per_key = retries_kept,
+                    .keys_max = client_keys_max,
+                    .bytes_max = retry_bytes_max,
+                    .evicted_max = evicted_keys_max},
+                   [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
     , own_key_{"evod " + to_text(draw_run_id())} {}
 
 base::Refusal Dispatcher::busy() {
     limit_counters_.met(Limit::MailboxCommands);
-    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again",
+    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy, its mailbox is full: try again",
                    base::Reason::ServerBusy);
 }
 
@@ -201,23 +174,23 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     if (going_away_) {
         return refuse_it(server_goes_away());
     }
-    const auto kind = protocol::kind_of(request);
-    if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace)) {
-        log::trace({.session = session.number(), .client = session.by()}, "session {}: {} asks {}, request {}",
-                   session.number(), session.by(), name_of(request), request.request_id());
-    }
-    if (kind == protocol::RequestKind::Unknown) {
+    const v1::RequestRules* rules = protocol::rules_of(request);
+    if (rules == nullptr) {
         return refuse_it(refusal(
             base::RefusalCode::Unimplemented,
-            "this server does not know the request: it may be older than the client; Describe tells what it knows",
+            "this server does not know the request: it may be older than the client; Describe lists what it knows",
             base::Reason::RequestUnknown));
     }
-    if (const auto needed = access::role_needed(request.kind_case(), is_of_own_past(session, request));
-        session.visitor().role < needed) {
+    if (log::wanted(log::Level::Trace)) {
+        log::trace({.session = session.number(), .client = session.by()}, "session {}: {} sends {}, request {}",
+                   session.number(), session.by(), protocol::name_of(request), request.request_id());
+    }
+    const bool in_own_replay = session.replays.contains(protocol::world_of(request));
+    if (const auto needed = access::role_needed(*rules, in_own_replay); session.visitor().role < needed) {
         return refuse_it(refusal(base::RefusalCode::PermissionDenied,
-                                 name_of(request) + " needs the role " + access::name_of(needed) +
+                                 protocol::name_of(request) + " needs the role " + access::name_of(needed) +
                                      "; this session has the role " + access::name_of(session.visitor().role) +
-                                     ": come with a token of that role"));
+                                     ": connect with a token of that role"));
     }
     if (request.request_id() == 0) {
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
@@ -225,7 +198,7 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     if (!session.admit_request()) {
         return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
                                  std::to_string(requests_in_flight_max) +
-                                     " requests of this session are unanswered already: wait for an answer",
+                                     " requests of this session are unanswered: wait for an answer",
                                  base::Reason::RequestsInFlightMax));
     }
     if (session.query_under_way) {
@@ -249,33 +222,33 @@ void Dispatcher::serve(Session& session, v1::Request request) {
         return session.answer(protocol::refusing(request.request_id(), server_goes_away()));
     }
     switch (protocol::kind_of(request)) {
-    case protocol::RequestKind::Command:
+    case v1::REQUEST_KIND_COMMAND:
         return command(session, request);
-    case protocol::RequestKind::Query:
+    case v1::REQUEST_KIND_QUERY:
         return query(session, std::move(request));
-    case protocol::RequestKind::Subscription:
+    case v1::REQUEST_KIND_SUBSCRIPTION:
         return subscription(session, request);
-    case protocol::RequestKind::Past:
-        return past(session, request);
-    case protocol::RequestKind::Export:
+    case v1::REQUEST_KIND_REPLAY:
+        return replay(session, request);
+    case v1::REQUEST_KIND_EXPORT:
         return export_text(session, request);
-    case protocol::RequestKind::Lease:
+    case v1::REQUEST_KIND_LEASE:
         return renew_lease(session, request);
-    case protocol::RequestKind::Server:
+    case v1::REQUEST_KIND_SERVER:
         log::info({.session = session.number(), .client = session.by()}, "session {}: {} shuts the server down",
                   session.number(), session.by());
         session.answer(response_to(request.request_id()));
         return shut_down_();
-    case protocol::RequestKind::Unknown:
-        break;
+    default:
+        return; // handle() has refused it
     }
 }
 
 void Dispatcher::restore(const std::vector<run_file::JournalEntry>& answers) {
     for (const run_file::JournalEntry& entry : answers) {
-        retries_.restore(Retries::key_of(run_file::user_of(entry.origin), entry.origin.client_key),
-                         entry.origin.request_id, entry.origin.request,
-                         std::make_shared<const std::string>(entry.answer));
+        reply_cache_.restore(ReplyCache::key_of(run_file::user_of(entry.origin), entry.origin.client_key),
+                             entry.origin.request_id, entry.origin.request,
+                             std::make_shared<const std::string>(entry.answer));
     }
 }
 
@@ -296,44 +269,33 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         return session.answer(refused(command.error()));
     }
 
-    const std::string key = Retries::key_of(session.visitor().name, request.client_key());
-    const auto verdict =
-        retries_.begin(key, id, bytes_of(request), [weak = session.weak_from_this()](const auto& frame) {
-            if (const auto waiting = weak.lock()) {
-                waiting->answer(frame);
-            }
-        });
+    const std::string key = ReplyCache::key_of(session.visitor().name, request.client_key());
+    std::string bytes = bytes_of(request);
+    const auto verdict = reply_cache_.begin(key, id, bytes, [weak = session.weak_from_this()](const auto& frame) {
+        if (const auto waiting = weak.lock()) {
+            waiting->answer(frame);
+        }
+    });
     switch (verdict) {
-    case Retries::Verdict::Known:
+    case ReplyCache::Verdict::Known:
         return;
-    case Retries::Verdict::Different:
+    case ReplyCache::Verdict::Different:
         return session.answer(refused({.code = base::RefusalCode::InvalidArgument,
                                        .message = "this client_key has used the request_id for another request",
-                                       .violations = {{"request_id", "a new one", std::to_string(id)}},
+                                       .violations = {{"request_id", "an unused id", std::to_string(id)}},
                                        .reason = base::Reason::RequestIdReused}));
-    case Retries::Verdict::TooOld:
+    case ReplyCache::Verdict::TooOld:
         limit_counters_.met(Limit::RetriesKept);
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
-                    "the request is older than those whose answers are kept, so it may have been run: it is not run "
-                    "again; see what holds now, and ask anew with a higher request_id",
+                    "the request is older than the cached answers and may have been applied; it is not applied again: "
+                    "read the current state, and send the command with a higher request_id",
                     base::Reason::RequestTooOld)));
-    case Retries::Verdict::New:
+    case ReplyCache::Verdict::New:
         break;
     }
-
-    auto answered = [this, key, id](const SharedBytes& frame, const base::Refusal* why) {
-        // A refusal that may pass leaves no trace: the same request sent again may be carried out.
-        if (why != nullptr &&
-            (why->code == base::RefusalCode::Unavailable || why->code == base::RefusalCode::ResourceExhausted)) {
-            retries_.forget(key, id, frame);
-        } else {
-            retries_.finish(key, id, frame);
-        }
-    };
-    if (!carry_out(*std::move(command), request, {session.number(), session.by(), session.visitor().name},
-                   std::move(answered))) {
-        retries_.forget(key, id, encode_response(refused(busy())));
+    if (!send(*std::move(command), request, std::move(bytes), session.by(), session.number())) {
+        reply_cache_.forget(key, id, encode_response(refused(busy())));
     }
 }
 
@@ -345,82 +307,75 @@ void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> le
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
     }
-    carry_out(*std::move(command), request, {0, std::string{protocol::by_the_server}, ""},
-              [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
-                  if (refused != nullptr && refused->reason != base::Reason::NoLease) {
-                      log::error("{} of the server itself is refused: {}", name, to_text(*refused));
-                  }
-              });
+    send(*std::move(command), request, bytes_of(request), std::string{protocol::by_the_server}, 0);
 }
 
-bool Dispatcher::carry_out(simulation::Command command, const v1::Request& request, const From& from,
-                           Answered answered) {
+bool Dispatcher::send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
+                      std::uint64_t session) {
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
-        change->by = from.by;
+        change->by = by;
     }
-    // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
-    // the command cannot be lost any more.
-    auto reply = [this, request, from, answered = std::move(answered)](
-                     const simulation::Laboratory& laboratory, const simulation::Command& applied_command,
-                     const base::Result<simulation::Applied>& applied) {
-        struct Told {
-            SharedBytes frame;
-            std::optional<base::Refusal> refused;
-            std::optional<v1::Event> event;
-            std::optional<std::uint64_t> lease; // of its world, now
-        };
-        const auto told = std::make_shared<Told>();
-        v1::Response response = response_to(request, laboratory, applied);
-        log_refusal(from.session, from.by, response);
-        told->frame = encode_response(std::move(response));
-        if (!applied) {
-            told->refused = applied.error();
-            if (applied.error().code == base::RefusalCode::ResourceExhausted) {
-                if (request.has_set_parameters()) {
-                    limit_counters_.met(Limit::PlannedChanges);
-                } else if (laboratory.is_full()) { // or memory did not suffice
-                    limit_counters_.met(Limit::Worlds);
-                }
-            }
-        } else if (demand_.events_wanted()) {
-            told->event = protocol::event_of(applied_command, *applied, from.by, laboratory);
+    return mailbox_.try_push(runtime::CommandMail{.command = std::move(command),
+                                                  .origin = {.client = std::move(by),
+                                                             .client_key = request.client_key(),
+                                                             .request_id = request.request_id(),
+                                                             .request = std::move(bytes)},
+                                                  .request_name = protocol::name_of(request),
+                                                  .session = session});
+}
+
+void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
+    for (runtime::Delivery& delivery : deliveries) {
+        if (auto* done = std::get_if<runtime::CommandDone>(&delivery)) {
+            on_done(std::move(*done));
+        } else {
+            std::exchange(std::get<runtime::Call>(delivery), nullptr)(); // frees what it captured before the next
         }
-        if (applied) {
-            if (const auto entry = laboratory.find(applied->world)) {
-                if ((*entry)->control.leased) {
-                    told->lease = (*entry)->control.lease;
-                }
-            }
+    }
+}
+
+void Dispatcher::on_done(runtime::CommandDone done) {
+    const runtime::CommandMail& mail = done.mail;
+    const std::string key = ReplyCache::key_of(run_file::user_of(mail.origin), mail.origin.client_key);
+    const auto frame = std::make_shared<const std::string>(std::move(done.frame));
+    if (!done.outcome) {
+        return on_refused(mail, done.outcome.error(), key, frame);
+    }
+    reply_cache_.finish(key, mail.origin.request_id, frame);
+    const std::string& world = done.outcome->world;
+    if (std::holds_alternative<simulation::DeleteWorld>(mail.command)) {
+        streams_.forget_world(world);
+    }
+    if (done.event) {
+        streams_.publish(*std::move(done.event));
+    }
+    if (!done.lease) {
+        leases_.end(world);
+    } else if (std::holds_alternative<simulation::RunUntilTick>(mail.command) && !going_away_) {
+        leases_.begin(world, *done.lease, key);
+    }
+}
+
+void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
+                            const SharedBytes& frame) {
+    if (mail.session == 0) {
+        if (why.reason != base::Reason::NoLease) {
+            log::error("the server's own command {} is refused: {}", mail.request_name, to_text(why));
         }
-        auto give = [this, told, answered, key = Retries::key_of(from.user, request.client_key()),
-                     steps = request.has_run_until_tick(), gone = applied && request.has_delete_world(),
-                     world = applied ? applied->world : ""] {
-            answered(told->frame, told->refused ? &*told->refused : nullptr);
-            if (gone) {
-                streams_.forget_world(world);
-            }
-            if (told->event) {
-                streams_.publish(*told->event);
-            }
-            if (told->refused) {
-                return; // nothing has changed
-            }
-            if (!told->lease) {
-                leases_.end(world);
-            } else if (steps && !going_away_) {
-                leases_.begin(world, *told->lease, key);
-            }
-        };
-        // At once: who subscribes after the answer hears of what comes after it.
-        return runtime::CommandAnswer{*told->frame,
-                                      [this, give = std::move(give)]() mutable { outbox_.answer(std::move(give)); }};
-    };
-    return mailbox_.try_push(runtime::CommandMail{std::move(command),
-                                                  {.client = from.by,
-                                                   .client_key = request.client_key(),
-                                                   .request_id = request.request_id(),
-                                                   .request = bytes_of(request)},
-                                                  std::move(reply)});
+        return;
+    }
+    log_refusal(mail.session, mail.origin.client, mail.origin.request_id, why);
+    if (why.reason == base::Reason::PlannedChangesMax) {
+        limit_counters_.met(Limit::PlannedChanges);
+    } else if (why.reason == base::Reason::WorldsMax) {
+        limit_counters_.met(Limit::Worlds);
+    }
+    // A temporary refusal is not cached: the same request, sent again, may be applied.
+    if (why.code == base::RefusalCode::Unavailable || why.code == base::RefusalCode::ResourceExhausted) {
+        reply_cache_.forget(key, mail.origin.request_id, frame);
+    } else {
+        reply_cache_.finish(key, mail.origin.request_id, frame);
+    }
 }
 
 void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) {
@@ -431,7 +386,7 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, 
     auto ask = [this, request_id, answer = std::move(answer), then = std::move(then),
                 weak = session.weak_from_this()](const simulation::Laboratory& laboratory) {
         if (weak.expired()) {
-            return; // nobody waits for it
+            return; // the session has ended
         }
         v1::Response response = response_to(request_id);
         answer(laboratory, response);
@@ -457,106 +412,40 @@ void Dispatcher::query(Session& session, v1::Request request) {
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
-    const std::string name = name_of(request);
-    const auto put = [name]<class Message>(base::Result<Message> result, v1::Response& response,
-                                           Message* (v1::Response::*field)()) {
-        if (result) {
-            *(response.*field)() = *std::move(result);
-        } else {
-            refuse(response, protocol::with_paths(result.error(), name));
-        }
-    };
-    // The rows of a long answer are copied there and made into a message here.
-    const auto ask_for_rows = [&](std::ptrdiff_t bytes, auto find, auto put_rows) {
-        using Rows = typename std::invoke_result_t<decltype(find), const simulation::Laboratory&>::value_type;
-        auto rows = std::make_shared<std::optional<Rows>>();
-        const bool asked = ask(
-            session, id,
-            [name, find, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
-                if (auto found = find(laboratory)) {
-                    *rows = *std::move(found);
-                } else {
-                    refuse(response, protocol::with_paths(found.error(), name));
-                }
-            },
-            [bytes, put_rows, rows](Session& asking, v1::Response& response) {
-                asking.expect(-bytes);
-                if (*rows) {
-                    put_rows(**rows, response);
-                }
-            });
-        if (asked) {
-            session.expect(bytes);
-        }
-    };
     switch (request.kind_case()) {
-    case v1::Request::kListWorlds:
-        return ask(session, id, [](const simulation::Laboratory& laboratory, v1::Response& response) {
-            *response.mutable_worlds() = protocol::list_worlds(laboratory);
-        });
-    case v1::Request::kGetParameters:
-        return ask(session, id,
-                   [put, request, views = session.visitor().role < access::Role::Controller](
-                       const simulation::Laboratory& laboratory, v1::Response& response) {
-                       put(protocol::get_parameters(laboratory, request.get_parameters()), response,
-                           &v1::Response::mutable_parameters);
-                       if (views) {
-                           protocol::keep_users_only(response);
-                       }
-                   });
-    case v1::Request::kGetStatistics:
-        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
-            put(protocol::get_statistics(laboratory, request.get_statistics()), response,
-                &v1::Response::mutable_statistics);
-        });
-    case v1::Request::kGetOrganism:
-        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
-            put(protocol::get_organism(laboratory, request.get_organism()), response, &v1::Response::mutable_organism);
-        });
-    case v1::Request::kGetHistory:
-        return ask_for_rows(
-            protocol::history_statistics_max * sizeof(simulation::GenerationStatistics),
-            [request](const simulation::Laboratory& laboratory) {
-                return protocol::get_history(laboratory, request.get_history());
-            },
-            [this](const protocol::HistoryPart& part, v1::Response& response) {
-                if (part.begins_late) {
-                    limit_counters_.met(Limit::HistoryGenerationsKept);
-                }
-                if (part.next_generation) {
-                    limit_counters_.met(Limit::HistoryGenerations);
-                }
-                *response.mutable_history() = protocol::to_proto(part);
-            });
     case v1::Request::kGetBreeding:
         return breeding(session, request);
-    case v1::Request::kGetPopulation:
-        return ask_for_rows(
-            protocol::population_rows_max * protocol::population_row_bytes,
-            [request](const simulation::Laboratory& laboratory) {
-                return protocol::get_population(laboratory, request.get_population());
-            },
-            [this](const protocol::PopulationRows& rows, v1::Response& response) {
-                if (rows.first + rows.genes.size() < rows.organism_count) {
-                    limit_counters_.met(Limit::PopulationRows);
-                }
-                *response.mutable_population() = protocol::to_proto(rows);
-            });
-    case v1::Request::kGetMotion:
-        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
-            put(protocol::get_motion(laboratory, request.get_motion()), response, &v1::Response::mutable_motion);
-        });
     case v1::Request::kGetMetrics: {
         v1::Response response = response_to(id);
         *response.mutable_metrics() = metrics_();
         return session.answer(std::move(response));
     }
-    default: {
+    case v1::Request::kDescribe: {
         v1::Response response = response_to(id);
         *response.mutable_description() = description();
         *response.mutable_description()->mutable_limits() = session.limits();
         return session.answer(std::move(response));
     }
+    default:
+        break;
+    }
+    // The simulation thread only copies the rows of a long answer. This thread converts them into a message.
+    const auto bytes = static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request));
+    const auto rows = std::make_shared<protocol::QueryRows>();
+    const bool users_only = session.visitor().role < access::Role::Controller;
+    const bool asked = ask(
+        session, id,
+        [request = std::move(request), users_only, rows](const simulation::Laboratory& laboratory,
+                                                         v1::Response& response) {
+            *rows = protocol::answer_query(request, laboratory, users_only, response);
+        },
+        [this, bytes, rows](Session& asking, v1::Response& response) {
+            asking.expect(-bytes);
+            count_cuts(*rows, limit_counters_);
+            protocol::put_rows(*rows, response);
+        });
+    if (asked) {
+        session.expect(bytes);
     }
 }
 
@@ -588,13 +477,13 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         }
         if (!found->second.view) {
             return refuse_it(refusal(base::RefusalCode::FailedPrecondition,
-                                     "the subscription has no view: its pictures are not made of tiles",
+                                     "the subscription has no view: its snapshots are not made of tiles",
                                      base::Reason::NoView));
         }
         v1::Response response = response_to(id);
         response.mutable_subscription()->set_subscription_id(subscription_id);
         response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
-        session.answer(encode_response(std::move(response))); // before the first picture of what is seen now
+        session.answer(encode_response(std::move(response))); // before the first snapshot of the new view
         return streams_.set_view(session, subscription_id, request.set_view().view());
     }
 
@@ -617,10 +506,10 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         return watched > watched_islands_max;
     };
     const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
-                                  "this session has " + std::to_string(subscriptions_max) +
-                                      " subscriptions already: unsubscribe from one first",
+                                  "this session already has " + std::to_string(subscriptions_max) +
+                                      " subscriptions: unsubscribe from one first",
                                   base::Reason::SubscriptionsMax);
-    const std::string name = name_of(request);
+    const std::string name = protocol::name_of(request);
     if (request.has_subscribe_snapshots()) {
         auto wanted = std::make_shared<streaming::SnapshotSubscription>();
         ask(
@@ -681,17 +570,17 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         });
 }
 
-void Dispatcher::past(Session& session, const v1::Request& request) {
+void Dispatcher::replay(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
-    auto reply = [this, id, name = name_of(request), opens = request.has_open_replay(),
+    auto reply = [this, id, name = protocol::name_of(request), opens = request.has_open_replay(),
                   closes = request.has_close_replay(), weak = session.weak_from_this()](
                      const simulation::Laboratory& laboratory, const base::Result<std::string>& world) {
         v1::Response response = response_to(id);
         if (opens && !world && world.error().code == base::RefusalCode::ResourceExhausted) {
-            limit_counters_.met(Limit::Pasts);
+            limit_counters_.met(Limit::Replays);
         }
         if (!world) {
             refuse(response, protocol::with_paths(world.error(), name));
@@ -704,15 +593,15 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
                 return;
             }
             if (world && opens) {
-                asking->pasts.insert(*world);
+                asking->replays.insert(*world);
             }
             if (world && closes) {
-                asking->pasts.erase(*world);
+                asking->replays.erase(*world);
             }
             asking->answer(std::move(response));
         });
     };
-    if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply)))) {
+    if (!mailbox_.try_push(replay_mail(request, session.number(), std::move(reply)))) {
         session.answer(protocol::refusing(id, busy()));
     }
 }
@@ -732,13 +621,13 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
 
 void Dispatcher::breeding(Session& session, const v1::Request& request) {
     find_run(session, request, request.get_breeding().world(), [this, request](Session& asking, auto run) {
-        breedings_.ask(asking, request.request_id(), request.get_breeding(), std::move(run));
+        breeding_queries_.ask(asking, request.request_id(), request.get_breeding(), std::move(run));
     });
 }
 
 void Dispatcher::find_run(Session& session, const v1::Request& request, const std::string& world, Found then) {
     const std::uint64_t id = request.request_id();
-    auto found = [this, id, name = name_of(request), then = std::move(then),
+    auto found = [this, id, name = protocol::name_of(request), then = std::move(then),
                   weak = session.weak_from_this()](const base::Result<runtime::FoundRun>& run) {
         outbox_.answer([id, name, then, run, weak] {
             const auto asking = weak.lock();
@@ -758,7 +647,7 @@ void Dispatcher::find_run(Session& session, const v1::Request& request, const st
 }
 
 void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
-    // An empty name has a meaning to the simulation only.
+    // The simulation resolves an empty name.
     const auto world = std::make_shared<std::string>();
     ask(
         session, request.request_id(),
@@ -766,16 +655,16 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
             if (const auto entry = laboratory.find(protocol::lookup_name(request.renew_lease().world()))) {
                 *world = (*entry)->name;
             } else {
-                refuse(response, protocol::with_paths(entry.error(), name_of(request)));
+                refuse(response, protocol::with_paths(entry.error(), protocol::name_of(request)));
             }
         },
         [this, world, key = request.client_key()](Session& asking, v1::Response& response) {
             if (response.status().code() == v1::CODE_UNSPECIFIED &&
-                !leases_.renew(*world, Retries::key_of(asking.visitor().name, key))) {
+                !leases_.renew(*world, ReplyCache::key_of(asking.visitor().name, key))) {
                 refuse(response, {.code = base::RefusalCode::FailedPrecondition,
-                                  .message = "this client_key has no lease of that world: it gets one by "
-                                             "run_until_tick, if the world runs",
-                                  .violations = {{"client_key", "that of the run_until_tick", key}},
+                                  .message = "this client_key has no lease of that world: it gets one with "
+                                             "run_until_tick on a running world",
+                                  .violations = {{"client_key", "the key of the run_until_tick", key}},
                                   .reason = base::Reason::NoLease});
             }
         });
@@ -783,7 +672,7 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
 
 void Dispatcher::forget(const Session& session) {
     exports_.forget(session);
-    breedings_.forget(session);
+    breeding_queries_.forget(session);
     mailbox_.push(runtime::ReplayMail{runtime::OwnerGone{session.number()}, {}});
 }
 

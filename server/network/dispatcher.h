@@ -1,16 +1,16 @@
-// Dispatcher: from a request to its answer. Decides what a request may do, sends it to the simulation, and sees to it
-// that a command is never run twice.
+// Dispatcher: takes a request to its answer. Checks the role, sends commands and queries to the simulation, and makes
+// commands idempotent through the reply cache.
 //
-// Owner        the server; on the network thread. What it puts into the mailbox runs on the simulation thread, reads
-// the
-//              laboratory there, and comes back through the outbox.
+// Owner        the server.
+// Threads      the network thread. The simulation thread runs only the functions given to ask(), which read the
+//              laboratory. Commands travel as data (server/runtime/commands.h).
 #pragma once
 
-#include "server/network/breedings.h"
+#include "server/network/breeding_queries.h"
 #include "server/network/exports.h"
 #include "server/network/leases.h"
 #include "server/network/limits.h"
-#include "server/network/retries.h"
+#include "server/network/reply_cache.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
 #include "server/runtime/mailbox.h"
@@ -20,67 +20,74 @@ namespace evod::network {
 
 class Dispatcher {
   public:
-    /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
+    /// Everything handed in outlives the dispatcher. The simulation thread ends before it.
+    ///
     /// shut_down  ends the server.
-    /// metrics    what it counts.
+    /// metrics    returns the current metrics.
     Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
                runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
                std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
+    /// Handles the deliveries of the outbox in order.
+    void deliver(std::vector<runtime::Delivery> deliveries);
 
-    /// A command of the server itself. lease: of ReleaseLease. A refusal is logged; one for want of room in the mailbox
-    /// comes to nothing.
+    /// Sends a command of the server itself. A refusal is logged. If the mailbox is full, the command is dropped.
+    ///
+    /// lease  for ReleaseLease: the number of the lease.
     void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
-    /// A world that was lent before this server started: it goes on, unless its lease is renewed.
+    /// A world whose lease is older than this server: it continues unless the lease is renewed.
     void lend_again(const std::string& world) { leases_.begin(world, 0, {}); }
 
-    /// Answers that were given before this server started.
+    /// Puts answers given before this server started into the reply cache.
     void restore(const std::vector<run_file::JournalEntry>& answers);
 
-    /// A session has ended: what it looked at is let go of.
+    /// The session has ended: closes its exports, breeding queries and replays.
     void forget(const Session& session);
 
-    /// From now on every request is refused: the server is going away.
+    /// From now on refuses every request: the server is shutting down.
     void refuse_all() {
         going_away_ = true;
         leases_.end_all();
     }
 
   private:
-    /// A request that was admitted.
+    /// Handles an admitted request.
     void serve(Session& session, v1::Request request);
-    /// What was held back for the query that is answered now.
+    /// Handles the requests that waited for the query just answered.
     void serve_held_back(Session& session);
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
     void subscription(Session& session, const v1::Request& request);
-    void past(Session& session, const v1::Request& request);
+    void replay(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
     void breeding(Session& session, const v1::Request& request);
-    /// Finds the file of a world's run for `then`, which runs here if the session is still there. A refusal is
-    /// answered.
+    /// Finds the run file of a world and calls `then` on this thread, if the session still exists. A refusal becomes
+    /// the answer.
     using Found = std::function<void(Session&, runtime::FoundRun)>;
     void find_run(Session& session, const v1::Request& request, const std::string& world, Found then);
     void renew_lease(Session& session, const v1::Request& request);
 
-    /// The encoded response to a command, here, once it cannot be lost any more. refused: nullptr if it was applied.
-    using Answered = std::function<void(const SharedBytes& frame, const base::Refusal* refused)>;
-    struct From {
-        std::uint64_t session; // number; 0: the server itself
-        std::string by;
-        std::string user; // name of its token; empty: none
-    };
-    /// Hands a command to the simulation, and tells everybody of it. false: the mailbox is full.
-    bool carry_out(simulation::Command command, const v1::Request& request, const From& from, Answered answered);
+    /// Puts a command into the mailbox. false: the mailbox is full.
+    ///
+    /// bytes    the serialised request.
+    /// by       the sender, as protocol::actor_of() reads it.
+    /// session  number of the sender's session; 0: the server itself.
+    bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
+              std::uint64_t session);
+    /// A command was applied or refused, and cannot be lost any more: answers it and reports it to subscribers.
+    void on_done(runtime::CommandDone done);
+    /// key  of the reply cache.
+    void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
+                    const SharedBytes& frame);
 
-    /// The mailbox is full.
+    /// The refusal for a full mailbox.
     base::Refusal busy();
-    /// Asks the simulation; `answer` runs there and fills in the response.
+    /// Sends a query to the simulation thread, which calls `answer` to fill in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
     void ask(Session& session, std::uint64_t request_id, Answer answer);
-    /// The same, for an answer that has to be finished here, by `then`, which may use the session: it is still there.
-    /// false: there is no room to ask, and the session has been told so.
+    /// Likewise; then `then` completes the response on this thread. The session still exists when it is called. false:
+    /// the mailbox is full, and the request has been refused.
     using Then = std::function<void(Session&, v1::Response&)>;
     bool ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
 
@@ -92,9 +99,9 @@ class Dispatcher {
     std::function<void()> shut_down_;
     std::function<v1::Metrics()> metrics_;
     Exports exports_;
-    Breedings breedings_;
+    BreedingQueries breeding_queries_;
     Leases leases_;
-    Retries retries_;
+    ReplyCache reply_cache_;
     const std::string own_key_; // client_key of the server's own commands
     std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;

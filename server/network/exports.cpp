@@ -32,7 +32,7 @@ void Exports::begin(Session& session, std::uint64_t request_id, const replay::St
         limit_counters_.met(Limit::Exports);
         return session.answer(
             refused(request_id, refusal(RefusalCode::ResourceExhausted,
-                                        std::to_string(exports_max) + " exports are under way already: try again",
+                                        std::to_string(exports_max) + " exports are running already: try again",
                                         base::Reason::ExportsMax)));
     }
     Export begun{++last_id_, std::make_unique<runtime::ExportJob>(jobs_, run, wanted)};
@@ -44,14 +44,14 @@ void Exports::go_on(Session& session, std::uint64_t request_id, const v1::Contin
     if (found == exports_.end() || found->second.id != request.export_id()) {
         return session.answer(
             refused(request_id, {.code = RefusalCode::NotFound,
-                                 .message = "this session has no such export under way: begin one",
-                                 .violations = {{"continue_export.export_id", "the id of the export under way",
+                                 .message = "this session has no such export: start one with export_run",
+                                 .violations = {{"continue_export.export_id", "the id of the running export",
                                                  std::to_string(request.export_id())}},
                                  .reason = base::Reason::ExportNotFound}));
     }
     if (found->second.asked) {
         return session.answer(refused(request_id, refusal(RefusalCode::FailedPrecondition,
-                                                          "the part before has not been answered yet: wait for it",
+                                                          "the previous part is not answered yet: wait for it",
                                                           base::Reason::ExportEnded)));
     }
     ask(session, request_id, found->second);
@@ -88,7 +88,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
 void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
     if (found == exports_.end() || found->second.id != id) {
-        return; // another has been begun since
+        return; // the session has started another export
     }
     found->second.asked = false;
     if (last) {

@@ -1,7 +1,7 @@
-// Exports: tables of runs on their way to clients, at most one of a session at a time.
+// Exports: sends tables of stored runs to clients, at most one export per session.
 //
-// Owner     the dispatcher; on the network thread. A job queue writes the parts (runtime/export_job.h).
-// Full      at exports_max, the next is refused.
+// Owner        the dispatcher, on the network thread. A job queue writes the parts (runtime/export_job.h).
+// Full         beyond exports_max the next export is refused.
 #pragma once
 
 #include "server/network/session.h"
@@ -16,23 +16,23 @@ namespace evod::network {
 
 class Exports {
   public:
-    /// Everything handed in outlives this.
+    /// Everything handed in outlives this object.
     Exports(runtime::Outbox& outbox, LimitCounters& limit_counters)
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
-    /// Answers the request with the first part. The session's export before this one is cancelled.
+    /// Answers the request with the first part. Cancels the session's previous export.
     void begin(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                const replay::WantedTable& wanted);
-    /// Answers with the next part.
+    /// Answers the request with the next part.
     void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
-    /// The session has ended.
+    /// Call when the session has ended.
     void forget(const Session& session);
 
   private:
     struct Export {
         std::uint64_t id;
         std::unique_ptr<runtime::ExportJob> job;
-        bool asked = false; // for a part that has not come
+        bool asked = false; // an answer is due once the next part exists
     };
 
     void ask(Session& session, std::uint64_t request_id, Export& from);
@@ -43,7 +43,7 @@ class Exports {
     LimitCounters& limit_counters_;
     std::uint64_t last_id_ = 0;
     jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // outlives the exports
-    std::map<std::uint64_t, Export> exports_;                             // by number of the session
+    std::map<std::uint64_t, Export> exports_;                             // by session number
     std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_;          // may still simulate a tick
 };
 

@@ -33,7 +33,7 @@ bool is_too_long(boost::system::error_code error) {
     return error == http::error::header_limit || error == http::error::buffer_overflow;
 }
 
-/// What is wrong with a request, before anybody looks at its path; nothing if it is good.
+/// The error page for an invalid request, regardless of its path; nullopt: the request is valid.
 std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
     if (is_too_long(error)) {
         return Http::Page{.status = http::status::request_header_fields_too_large,
@@ -42,11 +42,11 @@ std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser
     }
     if (error) {
         return Http::Page{.status = http::status::bad_request,
-                          .text = "this is no request of HTTP/1.1: " + error.message() + "\n"};
+                          .text = "this is not an HTTP/1.1 request: " + error.message() + "\n"};
     }
     if (request.get().method() != http::verb::get && request.get().method() != http::verb::head) {
         return Http::Page{.status = http::status::method_not_allowed,
-                          .text = "pages can only be read here: use GET or HEAD\n"};
+                          .text = "this server only has pages to read: use GET or HEAD\n"};
     }
     if (!request.is_done()) {
         return Http::Page{.status = http::status::bad_request, .text = "send the request without a body\n"};
@@ -67,9 +67,9 @@ http::response<http::string_body> response_of(Http::Page page, unsigned version,
     return response;
 }
 
-/// What the client still sends is read away for a while, for closing with bytes unread would take the answer from it.
+/// Reads and discards further input for a while: closing with unread bytes would discard the answer.
 asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
-    boost::system::error_code ignored; // it may be gone already
+    boost::system::error_code ignored; // the peer may have closed the connection
     stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
     stream.expires_after(http_farewell_timeout);
     std::array<char, 4096> bytes;
@@ -117,11 +117,12 @@ void Http::close() {
 asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
     boost::beast::tcp_stream stream{std::move(socket)};
     connections_.insert(&stream);
-    boost::beast::flat_buffer buffer{2 * http_header_bytes_max}; // what comes next may have come with a request
+    // a request may arrive together with the start of the next
+    boost::beast::flat_buffer buffer{2 * http_header_bytes_max};
     boost::system::error_code error;
     for (bool goes_on = true; goes_on && !closed_;) {
         Parser request;
-        request.header_limit(2 * http_header_bytes_max); // roughly; exactly it is looked at below
+        request.header_limit(2 * http_header_bytes_max); // a rough bound; the exact check follows
         stream.expires_after(http_request_timeout);
         std::size_t header_bytes = 0;
         std::tie(error, header_bytes) = co_await http::async_read_header(stream, buffer, request, no_throw);
@@ -130,7 +131,7 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
         }
         if (closed_ || (error && error.category() != make_error_code(http::error::bad_method).category()) ||
             error == http::error::end_of_stream) {
-            break; // gone, or too slow
+            break; // disconnected, or too slow
         }
         if (is_too_long(error)) {
             counters_.met(Limit::HttpHeaderBytes);
@@ -175,7 +176,7 @@ asio::awaitable<Http::Page> Http::page(std::string target) {
     for (const auto& [path, make] : pages_) {
         known += (known.empty() ? "" : " and ") + path;
     }
-    co_return Page{.status = http::status::not_found, .text = "there is no such page: there are " + known + "\n"};
+    co_return Page{.status = http::status::not_found, .text = "no such page; available: " + known + "\n"};
 }
 
 } // namespace evod::network

@@ -1,9 +1,8 @@
-// HTTP: a few pages to be fetched, for what watches over the server. Whoever reaches the port may read them; nothing
-// can be changed through it.
+// HTTP: read-only pages for monitoring. Any client that reaches the port may read them.
 //
-// Owner        the server; on the network thread, a coroutine for each connection.
-// Full         see limits.h: connections, the header of a request, and the time for it.
-// Source       RFC 9110 and 9112; parsed and written by Boost.Beast.
+// Owner        the server, on the network thread; one coroutine per connection.
+// Full         limits.h bounds the connections, the header of a request and the time for it.
+// Source       RFC 9110 and 9112; Boost.Beast parses and writes.
 #pragma once
 
 #include "server/network/limits.h"
@@ -29,16 +28,16 @@ class Http {
         std::string text;
         std::string type = "text/plain; charset=utf-8";
     };
-    /// By path: "/metrics".
+    /// Pages by path: "/metrics".
     using Pages = std::map<std::string, std::function<boost::asio::awaitable<Page>()>, std::less<>>;
 
-    /// Takes the port; port 0 is any that is free. counters: outlive it.
+    /// Opens the port; port 0 is any free port. The counters outlive it.
     static base::Result<std::unique_ptr<Http>> open(boost::asio::io_context& context, const std::string& address,
                                                     std::uint16_t port, Pages pages, LimitCounters& counters);
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
 
-    /// Serves until close().
+    /// Accepts connections until close().
     void start();
     void close();
 
@@ -46,7 +45,7 @@ class Http {
     Http(boost::asio::io_context& context, Listener listener, Pages pages, LimitCounters& counters)
         : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)}, counters_{counters} {}
 
-    /// full: it is only told so.
+    /// full: the connection only receives a 503.
     boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
     boost::asio::awaitable<Page> page(std::string target);
 

@@ -28,11 +28,11 @@ void Leases::await_end(const std::string& world, Lease& lease) {
         const auto ended = leases_.find(world);
         if (error || ended == leases_.end() ||
             ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now()) {
-            return; // renewed when it was as good as over
+            return; // renewed at the last moment
         }
         ended->second.client_key.clear();
         await_end(world, ended->second);
-        over_(world, ended->second.number);
+        expired_(world, ended->second.number);
     });
 }
 

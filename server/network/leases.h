@@ -1,7 +1,7 @@
-// Leases: worlds that are lent to whoever steps them with RunUntilTick, and how long yet. A client that has gone, or
-// forgets its world, cannot keep it standing for others.
+// Leases: how long a client may hold a world that it steps with RunUntilTick. If a client disconnects or forgets its
+// world, the lease expires and the world continues for the other clients.
 //
-// Owner        the dispatcher; on the network thread. Whether a world is lent at all is known to the simulation alone.
+// Owner        the dispatcher, on the network thread. The simulation decides whether a world is leased at all.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -15,15 +15,15 @@ namespace evod::network {
 
 class Leases {
   public:
-    /// over  a world's lease is over: called each lease_time until end() says that the world was given back, or begin()
-    ///       that it has another one.
-    Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> over)
-        : context_{context}, over_{std::move(over)} {}
+    /// expired  called every lease_time after a lease has expired, until end() or begin() for that world.
+    Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> expired)
+        : context_{context}, expired_{std::move(expired)} {}
 
-    /// From now on, whosever it was before.
-    /// lease  its number among those of the world (simulation::RunControl).
+    /// Starts a lease and replaces an earlier one of the world.
+    ///
+    /// lease  the number of the lease in its world (simulation::RunControl).
     void begin(const std::string& world, std::uint64_t lease, const std::string& client_key);
-    /// false: that client_key has no lease of the world.
+    /// Extends the lease. false: the client_key has no lease of the world.
     bool renew(const std::string& world, const std::string& client_key);
     void end(const std::string& world) { leases_.erase(world); }
     void end_all() { leases_.clear(); }
@@ -37,7 +37,7 @@ class Leases {
     void await_end(const std::string& world, Lease& lease);
 
     boost::asio::io_context& context_;
-    const std::function<void(const std::string& world, std::uint64_t lease)> over_;
+    const std::function<void(const std::string& world, std::uint64_t lease)> expired_;
     std::map<std::string, Lease> leases_; // by world
 };
 

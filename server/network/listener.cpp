@@ -24,7 +24,7 @@ base::Result<void> Listener::check(const std::string& address, const char* optio
         return {};
     }
     return base::refusal(base::RefusalCode::InvalidArgument,
-                         "cannot listen on '" + address + "', which is not an IP address; give " + option +
+                         "cannot listen on '" + address + "', which is not an IP address: give " + option +
                              " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
 }
 
@@ -46,7 +46,7 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     acceptor.open(endpoint.protocol(), error);
     if (!error) {
         acceptor.set_option(tcp::acceptor::reuse_address{true},
-                            error); // do not wait for old connections to be forgotten
+                            error); // bind although old connections linger
     }
     if (!error) {
         acceptor.bind(endpoint, error);
@@ -55,11 +55,12 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
         acceptor.listen(asio::socket_base::max_listen_connections, error);
     }
     if (error == asio::error::address_in_use) {
-        return refused(std::string{"the port is taken, perhaps by another evod; stop that, or choose another with "} +
-                       names.port);
+        return refused(
+            std::string{"the port is in use, perhaps by another evod: stop it, or choose another port with "} +
+            names.port);
     }
     if (error == asio::error::access_denied) {
-        return refused(std::string{"ports below 1024 need privileges; choose another with "} + names.port);
+        return refused(std::string{"ports below 1024 need privileges: choose another with "} + names.port);
     }
     if (error) {
         return refused(error.message());
@@ -69,13 +70,13 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
 
 namespace {
 
-/// How many file descriptors the system gives this process.
+/// The file descriptors that the system allows this process.
 rlim_t descriptors_max() {
     rlimit limit{};
     return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
-/// Whether only those are left that are kept for files: the system gives the lowest that is free.
+/// Whether only the descriptors reserved for run files are left. The system always assigns the lowest free number.
 bool is_among_the_last(int descriptor) {
     const rlim_t most = descriptors_max();
     return static_cast<rlim_t>(descriptor) + std::min(descriptors_kept, most / 8) >= most;
@@ -85,21 +86,21 @@ bool is_among_the_last(int descriptor) {
 
 asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted) {
     asio::steady_timer pause{acceptor_.get_executor()};
-    bool told = false;
+    bool reported = false;
     while (acceptor_.is_open()) {
         auto [error, socket] = co_await acceptor_.async_accept(no_throw);
         if (!error && is_among_the_last(socket.native_handle())) {
-            boost::system::error_code ignored; // closed is closed
+            boost::system::error_code ignored; // the connection may be closed already
             socket.close(ignored);
             error = asio::error::no_descriptors;
         }
         if (!error) {
-            told = false;
+            reported = false;
             accepted(std::move(socket));
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
-            // It would fail again at once, so give sessions time to end.
-            if (!std::exchange(told, true)) {
-                log::warn("cannot accept a connection: {}; newcomers wait{}", error.message(),
+            // Accepting would fail again at once. The pause lets sessions end.
+            if (!std::exchange(reported, true)) {
+                log::warn("cannot accept a connection: {}; new connections wait{}", error.message(),
                           error == asio::error::no_descriptors
                               ? " until one of the " + std::to_string(descriptors_max()) +
                                     " file descriptors is free: allow evod more (ulimit -n, or systemd's LimitNOFILE)"
@@ -112,7 +113,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
 }
 
 void Listener::close() {
-    boost::system::error_code ignored; // closed is closed
+    boost::system::error_code ignored; // the port may be closed already
     acceptor_.close(ignored);
 }
 

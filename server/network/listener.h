@@ -1,4 +1,6 @@
-// Listener: the port, and a session for each connection that comes.
+// Listener: accepts connections on one port.
+//
+// Owner        the server, on the network thread.
 #pragma once
 
 #include "server/base/result.h"
@@ -15,16 +17,16 @@ namespace evod::network {
 
 class Listener {
   public:
-    /// Takes the port; says what to do about it if that cannot be.
+    /// Opens the port. A refusal says what to do about it.
     ///
     /// address   of an interface: "127.0.0.1", "0.0.0.0", "::1".
-    /// port      0: any that is free.
-    /// names     the options by which a person chooses these.
+    /// port      0: any free port.
+    /// names     the command-line options for address and port, for refusals.
     struct Names {
         const char* address = "--bind";
         const char* port = "--port";
     };
-    /// Refused if that is no address; nothing is opened. option: by which a person chooses it.
+    /// Refuses text that is not an IP address; opens nothing. option: the command-line option, for the refusal.
     static base::Result<void> check(const std::string& address, const char* option);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address, std::uint16_t port,
                                        const Names& names);
@@ -35,7 +37,7 @@ class Listener {
 
     boost::asio::ip::tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
-    /// Accepts until close(). accepted: called for each connection.
+    /// Accepts connections until close() and calls `accepted` for each.
     boost::asio::awaitable<void> accept(std::function<void(boost::asio::ip::tcp::socket)> accepted);
 
     void close();

@@ -1,4 +1,4 @@
-// no_throw: a completion token of Asio. What is awaited with it gives the error beside the result and throws nothing.
+// no_throw: an Asio completion token that returns the error beside the result and never throws.
 #pragma once
 
 #include <boost/asio/as_tuple.hpp>

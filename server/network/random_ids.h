@@ -1,4 +1,4 @@
-// What the shell draws by chance: seeds nobody gave, names of runs and of this start of the server.
+// Random seeds and ids that the server draws: seeds without a client's choice, run ids, instance ids.
 #pragma once
 
 #include "server/base/random.h"

@@ -40,11 +40,11 @@ std::string differences_of(const parameters::Parameters& there, const parameters
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
-    // From now on, also while worlds are brought back: they are obeyed once the server runs.
+    // From here on signals are queued, also while worlds are restored. run() handles them.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         server->signals_.add(signal);
     }
-    // What was said on the command line, before a file is opened and a world brought back.
+    // Check the command line before opening files and restoring worlds.
     if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound) {
         return sound.error();
     }
@@ -77,7 +77,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     } else if (auto begun = server->world_to_begin(); !begun) {
         return begun.error();
     }
-    boost::system::error_code no_address; // is told by the listener
+    boost::system::error_code no_address; // Listener::check() has reported it
     const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
     auto gate = access::Gate::open(server->options_.token_folder,
                                    server->options_.token_needed || (!no_address && !address.is_loopback()));
@@ -93,13 +93,13 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (auto opened = server->open_http(); !opened) {
         return opened.error();
     }
-    std::signal(SIGPIPE, SIG_IGN); // whoever read the log may go; the server stays
+    std::signal(SIGPIPE, SIG_IGN); // a closed log pipe must not end the server
     return server;
 }
 
 Server::Server(ServerOptions options)
     : options_{std::move(options)}
-    , buffers_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { relieve(); }); }}
+    , send_memory_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { evict_sessions(); }); }}
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
@@ -153,9 +153,8 @@ base::Result<void> Server::open_archive() {
     const run_file::RunIdentity* there = archive_->identity_of(wanted.name);
     const auto differs = [&](const std::string& in_what) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
-                             .message = path + " holds a world \"" + wanted.name + "\" that began with other " +
-                                        in_what +
-                                        ": begin elsewhere with another --data, or start without --experiment, --seed "
+                             .message = path + " holds a world \"" + wanted.name + "\" with other " + in_what +
+                                        ": use another --data folder, or start without --experiment, --seed "
                                         "and --population, and reset or delete that world",
                              .violations = {}};
     };
@@ -202,8 +201,8 @@ base::Result<std::string> Server::world_to_begin() const {
         all += (all.empty() ? "" : ", ") + name;
     }
     return refusal(base::RefusalCode::FailedPrecondition,
-                   "--speed and --start are for one world, and " + options_.data_folder + " holds " + all +
-                       ": start without them, and say it with evoctl --world NAME speed, and run");
+                   "--speed and --start apply to one world, but " + options_.data_folder + " holds " + all +
+                       ": start without them, then use evoctl --world NAME speed and run");
 }
 
 std::optional<base::Seed> Server::first_seed() const {
@@ -234,10 +233,10 @@ void Server::begin_first_world() {
         protocol::add_population(create, world.first_population);
         dispatcher_.handle_own(std::move(request));
     }
-    const std::string begun = *world_to_begin(); // open() has seen that there is one
+    const std::string begun = *world_to_begin(); // open() has checked it
     const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
     if ((options_.first_speed || options_.first_run) && others > 0) {
-        log::info({.world = begun}, "--speed and --start are for world \"{}\" alone; {} others go on as they were",
+        log::info({.world = begun}, "--speed and --start apply to world \"{}\" only; {} others continue as before",
                   begun, others);
     }
     if (options_.first_speed) {
@@ -275,10 +274,12 @@ bool Server::run() {
         mailbox_, demand_, *executor_, clock_,
         runtime::LoopOutputs{
             .events = streams_.outlet(outbox_),
-            .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); },
+            .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
+            .done = [this](runtime::CommandDone done) { outbox_.done(std::move(done)); },
             .storage =
                 [this](const simulation::Storage& storage) {
-                    // As an answer is, so that it is not dropped among many events: newcomers are told of it, too.
+                    // Sent like an answer, because events may be dropped. Sessions that connect later read
+                    // host_.storage.
                     outbox_.answer([this, event = protocol::event_of(storage)] {
                         host_.storage = event.storage_changed().storage();
                         streams_.publish(event);
@@ -289,7 +290,7 @@ bool Server::run() {
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
     wait_for_signal();
-    look_around();
+    start_housekeeping();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }), detached);
     if (http_) {
         http_->start();
@@ -310,12 +311,11 @@ void Server::wait_for_signal() {
         if (signal == SIGHUP) {
             reread_certificate();
         } else if (!going_away_) {
-            log::info("{}: going away", name);
+            log::info("{}: shutting down", name);
             go_away();
         } else {
-            log::warn("{} again: ends at once; worlds go on from what is on the disk when the server starts again",
-                      name);
-            signals_.remove(signal); // what the signal does by itself is to end the process
+            log::warn("{} again: ending at once; after a restart worlds continue from what is on the disk", name);
+            signals_.remove(signal); // restores the default action, which ends the process
             std::raise(signal);
         }
         wait_for_signal();
@@ -325,13 +325,13 @@ void Server::wait_for_signal() {
 void Server::reread_certificate() {
     auto tls = access::server_context(options_.tls);
     if (!tls) {
-        log::error("SIGHUP: the certificate stays as it is: {}", to_text(tls.error()));
+        log::error("SIGHUP: keeping the old certificate: {}", to_text(tls.error()));
     } else if (!*tls) {
-        log::info("SIGHUP: there is no certificate to read again; a changed token file is read without a signal");
+        log::info("SIGHUP: no certificate to reload; a changed token file is reloaded without a signal");
     } else {
-        tls_ = *std::move(tls); // connections keep what they began with
+        tls_ = *std::move(tls); // existing connections keep the old one
         host_.tls = tls_.get();
-        log::info("SIGHUP: the certificate was read again; it holds for new connections");
+        log::info("SIGHUP: certificate reloaded for new connections");
     }
 }
 
@@ -339,31 +339,32 @@ void Server::stop() {
     asio::post(context_, [this] { go_away(); });
 }
 
-void Server::look_around() {
+void Server::start_housekeeping() {
     looked_ = clock_.now();
-    look_again();
+    schedule_housekeeping();
 }
 
-void Server::look_again() {
-    look_timer_.expires_after(look_every);
-    look_timer_.async_wait([this](boost::system::error_code error) {
+void Server::schedule_housekeeping() {
+    housekeeping_timer_.expires_after(housekeeping_interval);
+    housekeeping_timer_.async_wait([this](boost::system::error_code error) {
         if (error) {
             return;
         }
-        mind_tokens();
-        // A look that comes late says nothing of the clients: it was this server that was busy.
+        check_tokens();
+        // After a late timer the server itself was busy, so the clients are not to blame for all of that time.
         const auto now = clock_.now();
-        const auto watched = std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * look_every);
+        const auto watched =
+            std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * housekeeping_interval);
         for (const auto& [number, session] : sessions_) {
-            session->mind_progress(watched);
+            session->check_progress(watched);
         }
-        give_memory_back(now);
-        look_again();
+        trim_heap(now);
+        schedule_housekeeping();
     });
 }
 
-void Server::give_memory_back(runtime::Clock::time_point now) {
-    // What answers and sessions leave is scattered over the heap, and is not given back by itself.
+void Server::trim_heap(runtime::Clock::time_point now) {
+    // Answers and sessions leave fragmented free memory that malloc does not return by itself.
     const std::uint64_t answered = host_.traffic.sent_control_bytes.value();
     if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes)) {
         return;
@@ -374,40 +375,40 @@ void Server::give_memory_back(runtime::Clock::time_point now) {
     answered_at_trim_ = answered;
 }
 
-void Server::mind_tokens() {
+void Server::check_tokens() {
     if (!gate_->refresh()) {
         return;
     }
     if (gate_->trouble()) {
-        log::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
+        log::error("{}; new connections are refused until this is fixed", gate_->trouble()->message);
     }
-    // Those whose end comes now go from the table: it must not be walked meanwhile.
+    // fail() may remove sessions from the table, so this loop needs a copy.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions) {
         if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor())) {
             session->fail(refusal(base::RefusalCode::Unauthenticated,
-                                  "the token has been revoked: ask whoever runs the server for another",
+                                  "the token has been revoked: ask the operator of the server for a new one",
                                   base::Reason::TokenRevoked));
         }
     }
 }
 
-void Server::relieve() {
+void Server::evict_sessions() {
     std::vector<std::pair<std::size_t, SessionPtr>> most;
     for (const auto& [number, session] : sessions_) {
         most.emplace_back(session->held_bytes(), session);
     }
     std::ranges::sort(most, std::greater{}, [](const auto& item) { return item.first; });
-    std::size_t excess = buffers_.excess();
+    std::size_t excess = send_memory_.excess();
     for (const auto& [bytes, session] : most) {
         if (excess == 0 || bytes == 0) {
             break;
         }
-        session->make_room();
+        session->evict();
         excess -= std::min(excess, bytes);
     }
-    // What they were being sent goes in the turns of the loop that have been asked for before this one.
-    asio::post(context_, [this] { buffers_.relieved(); });
+    // The sessions release their memory in handlers that are already posted; rearm() runs after them.
+    asio::post(context_, [this] { send_memory_.rearm(); });
 }
 
 void Server::accepted(tcp::socket socket) {
@@ -416,7 +417,7 @@ void Server::accepted(tcp::socket socket) {
     host_.traffic.connections.add();
     if (going_away_) {
         return session->start(refusal(base::RefusalCode::Unavailable,
-                                      "the server is going away: connect again when it is back",
+                                      "the server is shutting down: connect again after the restart",
                                       base::Reason::ServerGoingAway));
     }
     const auto is_neighbour = [&](const auto& other) {
@@ -427,30 +428,31 @@ void Server::accepted(tcp::socket socket) {
     const bool address_full = std::ranges::count_if(sessions_, is_neighbour) >= bounds.sessions_per_address_max;
     if (all_full || address_full) {
         limit_counters_.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
-        // Whoever says nothing shall not keep others out: of those, the one that came first makes room.
+        // A silent connection must not keep others out: the oldest session without a Hello makes room.
         const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
             return !other.second->greeted() && (!address_full || is_neighbour(other));
         });
-        const bool may_be_told = connections_ - sessions_.size() <= farewells_max;
+        const bool may_get_goodbye = connections_ - sessions_.size() <= farewells_max;
         if (silent == sessions_.end()) {
-            if (may_be_told) {
+            if (may_get_goodbye) {
                 session->start(refusal(base::RefusalCode::ResourceExhausted,
                                        address_full ? "there are " + std::to_string(bounds.sessions_per_address_max) +
-                                                          " sessions from this address already: end one of them first"
+                                                          " sessions from this address: end one of them first"
                                                     : "the server has " + std::to_string(bounds.sessions_max) +
-                                                          " sessions already: try again when one has ended",
+                                                          " sessions: try again when one has ended",
                                        base::Reason::SessionsMax));
             } else {
-                --connections_; // it is closed without a word
+                --connections_; // closed without a Goodbye
             }
             return;
         }
         const SessionPtr first = silent->second;
         sessions_.erase(silent);
-        if (may_be_told) {
-            first->fail(refusal(base::RefusalCode::ResourceExhausted,
-                                "the place was needed, and no hello had come: connect again, and send one at once",
-                                base::Reason::SessionsMax));
+        if (may_get_goodbye) {
+            first->fail(refusal(
+                base::RefusalCode::ResourceExhausted,
+                "connection dropped to make room, no Hello was received: connect again and send a Hello at once",
+                base::Reason::SessionsMax));
         } else {
             first->close();
         }
@@ -464,19 +466,20 @@ void Server::deliver() {
     if (taken.dropped_events > 0) {
         limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
     }
+    dispatcher_.deliver(std::move(taken.deliveries));
     streams_.deliver(std::move(taken));
-    send_pictures();
+    send_snapshots();
 }
 
-void Server::send_pictures() {
-    if (sends_pictures_) {
+void Server::send_snapshots() {
+    if (sends_snapshots_) {
         return;
     }
-    sends_pictures_ = streams_.send_some(clock_.now());
-    if (sends_pictures_) {
+    sends_snapshots_ = streams_.send_some(clock_.now());
+    if (sends_snapshots_) {
         asio::post(context_, [this] {
-            sends_pictures_ = false;
-            send_pictures();
+            sends_snapshots_ = false;
+            send_snapshots();
         });
     }
 }
@@ -485,15 +488,15 @@ void Server::go_away() {
     if (std::exchange(going_away_, true)) {
         return;
     }
-    look_timer_.cancel();
+    housekeeping_timer_.cancel();
     listener_->close();
-    pulse_.stop();
+    heartbeat_.stop();
     if (http_) {
         http_->close();
     }
     dispatcher_.refuse_all();
     streams_.announce_end();
-    // On a thread of its own, so that sessions are served meanwhile: what was admitted is still answered.
+    // A thread of its own stops the simulation, so that this thread continues to send pending answers.
     stopping_ = std::thread{[this, work = asio::make_work_guard(context_)] {
         simulation_->stop();
         const bool all_written = !archive_ || archive_->close();
@@ -502,7 +505,7 @@ void Server::go_away() {
             signals_.cancel();
             deliver();
             while (streams_.send_some(clock_.now())) {
-                // The newest that there is.
+                // Sends the newest snapshots.
             }
             streams_.end_sessions();
         });

@@ -1,4 +1,4 @@
-// What the server tells of itself: its metrics, and whether it is well.
+// The server's metrics and health checks.
 #include "server/metrics/exposition.h"
 #include "server/metrics/families.h"
 #include "server/metrics/process.h"
@@ -28,121 +28,120 @@ constexpr std::array storage_states{
 
 void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     const auto worlds = counted.list();
-    add_gauge(to, "evod_worlds", "Worlds there are").add(number(worlds.size()));
-    auto ticks = add_counter(to, "evod_ticks_total", "Ticks that were simulated");
-    auto rate = add_gauge(to, "evod_ticks_per_second", "Ticks in the last second or so; 0 while a world stands");
-    auto tick_time = add_histogram(to, "evod_tick_seconds",
-                                   "Time of a tick; at full speed with what is written down and shown between two");
-    auto picture_time = add_histogram(
-        to, "evod_picture_seconds", "Time that the simulation takes to give a picture away; encoding is no part of it");
+    add_gauge(to, "evod_worlds", "Worlds").add(number(worlds.size()));
+    auto ticks = add_counter(to, "evod_ticks_total", "Simulated ticks");
+    auto rate =
+        add_gauge(to, "evod_ticks_per_second", "Ticks in the last second or so; 0 while the world does not run");
+    auto tick_time = add_histogram(to, "evod_tick_seconds", "Time per tick; at full speed with journal and snapshots");
+    auto snapshot_time = add_histogram(to, "evod_snapshot_seconds",
+                                       "Time of the simulation thread to copy a snapshot, without encoding");
     for (const auto& world : worlds) {
         ticks.add(number(world->tick_time.count()), {{"world", world->name}});
         rate.add(world->ticks_per_s.value(), {{"world", world->name}});
         tick_time.add(world->tick_time, {{"world", world->name}});
-        picture_time.add(world->picture_time, {{"world", world->name}});
+        snapshot_time.add(world->snapshot_time, {{"world", world->name}});
     }
 }
 
 void add_queues(v1::Metrics& to, const runtime::Mailbox::Fill& mailbox, const runtime::Outbox::Fill& outbox) {
-    add_gauge(to, "evod_mailbox_requests", "Requests that wait for the simulation").add(number(mailbox.waiting));
-    add_gauge(to, "evod_mailbox_requests_max", "So many may wait; more are refused").add(number(mailbox.capacity));
-    add_gauge(to, "evod_outbox_deliveries", "Answers and events on their way from the simulation to the network")
+    add_gauge(to, "evod_mailbox_requests", "Requests waiting for the simulation").add(number(mailbox.waiting));
+    add_gauge(to, "evod_mailbox_requests_max", "Capacity; further requests are refused").add(number(mailbox.capacity));
+    add_gauge(to, "evod_outbox_deliveries", "Answers and events between simulation and network")
         .add(number(outbox.deliveries));
-    add_gauge(to, "evod_outbox_events", "Those of them that are events").add(number(outbox.events));
-    add_gauge(to, "evod_outbox_events_max", "So many events may wait there; more are dropped")
+    add_gauge(to, "evod_outbox_events", "Events among the deliveries").add(number(outbox.events));
+    add_gauge(to, "evod_outbox_events_max", "Capacity for events; further ones are dropped")
         .add(number(outbox.events_max));
 }
 
 void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max) {
     std::map<std::string, std::uint64_t> by_role{{"admin", 0}, {"controller", 0}, {"viewer", 0}, {"none", 0}};
-    std::uint64_t pictures = 0, events = 0;
+    std::uint64_t snapshots = 0, events = 0;
     for (const auto& [session_number, session] : all) {
         ++by_role[session->greeted() ? access::name_of(session->visitor().role) : "none"];
-        pictures += session->snapshots.subscriptions.size();
+        snapshots += session->snapshots.subscriptions.size();
         events += session->events.size();
     }
-    auto sessions = add_gauge(to, "evod_sessions", "Connected clients; none: those that have not said hello yet");
+    auto sessions = add_gauge(to, "evod_sessions", "Connected clients; role none: before the Hello");
     for (const auto& [role, count] : by_role) {
         sessions.add(number(count), {{"role", role}});
     }
-    add_gauge(to, "evod_sessions_max", "So many may be connected; more are refused").add(number(sessions_max));
+    add_gauge(to, "evod_sessions_max", "Capacity; further clients are refused").add(number(sessions_max));
     add_gauge(to, "evod_subscriptions", "Subscriptions of all clients")
-        .add(number(pictures), {{"to", "pictures"}})
+        .add(number(snapshots), {{"to", "snapshots"}})
         .add(number(events), {{"to", "events"}});
 }
 
 void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
-    add_counter(to, "evod_connections_total", "Connections that came").add(number(traffic.connections.value()));
-    add_counter(to, "evod_requests_total", "Requests, those refused too").add(number(traffic.requests.value()));
-    add_counter(to, "evod_received_bytes_total", "Bytes from clients, without what TLS adds")
+    add_counter(to, "evod_connections_total", "Accepted connections").add(number(traffic.connections.value()));
+    add_counter(to, "evod_requests_total", "Readable requests, including refused ones")
+        .add(number(traffic.requests.value()));
+    add_counter(to, "evod_received_bytes_total", "Bytes from clients, without the overhead of TLS")
         .add(number(traffic.received_bytes.value()));
     add_counter(to, "evod_sent_bytes_total",
-                "Bytes to clients, without what TLS adds; control: answers and events, stream: pictures")
+                "Bytes to clients, without the overhead of TLS; control: answers and events, stream: snapshots")
         .add(number(traffic.sent_control_bytes.value()), {{"channel", "control"}})
         .add(number(traffic.sent_stream_bytes.value()), {{"channel", "stream"}});
-    add_counter(to, "evod_pictures_sent_total", "Pictures that were sent, of one island to one subscription")
-        .add(number(traffic.pictures_sent.value()));
-    add_counter(to, "evod_pictures_dropped_total", "Pictures that newer ones replaced before they were sent")
-        .add(number(traffic.pictures_dropped.value()));
-    add_counter(to, "evod_events_dropped_total", "Events that a client was not told, since it was too slow")
+    add_counter(to, "evod_snapshots_sent_total", "Snapshots sent, each of one island to one subscription")
+        .add(number(traffic.snapshots_sent.value()));
+    add_counter(to, "evod_snapshots_dropped_total", "Snapshots replaced by newer ones before they were sent")
+        .add(number(traffic.snapshots_dropped.value()));
+    add_counter(to, "evod_events_dropped_total", "Events not sent to slow clients")
         .add(number(traffic.events_dropped.value()));
 }
 
 void add_limits(v1::Metrics& to, const LimitCounters& counters) {
-    auto reached = add_counter(to, "evod_limit_reached_total", "How often each limit was met");
+    auto reached = add_counter(to, "evod_limit_reached_total", "How often each limit was reached");
     for (const LimitRow& row : limit_table()) {
         reached.add(number(counters.count(row.limit)), {{"limit", std::string{row.name}}});
     }
 }
 
 void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::Storage& storage) {
-    auto state = add_gauge(to, "evod_storage_state", "How it stands with the disk: 1 of the state that holds");
+    auto state = add_gauge(to, "evod_storage_state", "State of the disk: 1 for the current state");
     for (const auto& [value, name] : storage_states) {
         state.add(storage.state() == value, {{"state", name}});
     }
     const auto since = thread.waiting_since();
     const std::chrono::duration<double> lag =
         since ? std::chrono::steady_clock::now() - *since : std::chrono::steady_clock::duration{0};
-    add_gauge(to, "evod_journal_waiting_bytes", "What waits to be written to run files")
+    add_gauge(to, "evod_journal_waiting_bytes", "Bytes waiting to be written to run files")
         .add(number(thread.waiting_bytes()));
-    add_gauge(to, "evod_journal_waiting_bytes_max", "From here on worlds wait for the disk")
+    add_gauge(to, "evod_journal_waiting_bytes_max", "Bound; beyond it worlds wait for the disk")
         .add(number(recording::StorageThread::waiting_bytes_max));
-    add_gauge(to, "evod_journal_lag_seconds", "For how long the oldest of it has waited; 0.2 s is usual")
+    add_gauge(to, "evod_journal_lag_seconds", "Age of the oldest waiting bytes; up to 0.2 s is normal")
         .add(std::max(lag.count(), 0.0));
-    add_histogram(to, "evod_journal_wait_seconds",
-                  "Time from when a command has been carried out until it is on the disk, and is answered")
+    add_histogram(to, "evod_journal_wait_seconds", "Time from applying a command until it is on the disk and answered")
         .add(thread.times().journal_wait);
     add_histogram(to, "evod_journal_commit_seconds",
-                  "Time of a commit of commands, hashes and generations, putting it on the disk included")
+                  "Time of a group commit of commands, hashes and generations, including the sync to disk")
         .add(thread.times().commit);
 }
 
 } // namespace
 
 v1::Metrics Server::metrics() {
-    v1::Metrics told;
-    add_gauge(told, "evod_build_info", "1, of the version that runs").add(1, {{"version", EVOD_VERSION}});
-    add_worlds(told, worlds_counted_);
-    add_queues(told, mailbox_.fill(), outbox_.fill());
-    add_sessions(told, sessions_, options_.session_bounds.sessions_max);
-    add_counter(told, "evod_logins_failed_total", "Logins with a token that the server does not know")
+    v1::Metrics all;
+    add_gauge(all, "evod_build_info", "Always 1; the label is the version").add(1, {{"version", EVOD_VERSION}});
+    add_worlds(all, worlds_counted_);
+    add_queues(all, mailbox_.fill(), outbox_.fill());
+    add_sessions(all, sessions_, options_.session_bounds.sessions_max);
+    add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
-    add_gauge(told, "evod_client_buffer_bytes", "What waits for all clients together, to be sent or to come whole")
-        .add(number(buffers_.bytes()));
-    add_gauge(told, "evod_client_buffer_bytes_max", "So much may wait; then those with the most are closed")
+    add_gauge(all, "evod_client_buffer_bytes", "Memory of all sessions: data to send and incomplete frames")
+        .add(number(send_memory_.bytes()));
+    add_gauge(all, "evod_client_buffer_bytes_max", "Bound; beyond it the sessions with the most memory are closed")
         .add(number(client_buffer_bytes_max));
-    add_traffic(told, host_.traffic);
-    add_limits(told, limit_counters_);
+    add_traffic(all, host_.traffic);
+    add_limits(all, limit_counters_);
     if (archive_ && archive_->thread() != nullptr && host_.storage) {
-        add_storage(told, *archive_->thread(), *host_.storage);
+        add_storage(all, *archive_->thread(), *host_.storage);
     }
 
-    const metrics::Process process = metrics::look_at_process();
-    add_gauge(told, "process_start_time_seconds", "When the server started, in seconds since 1970")
+    const metrics::Process process = metrics::read_process();
+    add_gauge(all, "process_start_time_seconds", "Start of the server, in seconds since 1970")
         .add(process.start_time_s);
-    add_counter(told, "process_cpu_seconds_total", "Processor time of all threads").add(process.cpu_s);
-    auto threads = add_counter(told, "evod_thread_cpu_seconds_total",
-                               "Processor time by thread; the rest is that of the threads that simulate");
+    add_counter(all, "process_cpu_seconds_total", "CPU time of all threads").add(process.cpu_s);
+    auto threads = add_counter(all, "evod_thread_cpu_seconds_total", "CPU time by thread; the rest is the worker pool");
     const auto add_thread = [&](const char* name, pthread_t thread) {
         if (const auto cpu_s = metrics::cpu_s_of(thread)) {
             threads.add(*cpu_s, {{"thread", name}});
@@ -156,11 +155,11 @@ v1::Metrics Server::metrics() {
         add_thread("storage", archive_->thread()->handle());
         add_thread("packing", archive_->thread()->packing_handle());
     }
-    add_gauge(told, "process_resident_memory_bytes", "Memory in use").add(number(process.resident_bytes));
-    add_gauge(told, "process_virtual_memory_bytes", "Addresses in use").add(number(process.virtual_bytes));
-    add_gauge(told, "process_open_fds", "Open files and connections").add(number(process.open_files));
-    add_gauge(told, "process_max_fds", "So many may be open").add(number(process.open_files_max));
-    return told;
+    add_gauge(all, "process_resident_memory_bytes", "Resident memory").add(number(process.resident_bytes));
+    add_gauge(all, "process_virtual_memory_bytes", "Virtual memory").add(number(process.virtual_bytes));
+    add_gauge(all, "process_open_fds", "Open file descriptors").add(number(process.open_files));
+    add_gauge(all, "process_max_fds", "Limit of open file descriptors").add(number(process.open_files_max));
+    return all;
 }
 
 asio::awaitable<Http::Page> Server::health() {
@@ -168,16 +167,16 @@ asio::awaitable<Http::Page> Server::health() {
         return Http::Page{.status = boost::beast::http::status::service_unavailable,
                           .text = protocol::quotable(why, 1000) + '\n'};
     };
-    const bool answers = co_await pulse_.beats(simulation_patience);
+    const bool answers = co_await heartbeat_.answers_within(simulation_patience);
     if (going_away_) {
-        co_return ill("the server is going away");
+        co_return ill("the server is shutting down");
     }
     if (!answers) {
         co_return ill("the simulation has not answered for " + std::to_string(simulation_patience.count()) + " s");
     }
     const auto state = host_.storage ? host_.storage->state() : v1::STORAGE_STATE_KEEPS_UP;
     if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED) {
-        co_return ill("runs cannot be written down: " + host_.storage->reason());
+        co_return ill("runs cannot be written: " + host_.storage->reason());
     }
     co_return Http::Page{.text = "ok\n"};
 }

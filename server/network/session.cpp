@@ -3,7 +3,7 @@
 #include "server/log/log.h"
 #include "server/network/detached.h"
 #include "server/network/no_throw.h"
-#include "server/protocol/commands.h"
+#include "server/protocol/hello.h"
 #include "server/protocol/refusals.h"
 
 #include <boost/asio/buffer.hpp>
@@ -21,105 +21,36 @@
 namespace evod::network {
 namespace {
 
-constexpr std::size_t name_bytes_max = 64;
-constexpr std::uint32_t client_frame_bytes_min = 65'536; // every client takes at least this
 constexpr std::size_t batch_frames_max = 64;
 constexpr std::size_t snapshots_at_once = 32; // of one session, before other sessions are served
 // A frame of many parts, or of a few short ones, is copied together before it is passed to the kernel.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
-static_assert(gathered_parts_max + 2 <= Line::buffers_at_once, "there are a header and a tail, too");
-
-tcp::endpoint peer_of(const tcp::socket& socket) {
-    boost::system::error_code ignored; // one who has gone already is at no address
-    return socket.remote_endpoint(ignored);
-}
-
-std::string to_text(const tcp::endpoint& endpoint) {
-    return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
-}
-
-/// As far as an address tells people apart: of IPv6, whoever has one has a whole /64.
-std::string neighbourhood_of(const asio::ip::address& address) {
-    if (!address.is_v6()) {
-        return address.to_string();
-    }
-    auto bytes = address.to_v6().to_bytes();
-    if (address.to_v6().is_v4_mapped()) {
-        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
-    }
-    std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
-    return asio::ip::address_v6{bytes}.to_string();
-}
-
-v1::Role to_proto(access::Role role) {
-    switch (role) {
-    case access::Role::Viewer:
-        return v1::ROLE_VIEWER;
-    case access::Role::Controller:
-        return v1::ROLE_CONTROLLER;
-    case access::Role::Admin:
-        return v1::ROLE_ADMIN;
-    }
-    return v1::ROLE_UNSPECIFIED;
-}
+static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a header and a tail, too");
 
 } // namespace
 
-void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response) {
-    if (response.status().code() == v1::CODE_UNSPECIFIED) {
-        return;
-    }
-    const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
-    log::debug({.session = session, .client = by, .code = code}, "session {}: {} is refused request {}: {}: {}",
-               session, by, response.request_id(), code, response.status().message());
-}
-
-SharedBytes encode_control(const v1::ServerMessage& message) {
-    return std::make_shared<const std::string>(codec::encode_frame(codec::Channel::Control, message));
-}
-
-SharedBytes encode_response(v1::Response response) {
-    v1::ServerMessage message;
-    *message.mutable_response() = std::move(response);
-    return encode_control(message);
-}
-
-SharedBytes encode_goodbye(const base::Refusal& why) {
-    v1::ServerMessage message;
-    *message.mutable_goodbye()->mutable_status() = protocol::to_proto(why);
-    return encode_control(message);
-}
-
-SharedBytes encode_event(v1::Event event) {
-    using namespace std::chrono;
-    event.set_time_ms(duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
-    v1::ServerMessage message;
-    *message.mutable_event() = std::move(event);
-    return encode_control(message);
-}
-
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
-    : snapshots{*host.clock, host.traffic.pictures_dropped, *this}
-    , line_{std::move(socket), host.tls}
+    : snapshots{*host.clock, host.traffic.snapshots_dropped, *this}
+    , transport_{std::move(socket), host.tls}
     , host_{host}
     , number_{number}
-    , peer_{peer_of(line_.socket())}
-    , neighbourhood_{neighbourhood_of(peer_.address())}
-    , reader_bytes_{host.buffers}
-    , expected_bytes_{host.buffers}
-    , held_back_bytes_{host.buffers}
+    , peer_{transport_.peer()}
+    , neighbourhood_{address_key(peer_.address())}
+    , reader_bytes_{host.send_memory}
+    , expected_bytes_{host.send_memory}
+    , held_back_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
-    , hello_timer_{line_.socket().get_executor()}
-    , frame_timer_{line_.socket().get_executor()}
-    , turn_timer_{line_.socket().get_executor()}
-    , farewell_timer_{line_.socket().get_executor()}
-    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
-    boost::system::error_code ignored; // a socket without these options works, only less well
-    line_.socket().set_option(tcp::no_delay{true}, ignored);
-    line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
+    , hello_timer_{transport_.socket().get_executor()}
+    , frame_timer_{transport_.socket().get_executor()}
+    , turn_timer_{transport_.socket().get_executor()}
+    , farewell_timer_{transport_.socket().get_executor()}
+    , writer_signal_{transport_.socket().get_executor(), asio::steady_timer::time_point::max()} {
+    boost::system::error_code ignored; // the session also works without these options, but less well
+    transport_.socket().set_option(tcp::no_delay{true}, ignored);
+    transport_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
     const auto set = [&](int option, std::int64_t value) {
         const int given = static_cast<int>(value);
-        ::setsockopt(line_.socket().native_handle(), IPPROTO_TCP, option, &given, sizeof given);
+        ::setsockopt(transport_.socket().native_handle(), IPPROTO_TCP, option, &given, sizeof given);
     };
     set(TCP_NOTSENT_LOWAT, unsent_bytes_max);
     set(TCP_KEEPIDLE, silence_max.count());
@@ -131,9 +62,9 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
 void Session::start(const std::optional<base::Refusal>& refused) {
     coroutines_ = 2;
     asio::co_spawn(
-        line_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
+        transport_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
     asio::co_spawn(
-        line_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
+        transport_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
     if (refused) {
         fail(*refused);
         return;
@@ -143,11 +74,11 @@ void Session::start(const std::optional<base::Refusal>& refused) {
         if (const auto self = weak.lock(); self && !error && !self->greeted_) {
             self->host_.limit_counters.met(Limit::HelloTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "no hello came within " + std::to_string(hello_timeout.count()) +
-                                   " s: connect again, and send one first",
+                               "no Hello was received within " + std::to_string(hello_timeout.count()) +
+                                   " s: connect again and send one first",
                                base::Reason::HelloMissing));
             if (!self->begun_) {
-                self->close(); // TLS has not begun: it cannot be told
+                self->close(); // without TLS no Goodbye is possible
             }
         }
     });
@@ -172,12 +103,12 @@ std::string Session::by() const {
 
 asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
-    if (const auto error = co_await line_.begin(); error == Line::not_tls()) {
+    if (const auto error = co_await transport_.begin(); error == Transport::not_tls()) {
         fail(refusal(base::RefusalCode::FailedPrecondition,
-                     "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls",
+                     "this server requires TLS: use --ca FILE or --tls with evoctl and evoview",
                      base::Reason::TlsRequired));
     } else if (error) {
-        if (!ended_) { // otherwise whoever ended it has said why
+        if (!ended_) { // otherwise the reason is already logged
             log_closed({}, "TLS: " + error.message());
         }
         close();
@@ -185,10 +116,10 @@ asio::awaitable<void> Session::read() {
     begun_ = true;
     wake_writer();
     while (!finishing_ && !ended_) {
-        const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
+        const auto [error, count] = co_await transport_.read_some(asio::buffer(bytes));
         const bool more_to_say = in_flight_ + queue_.size() + sending_.size() > 0;
         if (error == asio::error::eof && more_to_say && !finishing_ && !ended_) {
-            // It has said all it wants, and may still read: it gets its answers.
+            // A half-closed client may still read, so it gets its answers.
             input_over_ = true;
             wake_writer();
             end();
@@ -223,10 +154,10 @@ asio::awaitable<void> Session::read() {
                 break;
             }
             on_frame(**frame);
-            // Other sessions have their turn before the next frame.
-            co_await asio::post(line_.socket().get_executor(), no_throw);
+            // Serve other sessions before the next frame.
+            co_await asio::post(transport_.socket().get_executor(), no_throw);
         }
-        mind_frame(one_came);
+        update_frame_timer(one_came);
         reader_.trim();
         reader_bytes_.set(ended_ ? 0 : reader_.capacity_bytes());
     }
@@ -238,7 +169,7 @@ asio::awaitable<void> Session::read() {
     end();
 }
 
-void Session::mind_frame(bool one_came) {
+void Session::update_frame_timer(bool one_came) {
     const bool within = reader_.buffered_bytes() > 0 && !finishing_ && !ended_;
     const bool goes_on = within && within_frame_ && !one_came;
     within_frame_ = within;
@@ -254,8 +185,8 @@ void Session::mind_frame(bool one_came) {
         if (const auto self = weak.lock(); self && !error) {
             self->host_.limit_counters.met(Limit::FrameTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "a frame did not come whole within " + std::to_string(frame_timeout.count()) +
-                                   " s: connect again, and send each in one go",
+                               "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
+                                   " s: connect again and send each frame without pauses",
                                base::Reason::FrameLate));
         }
     });
@@ -264,7 +195,7 @@ void Session::mind_frame(bool one_came) {
 asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
-    // What does not come now is not late: it is not being read.
+    // Input is not late while the session does not read.
     within_frame_ = false;
     frame_timer_.cancel();
     do {
@@ -285,11 +216,11 @@ asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     fail(refused);
 }
 
-/// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
+/// Reads and discards further input: closing with unread bytes would discard the last answer.
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
     for (;;) {
-        const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
+        const auto [error, count] = co_await transport_.read_some(asio::buffer(bytes));
         if (error) {
             break;
         }
@@ -308,7 +239,7 @@ void Session::on_frame(const codec::Frame& frame) {
                 refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable));
         }
         if (!message->has_hello()) {
-            return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a hello",
+            return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a Hello",
                                 base::Reason::HelloMissing));
         }
         return on_hello(message->hello());
@@ -327,44 +258,21 @@ void Session::on_frame(const codec::Frame& frame) {
         break;
     case v1::ClientMessage::kHello:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
-                                                   "this session has had its hello already: send requests",
+                                                   "this session has received its Hello already: send requests",
                                                    base::Reason::HelloRepeated)));
         break;
     case v1::ClientMessage::KIND_NOT_SET:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::Unimplemented,
                                                    "this server does not know the message: it may be older than "
-                                                   "the client; Describe tells what it knows",
+                                                   "the client; Describe lists what it knows",
                                                    base::Reason::RequestUnknown)));
         break;
     }
 }
 
 void Session::on_hello(const v1::Hello& hello) {
-    std::vector<base::Violation> violations;
-    const auto check_length = [&](const char* field, const std::string& text) {
-        if (text.size() > name_bytes_max) {
-            violations.push_back({field, "at most " + std::to_string(name_bytes_max) + " bytes",
-                                  std::to_string(text.size()) + " bytes"});
-        }
-    };
-    check_length("hello.client_name", hello.client_name());
-    check_length("hello.client_version", hello.client_version());
-    if (hello.frame_bytes_max() != 0 && hello.frame_bytes_max() < client_frame_bytes_min) {
-        violations.push_back({"hello.frame_bytes_max", "0, or at least " + std::to_string(client_frame_bytes_min),
-                              std::to_string(hello.frame_bytes_max())});
-    }
-    if (!violations.empty()) {
-        return fail(protocol::invalid(std::move(violations)));
-    }
-    const std::uint32_t lowest = hello.protocol_version();
-    const std::uint32_t highest = std::max(lowest, hello.protocol_version_max());
-    if (codec::protocol_version < lowest || codec::protocol_version > highest) {
-        return fail({.code = base::RefusalCode::FailedPrecondition,
-                     .message = "this server speaks another version of the protocol: use a client of that version",
-                     .violations = {{"hello.protocol_version", std::to_string(codec::protocol_version),
-                                     highest == lowest ? std::to_string(lowest)
-                                                       : std::to_string(lowest) + " to " + std::to_string(highest)}},
-                     .reason = base::Reason::ProtocolVersion});
+    if (const auto refused = protocol::refusal_of(hello)) {
+        return fail(*refused);
     }
     auto visitor = host_.admit(hello.token(), neighbourhood_);
     if (!visitor) {
@@ -378,13 +286,9 @@ void Session::on_hello(const v1::Hello& hello) {
     }
     hello_timer_.cancel();
     reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
-    client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
-    // In by(), a colon and a space end the user's name and nothing else.
-    for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": ")) {
-        client_[colon] = ' ';
-    }
-    log_coming_or_going("connected as " + std::string{access::name_of(visitor_.role)} + ", version " +
-                        (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
+    client_ = protocol::client_name_of(hello);
+    log_connection("connected as " + std::string{access::name_of(visitor_.role)} + ", version " +
+                   (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
 
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
@@ -400,13 +304,13 @@ void Session::on_hello(const v1::Hello& hello) {
     if (host_.storage) {
         *welcome.mutable_storage() = *host_.storage;
     }
-    welcome.set_role(to_proto(visitor_.role));
+    welcome.set_role(access::to_proto(visitor_.role));
     welcome.set_user(visitor_.name);
     enqueue(encode_control(message), Kind::Unasked);
 }
 
-void Session::log_coming_or_going(const std::string& what) const {
-    // On the server's own machine each call of evoctl opens and closes a session.
+void Session::log_connection(const std::string& what) const {
+    // On the server's machine every call of evoctl opens a session, so log these at Debug only.
     const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
     if (log::wanted(level)) {
         log::write(level, {.session = number_, .client = by()},
@@ -417,21 +321,21 @@ void Session::log_coming_or_going(const std::string& what) const {
 void Session::log_closed(std::string_view code, const std::string& why) {
     const std::string who = greeted_ ? by() : to_text(peer_);
     std::string left_out;
-    if (!greeted_) { // strangers must not fill the disk
-        SessionHost::StrangersLog& strangers = host_.strangers_log;
+    if (!greeted_) { // connections without a Hello must not fill the disk
+        SessionHost::UngreetedLog& ungreeted = host_.ungreeted_log;
         const auto now = host_.clock->now();
-        if (!strangers.lines) {
-            strangers.lines.emplace(stranger_lines_per_s, stranger_lines_burst, now);
+        if (!ungreeted.lines) {
+            ungreeted.lines.emplace(ungreeted_lines_per_s, ungreeted_lines_burst, now);
         }
-        if (!strangers.lines->take(1, now)) {
-            ++strangers.left_out;
+        if (!ungreeted.lines->take(1, now)) {
+            ++ungreeted.left_out;
             return;
         }
-        if (strangers.left_out > 0) {
-            left_out = "; " + std::to_string(std::exchange(strangers.left_out, 0)) + " others before it are not logged";
+        if (ungreeted.left_out > 0) {
+            left_out = "; " + std::to_string(std::exchange(ungreeted.left_out, 0)) + " earlier ones are not logged";
         }
     }
-    log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} is closed: {}{}", number_,
+    log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} closed: {}{}", number_,
               who, why, left_out);
 }
 
@@ -488,7 +392,7 @@ void Session::answer(SharedBytes frame) {
                 too_large.response().request_id(),
                 refusal(base::RefusalCode::ResourceExhausted,
                         "the answer is " + std::to_string(frame->size() - codec::header_bytes) +
-                            " bytes long, the client takes " + std::to_string(frame_bytes_max_) + ": ask for less",
+                            " bytes long, the client accepts " + std::to_string(frame_bytes_max_) + ": ask for less",
                         base::Reason::AnswerTooLarge))),
             Kind::Answer);
 }
@@ -506,7 +410,7 @@ void Session::send_unasked(const v1::Response& response) {
 }
 
 void Session::event(const SharedBytes& frame) {
-    // Once some are dropped the rest are too until that has been told, so that the gap is where it is said to be.
+    // After a drop, drop all events until EventsDropped is sent, so that it marks the gap.
     if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size())) {
         return enqueue(frame, Kind::Event);
     }
@@ -552,7 +456,7 @@ void Session::send_frame(const streaming::OutgoingFrame& frame) {
     const auto header =
         codec::encode_header({.channel = codec::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
     const bool together = parts.size() > gathered_parts_max || body_bytes < gathered_bytes_min;
-    std::array<asio::const_buffer, Line::buffers_at_once> buffers;
+    std::array<asio::const_buffer, Transport::buffers_at_once> buffers;
     std::size_t buffer_count = 0;
     if (together) {
         host_.frame.assign(reinterpret_cast<const char*>(header.data()), header.size());
@@ -568,18 +472,18 @@ void Session::send_frame(const streaming::OutgoingFrame& frame) {
         }
         buffers[buffer_count++] = asio::buffer(tail);
     }
-    const auto [error, count] = line_.write_now(std::span{buffers}.first(buffer_count));
+    const auto [error, count] = transport_.write_now(std::span{buffers}.first(buffer_count));
     if (error) {
         return close();
     }
     host_.traffic.sent_stream_bytes.add(count);
     if (count == header.size() + body_bytes) {
-        return host_.traffic.pictures_sent.add();
+        return host_.traffic.snapshots_sent.add();
     }
     rest_.buffers.clear();
     if (together) {
         const auto rest = std::make_shared<const std::string>(host_.frame, count);
-        sending_.push_back({{host_.buffers, rest}, Kind::Snapshot});
+        sending_.push_back({{host_.send_memory, rest}, Kind::Snapshot});
         rest_.buffers.push_back(asio::buffer(*rest));
         return;
     }
@@ -588,7 +492,7 @@ void Session::send_frame(const streaming::OutgoingFrame& frame) {
     rest_.tail = tail;
     rest_.buffers.push_back(asio::buffer(rest_.header));
     for (const SharedBytes* part : parts) {
-        sending_.push_back({{host_.buffers, *part}, Kind::Snapshot});
+        sending_.push_back({{host_.send_memory, *part}, Kind::Snapshot});
         rest_.buffers.push_back(asio::buffer(**part));
     }
     rest_.buffers.push_back(asio::buffer(rest_.tail));
@@ -605,11 +509,11 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
         return;
     }
     (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
-    queue_.push_back({{host_.buffers, std::move(frame)}, kind});
+    queue_.push_back({{host_.send_memory, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
-        log::warn({.session = number_, .client = by()}, "session {}: {} is closed: it does not read its answers",
-                  number_, by());
+        log::warn({.session = number_, .client = by()}, "session {}: {} closed: it does not read its answers", number_,
+                  by());
         close();
         return;
     }
@@ -627,7 +531,7 @@ void Session::wake_writer() {
 }
 
 asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
-    // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
+    // wake_writer() cancels the timer. It runs on this thread, too, so no wake-up gets lost before the wait.
     idle_ = true;
     writer_signal_.expires_at(until);
     co_await writer_signal_.async_wait(no_throw);
@@ -642,24 +546,24 @@ asio::awaitable<void> Session::write() {
         if (!begun_) {
             co_await wait_for_work();
         } else if (!sending_.empty()) {
-            const auto [error, count] = co_await line_.write(rest_.buffers);
+            const auto [error, count] = co_await transport_.write(rest_.buffers);
             host_.traffic.sent_stream_bytes.add(count);
             if (error) {
                 break;
             }
-            sending_.clear(); // nobody counts any more what it held
+            sending_.clear(); // releases the accounted bytes
             rest_ = {};
-            host_.traffic.pictures_sent.add();
+            host_.traffic.snapshots_sent.add();
         } else if (!queue_.empty()) {
-            // Answers and events first: they are small, and somebody waits for them.
+            // Answers and events first: they are small, and clients wait for them.
             while (!queue_.empty() && sending_.size() < batch_frames_max) {
-                // Whoever has the answer may ask again before the write is known to be over.
+                // A client may send its next request before the write has completed.
                 in_flight_ -= queue_.front().kind == Kind::Answer;
                 sending_.push_back(std::move(queue_.front()));
                 queue_.pop_front();
                 buffers.push_back(asio::buffer(*sending_.back().bytes));
             }
-            const auto [error, count] = co_await line_.write(buffers);
+            const auto [error, count] = co_await transport_.write(buffers);
             host_.traffic.sent_control_bytes.add(count);
             if (error) {
                 break;
@@ -672,7 +576,7 @@ asio::awaitable<void> Session::write() {
             if (in_flight_ > 0) {
                 co_await wait_for_work();
             } else if (turn_timer_.cancel() > 0) {
-                co_await asio::post(line_.socket().get_executor(), no_throw); // fail_when_answered() goes on
+                co_await asio::post(transport_.socket().get_executor(), no_throw); // fail_when_answered() continues
             } else {
                 finish();
             }
@@ -685,7 +589,7 @@ asio::awaitable<void> Session::write() {
             // Other sessions are served in between.
             if (++sent_at_once == snapshots_at_once) {
                 sent_at_once = 0;
-                co_await asio::post(line_.socket().get_executor(), no_throw);
+                co_await asio::post(transport_.socket().get_executor(), no_throw);
             }
         } else if (finishing_) {
             break;
@@ -695,7 +599,7 @@ asio::awaitable<void> Session::write() {
         }
     }
     if (finishing_ && !ended_) {
-        co_await line_.finish();
+        co_await transport_.finish();
     } else {
         close();
     }
@@ -705,16 +609,15 @@ asio::awaitable<void> Session::write() {
 
 // ---- the end ---------------------------------------------------------------------------------------------------
 
-void Session::mind_progress(runtime::Clock::duration watched) {
-    const Line::Progress progress = sending_.empty() ? Line::Progress{} : line_.progress();
+void Session::check_progress(runtime::Clock::duration watched) {
+    const Transport::Progress progress = sending_.empty() ? Transport::Progress{} : transport_.progress();
     if (sending_.empty() || ended_ || progress != progress_) {
         progress_ = progress;
         stalled_ = {};
     } else if (stalled_ += watched; stalled_ >= stalled_timeout) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        log::warn({.session = number_, .client = by()},
-                  "session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
-                  stalled_timeout.count());
+        log::warn({.session = number_, .client = by()}, "session {}: {} closed: it has received nothing for {} s",
+                  number_, by(), stalled_timeout.count());
         close();
     }
 }
@@ -730,11 +633,11 @@ std::size_t Session::held_bytes() const {
     return bytes;
 }
 
-void Session::make_room() {
+void Session::evict() {
     host_.limit_counters.met(Limit::ClientBufferBytes);
     log::warn({.session = number_, .client = by()},
-              "session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_, by(),
-              client_buffer_bytes_max >> 20, held_bytes() >> 10);
+              "session {}: {} closed: more than {} MiB wait for all clients, {} KiB of them for this one", number_,
+              by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
     close();
 }
 
@@ -760,15 +663,15 @@ void Session::close() {
         return;
     }
     if (sending_.empty()) {
-        line_.close();
+        transport_.close();
     } else {
-        line_.abort();
+        transport_.abort();
     }
     hello_timer_.cancel();
     frame_timer_.cancel();
     turn_timer_.cancel();
     farewell_timer_.cancel();
-    // What is being sent goes when the line has let go of it.
+    // sending_ stays until the write has ended.
     queue_.clear();
     snapshots.clear();
     reader_bytes_.set(0);
@@ -783,7 +686,7 @@ void Session::end() {
         return;
     }
     if (greeted_) {
-        log_coming_or_going("disconnected");
+        log_connection("disconnected");
     }
     host_.ended(*this);
 }

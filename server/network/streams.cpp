@@ -56,9 +56,6 @@ void Streams::update_demand() {
 }
 
 void Streams::deliver(runtime::Outbox::Taken taken) {
-    for (runtime::Delivery& delivery : taken.deliveries) {
-        std::exchange(delivery, nullptr)(); // and frees what it owns, which its result does not need
-    }
     if (taken.dropped_events > 0) {
         for (const auto& [number, session] : sessions_) {
             if (!session->events.empty()) {
@@ -66,7 +63,7 @@ void Streams::deliver(runtime::Outbox::Taken taken) {
             }
         }
     }
-    snapshots_.deliver(std::move(taken.pictures));
+    snapshots_.deliver(std::move(taken.snapshots));
 }
 
 void Streams::publish(v1::Event event) {

@@ -44,13 +44,13 @@ class Streams {
 
     /// Called by the simulation thread with its events: puts them into the outbox if a session is subscribed to events.
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
-    /// Runs the deliveries from the outbox, and keeps the snapshots for send_some().
+    /// Keeps the snapshots for send_some(), and counts dropped events.
     void deliver(runtime::Outbox::Taken taken);
     /// Distributes the next islands of snapshots to the sessions. true: more are left for another call.
     bool send_some(runtime::Clock::time_point now) { return snapshots_.distribute(now); }
     /// Sends an event to the sessions that are subscribed to it.
     void publish(v1::Event event);
-    /// Sends the event that the server is going away to all sessions.
+    /// Sends the event that the server is shutting down to all sessions.
     void announce_end();
     /// Ends all sessions after they have received what is queued.
     void end_sessions();

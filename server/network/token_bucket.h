@@ -1,4 +1,4 @@
-// Token bucket: how many things may be done in the long run, and how many at once.
+// Token bucket: a rate limit with an average rate and a burst.
 //
 // Owner        a session, for what its client sends.
 #pragma once
@@ -13,13 +13,13 @@ class TokenBucket {
   public:
     using Clock = runtime::Clock;
 
-    /// per_s  tokens that come in a second, > 0.
-    /// burst  tokens that it holds, and has at first, >= 1.
+    /// per_s  tokens added per second, > 0.
+    /// burst  capacity and initial number of tokens, >= 1.
     TokenBucket(double per_s, double burst, Clock::time_point now)
         : per_s_{per_s}, burst_{burst}, tokens_{burst}, filled_{now} {}
 
-    /// Takes so many tokens, or the whole burst for more than that and the rest of those that come; false: there are
-    /// not as many, and none was taken.
+    /// Takes so many tokens. A request above `burst` takes the whole burst and leaves a debt. false: too few tokens,
+    /// none was taken.
     bool take(double tokens, Clock::time_point now) {
         tokens_ = std::min(burst_, tokens_ + per_s_ * std::chrono::duration<double>{now - filled_}.count());
         filled_ = now;
@@ -29,10 +29,10 @@ class TokenBucket {
         tokens_ -= tokens;
         return true;
     }
-    /// Takes them whether they are there or not.
+    /// Takes tokens even if there are too few.
     void charge(double tokens) { tokens_ -= tokens; }
 
-    /// How long it takes for so many to come. Whoever has to wait had better wait for a few, not for one at a time.
+    /// The time until so many tokens are available. A waiting session should wait for several tokens at once.
     Clock::duration time_for(double tokens) const {
         return std::chrono::ceil<Clock::duration>(std::chrono::duration<double>{tokens / per_s_});
     }

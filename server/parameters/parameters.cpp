@@ -1,10 +1,10 @@
 #include "server/parameters/parameters.h"
 
 #include "server/base/elementary.h"
+#include "server/base/number_text.h"
 #include "server/base/overloaded.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -15,6 +15,7 @@ namespace evod::parameters {
 namespace {
 
 using base::Effect;
+using base::number_text;
 using base::Overloaded;
 
 // clang-format off
@@ -38,12 +39,6 @@ std::vector<ParameterDescription> make_registry() {
     using base::count_max;
     return {EVOD_MODEL_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
                 EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
-}
-
-std::string number_text(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return {text, end};
 }
 
 /// Sets one parameter, or returns what is wrong with the value.

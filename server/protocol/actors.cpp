@@ -18,7 +18,7 @@ v1::Actor actor_of(std::string_view by) {
         return actor_of_kind(v1::ACTOR_KIND_SERVER);
     }
     v1::Actor actor = actor_of_kind(v1::ACTOR_KIND_CLIENT);
-    if (const auto end = by.find(": "); end != std::string_view::npos) { // no client's name contains it
+    if (const auto end = by.find(": "); end != std::string_view::npos) { // no client's name contains ": "
         actor.set_user(std::string{by.substr(0, end)});
         by.remove_prefix(end + 2);
     }

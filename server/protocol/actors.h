@@ -1,7 +1,7 @@
-// Actors: who caused something, as a message.
+// Actors: the cause of a change, as a message.
 //
-// The simulation and run files keep it as text: "user: client address", "client address" of a client without a token,
-// "evod" of the server itself.
+// Simulation and run files store it as text: "user: client address", "client address" for a client without a token,
+// "evod" for the server itself.
 #pragma once
 
 #include "evod/v1/world.pb.h"
@@ -12,12 +12,12 @@ namespace evod::protocol {
 
 constexpr std::string_view by_the_server = "evod";
 
-/// by  in that form.
+/// by  in the text form above.
 v1::Actor actor_of(std::string_view by);
 v1::Actor actor_of_kind(v1::ActorKind kind);
 
-/// Removes client and address from each Actor in the message and in the messages within: viewers are not told other
-/// clients' programs and addresses.
+/// Removes client and address from every Actor in the message, at any depth. Viewers must not see other clients'
+/// programs and addresses.
 void keep_users_only(google::protobuf::Message& message);
 
 } // namespace evod::protocol

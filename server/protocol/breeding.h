@@ -1,4 +1,4 @@
-// How a generation was bred, as clients read it.
+// Breeding records as messages.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -7,12 +7,12 @@
 
 namespace evod::protocol {
 
-/// Rows of each list of a Breeding.
+/// Rows per list of a Breeding.
 constexpr std::uint32_t breeding_rows_max = 1000;
 
 evolution::WantedRows wanted_rows(const v1::GetBreeding& request);
 
-/// parameters  as they held.
+/// parameters  as they were when the generation bred.
 v1::Breeding to_proto(const evolution::BreedingRecord& record, const parameters::Parameters& parameters);
 
 } // namespace evod::protocol

@@ -1,5 +1,6 @@
 #include "server/protocol/commands.h"
 
+#include "server/base/number_text.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
 #include "server/protocol/refusals.h"
@@ -15,14 +16,15 @@
 namespace evod::protocol {
 namespace {
 
+using base::number_text;
 using base::Violation;
 using Violations = std::vector<Violation>;
 using RequestCase = v1::Request::KindCase;
 
 constexpr const char* least_1 = "at least 1";
 
-/// A repeated name is wrong anyway, so nobody needs more assignments than there are parameters. Without this bound, the
-/// longest request would keep the simulation waiting.
+/// More assignments than parameters must repeat a name, which is invalid anyway. This bound keeps the longest request
+/// from blocking the simulation.
 bool too_many(int assignments, std::string field, Violations& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
@@ -55,7 +57,8 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
         }
         if (missing.empty()) {
             command.first_population = first_population_of(request, missing);
-            const auto faults = simulation::faults_of(command.first_population, command.parameters, "create_world.population");
+            const auto faults =
+                simulation::faults_of(command.first_population, command.parameters, "create_world.population");
             missing.insert(missing.end(), faults.begin(), faults.end());
             command.schedule = to_schedule(request.schedule(), command.parameters, "create_world.", missing);
         }
@@ -64,7 +67,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
     return command;
 }
 
-/// A command that destroys something names its world: an empty field may have been forgotten.
+/// A destructive command must name its world: the client may have forgotten the field.
 void need_world(const std::string& world, const char* field, Violations& violations) {
     if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});
@@ -117,7 +120,7 @@ simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violat
     switch (request.speed().kind_case()) {
     case v1::Speed::kRealTimeFactor: {
         const double factor = request.speed().real_time_factor();
-        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) { // a NaN is in no range
+        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) { // false for NaN
             violations.push_back({"set_speed.speed.real_time_factor",
                                   number_text(simulation::speed_min) + " to " + number_text(simulation::speed_max),
                                   number_text(factor)});
@@ -150,7 +153,7 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
     }
     if (request.has_at_generation() && request.has_at_tick()) {
         violations.push_back(
-            {"set_parameters.at_tick", "nothing beside at_generation", std::to_string(request.at_tick())});
+            {"set_parameters.at_tick", "absent if at_generation is set", std::to_string(request.at_tick())});
     } else if (request.has_at_generation()) {
         command.at = parameters::PlannedMoment{.generation = request.at_generation(), .tick = {}};
     } else if (request.has_at_tick()) {
@@ -180,7 +183,7 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
 }
 
 void add_faults(const v1::View& view, const std::string& path, Violations& violations) {
-    const v1::Region& region = view.region(); // all 0 without one
+    const v1::Region& region = view.region(); // all fields 0 if absent
     const auto finite = [&](const char* field, double value) {
         if (!std::isfinite(value)) {
             violations.push_back({path + ".region." + field, "a finite number", number_text(value)});
@@ -198,7 +201,7 @@ void add_faults(const v1::View& view, const std::string& path, Violations& viola
         positive("height_px", region.height_px());
     }
     if (!v1::Detail_IsValid(view.detail())) {
-        violations.push_back({path + ".detail", "one of Detail's", std::to_string(view.detail())});
+        violations.push_back({path + ".detail", "a value of Detail", std::to_string(view.detail())});
     }
     const std::uint64_t bytes = view.bytes_per_s_max();
     if (view.has_bytes_per_s_max() && (bytes < view_bytes_per_s_least || bytes > view_bytes_per_s_most)) {
@@ -213,11 +216,11 @@ void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
         violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(request.rate_hz())});
     }
     if (!v1::Codec_IsValid(request.codec())) {
-        violations.push_back({"subscribe_snapshots.codec", "one of Codec's", std::to_string(request.codec())});
+        violations.push_back({"subscribe_snapshots.codec", "a value of Codec", std::to_string(request.codec())});
     }
     if (!v1::Compression_IsValid(request.compression())) {
         violations.push_back(
-            {"subscribe_snapshots.compression", "one of Compression's", std::to_string(request.compression())});
+            {"subscribe_snapshots.compression", "a value of Compression", std::to_string(request.compression())});
     } else if (request.compression() == v1::COMPRESSION_ZSTD && request.codec() != v1::CODEC_DELTA) {
         violations.push_back({"subscribe_snapshots.codec", "CODEC_DELTA (2) with COMPRESSION_ZSTD (2)",
                               std::to_string(request.codec())});
@@ -240,7 +243,7 @@ void add_faults(const v1::SetView& request, Violations& violations) {
     if (request.has_view()) {
         add_faults(request.view(), "set_view.view", violations);
     } else {
-        violations.push_back({"set_view.view", "a view; an empty one is of everything", "nothing"});
+        violations.push_back({"set_view.view", "a view; an empty view shows the whole island", "nothing"});
     }
 }
 
@@ -249,70 +252,22 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
         return number != 0 && words->FindValueByNumber(number) != nullptr;
     };
     if (!is_word(v1::RunTable_descriptor(), request.table())) {
-        violations.push_back({"export_run.table", "one of RunTable's, from 1", std::to_string(request.table())});
+        violations.push_back({"export_run.table", "a value of RunTable, from 1", std::to_string(request.table())});
     }
     if (!is_word(v1::TextFormat_descriptor(), request.format())) {
-        violations.push_back({"export_run.format", "one of TextFormat's, from 1", std::to_string(request.format())});
+        violations.push_back({"export_run.format", "a value of TextFormat, from 1", std::to_string(request.format())});
     }
     if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION) {
-        violations.push_back({"export_run.generation", "only of the population", std::to_string(request.generation())});
+        violations.push_back(
+            {"export_run.generation", "absent except for the population", std::to_string(request.generation())});
     }
     if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE) {
-        violations.push_back(
-            {"export_run.of", "only of the lineage", "one of generation " + std::to_string(request.of().generation())});
+        violations.push_back({"export_run.of", "absent except for the lineage",
+                              "generation " + std::to_string(request.of().generation())});
     }
 }
 
 } // namespace
-
-RequestKind kind_of(const v1::Request& request) {
-    switch (request.kind_case()) {
-    case RequestCase::kCreateWorld:
-    case RequestCase::kDeleteWorld:
-    case RequestCase::kResetWorld:
-    case RequestCase::kRun:
-    case RequestCase::kRunUntilTick:
-    case RequestCase::kReleaseLease:
-    case RequestCase::kPause:
-    case RequestCase::kResume:
-    case RequestCase::kSetSpeed:
-    case RequestCase::kSetParameters:
-    case RequestCase::kCancelChange:
-    case RequestCase::kForkWorld:
-        return RequestKind::Command;
-    case RequestCase::kListWorlds:
-    case RequestCase::kGetParameters:
-    case RequestCase::kGetStatistics:
-    case RequestCase::kGetHistory:
-    case RequestCase::kGetOrganism:
-    case RequestCase::kDescribe:
-    case RequestCase::kGetMetrics:
-    case RequestCase::kGetBreeding:
-    case RequestCase::kGetPopulation:
-    case RequestCase::kGetMotion:
-        return RequestKind::Query;
-    case RequestCase::kSubscribeSnapshots:
-    case RequestCase::kSubscribeEvents:
-    case RequestCase::kUnsubscribe:
-    case RequestCase::kRequestKeyframe:
-    case RequestCase::kSetView:
-        return RequestKind::Subscription;
-    case RequestCase::kOpenReplay:
-    case RequestCase::kSeek:
-    case RequestCase::kCloseReplay:
-        return RequestKind::Past;
-    case RequestCase::kExportRun:
-    case RequestCase::kContinueExport:
-        return RequestKind::Export;
-    case RequestCase::kRenewLease:
-        return RequestKind::Lease;
-    case RequestCase::kShutDown:
-        return RequestKind::Server;
-    case RequestCase::KIND_NOT_SET:
-        break;
-    }
-    return RequestKind::Unknown;
-}
 
 base::Result<simulation::Command> to_command(const v1::Request& request, const Draws& draws) {
     Violations violations;
@@ -397,7 +352,7 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
     } else if (request.has_seek() && !request.seek().has_to()) {
         violations.push_back({"seek.to", "a moment of the run", "nothing"});
     } else if (request.has_close_replay() && request.close_replay().world().empty()) {
-        violations.push_back({"close_replay.world", "a world that was opened with open_replay", "nothing"});
+        violations.push_back({"close_replay.world", "a world opened with open_replay", "nothing"});
     } else if (request.has_export_run()) {
         add_faults(request.export_run(), violations);
     }
@@ -414,7 +369,7 @@ base::Refusal invalid(std::vector<base::Violation> violations) {
     const Violation& first = refusal.violations.front();
     refusal.message = refusal.violations.size() == 1
                           ? first.field + " must be " + first.allowed + ", not " + quotable(first.got)
-                          : std::to_string(refusal.violations.size()) + " fields are not as they must be";
+                          : std::to_string(refusal.violations.size()) + " fields are invalid";
     return refusal;
 }
 

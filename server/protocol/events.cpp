@@ -14,7 +14,7 @@ using base::Overloaded;
 
 namespace {
 
-/// planned  PlannedChange::id; 0: of the schedule.
+/// planned  PlannedChange::id; 0: a change of the schedule.
 v1::Actor planner(std::uint64_t planned, const std::string& by) {
     return planned == 0 ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(by);
 }
@@ -22,19 +22,19 @@ v1::Actor planner(std::uint64_t planned, const std::string& by) {
 } // namespace
 
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory) {
-    v1::Event told;
-    told.set_world(event.world);
-    told.set_run_id(to_text(event.run_id));
-    told.set_tick(event.tick);
+    v1::Event message;
+    message.set_world(event.world);
+    message.set_run_id(to_text(event.run_id));
+    message.set_tick(event.tick);
     std::visit(Overloaded{
                    [&](const simulation::GenerationFinished& finished) {
-                       auto& to = *told.mutable_generation_finished();
+                       auto& to = *message.mutable_generation_finished();
                        for (const auto& statistics : finished.statistics) {
                            *to.add_statistics() = to_proto(statistics);
                        }
                    },
                    [&](const simulation::MigrationHappened& migration) {
-                       auto& to = *told.mutable_migration();
+                       auto& to = *message.mutable_migration();
                        to.set_generation(migration.generation);
                        for (const auto& edge : migration.edges) {
                            auto& to_edge = *to.add_edges();
@@ -44,15 +44,15 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        }
                    },
                    [&](const simulation::Extinction& extinction) {
-                       auto& to = *told.mutable_extinction();
+                       auto& to = *message.mutable_extinction();
                        to.set_island(extinction.island);
                        to.set_generation(extinction.generation);
                    },
                    [&](const simulation::RunTerminated& terminated) {
-                       told.mutable_run_terminated()->set_outcome(to_proto(terminated.outcome));
+                       message.mutable_run_terminated()->set_outcome(to_proto(terminated.outcome));
                    },
                    [&](const simulation::ParametersChanged& changed) {
-                       auto& to = *told.mutable_parameters_changed();
+                       auto& to = *message.mutable_parameters_changed();
                        *to.mutable_by() = planner(changed.planned, changed.by);
                        to.set_revision(changed.revision);
                        to.set_planned_change(changed.planned);
@@ -64,7 +64,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        }
                    },
                    [&](const simulation::ChangeDropped& dropped) {
-                       auto& to = *told.mutable_change_dropped();
+                       auto& to = *message.mutable_change_dropped();
                        *to.mutable_by() = planner(dropped.planned, dropped.by);
                        to.set_planned_change(dropped.planned);
                        to.mutable_name()->Assign(dropped.names.begin(), dropped.names.end());
@@ -74,7 +74,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                                                       .violations();
                    },
                    [&](const simulation::GoalReached&) {
-                       auto& to = *told.mutable_run_control_changed();
+                       auto& to = *message.mutable_run_control_changed();
                        *to.mutable_by() = actor_of_kind(v1::ACTOR_KIND_GOAL);
                        if (const auto entry = laboratory.find(event.world)) {
                            *to.mutable_world() = to_proto(**entry);
@@ -82,69 +82,70 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                },
                event.kind);
-    return told;
+    return message;
 }
 
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory) {
-    v1::Event told;
-    told.set_world(applied.world);
-    told.set_tick(applied.tick);
+    v1::Event message;
+    message.set_world(applied.world);
+    message.set_tick(applied.tick);
     const auto entry = laboratory.find(applied.world);
     if (entry) {
-        told.set_run_id(to_text((*entry)->run_id));
+        message.set_run_id(to_text((*entry)->run_id));
     }
-    const auto tell_world = [&](auto& to) {
+    const auto set_world = [&](auto& to) {
         *to.mutable_by() = actor_of(by);
         if (entry) {
             *to.mutable_world() = to_proto(**entry);
         }
     };
-    std::visit(Overloaded{
-                   [&](const simulation::CreateWorld&) { tell_world(*told.mutable_world_created()); },
-                   [&](const simulation::ForkWorld&) { tell_world(*told.mutable_world_created()); },
-                   [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
-                   [&](const simulation::DeleteWorld&) { *told.mutable_world_deleted()->mutable_by() = actor_of(by); },
-                   [&](const simulation::SetParameters& set) {
-                       if (set.dry_run) {
-                           return;
-                       }
-                       if (applied.planned) {
-                           *told.mutable_change_planned()->mutable_change() = to_proto(*applied.planned);
-                           return;
-                       }
-                       if (!applied.parameters) {
-                           return;
-                       }
-                       auto& to = *told.mutable_parameters_changed();
-                       *to.mutable_by() = actor_of(by);
-                       to.set_revision(applied.parameters->revision);
-                       for (const auto& assignment : set.assignments) {
-                           if (const auto* description = parameters::find_parameter(assignment.name)) {
-                               *to.add_changed() = state_of(*description, *applied.parameters);
-                           }
-                       }
-                   },
-                   [&](const simulation::CancelChange&) {
-                       auto& to = *told.mutable_change_cancelled();
-                       *to.mutable_by() = actor_of(by);
-                       if (applied.planned) {
-                           *to.mutable_change() = to_proto(*applied.planned);
-                       }
-                   },
-                   [&](const auto&) { tell_world(*told.mutable_run_control_changed()); },
-               },
-               command);
-    if (told.kind_case() == v1::Event::KIND_NOT_SET) {
+    std::visit(
+        Overloaded{
+            [&](const simulation::CreateWorld&) { set_world(*message.mutable_world_created()); },
+            [&](const simulation::ForkWorld&) { set_world(*message.mutable_world_created()); },
+            [&](const simulation::ResetWorld&) { set_world(*message.mutable_world_reset()); },
+            [&](const simulation::DeleteWorld&) { *message.mutable_world_deleted()->mutable_by() = actor_of(by); },
+            [&](const simulation::SetParameters& set) {
+                if (set.dry_run) {
+                    return;
+                }
+                if (applied.planned) {
+                    *message.mutable_change_planned()->mutable_change() = to_proto(*applied.planned);
+                    return;
+                }
+                if (!applied.parameters) {
+                    return;
+                }
+                auto& to = *message.mutable_parameters_changed();
+                *to.mutable_by() = actor_of(by);
+                to.set_revision(applied.parameters->revision);
+                for (const auto& assignment : set.assignments) {
+                    if (const auto* description = parameters::find_parameter(assignment.name)) {
+                        *to.add_changed() = state_of(*description, *applied.parameters);
+                    }
+                }
+            },
+            [&](const simulation::CancelChange&) {
+                auto& to = *message.mutable_change_cancelled();
+                *to.mutable_by() = actor_of(by);
+                if (applied.planned) {
+                    *to.mutable_change() = to_proto(*applied.planned);
+                }
+            },
+            [&](const auto&) { set_world(*message.mutable_run_control_changed()); },
+        },
+        command);
+    if (message.kind_case() == v1::Event::KIND_NOT_SET) {
         return std::nullopt;
     }
-    return told;
+    return message;
 }
 
 v1::Event event_of(const simulation::Storage& storage) {
-    v1::Event told;
-    *told.mutable_storage_changed()->mutable_storage() = to_proto(storage);
-    return told;
+    v1::Event message;
+    *message.mutable_storage_changed()->mutable_storage() = to_proto(storage);
+    return message;
 }
 
 } // namespace evod::protocol

@@ -1,4 +1,4 @@
-// Events as messages: those of the laboratory, those that commands are, and news of the disk.
+// Events as messages: events of the laboratory, of commands, and of the disk.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -10,16 +10,16 @@
 
 namespace evod::protocol {
 
-/// laboratory  in which it has just happened.
+/// laboratory  in the state right after the event.
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory);
 
-/// What to tell everyone of a command that was applied; nullopt for a dry run.
+/// The event for subscribers after a command was applied; nullopt for a dry run.
 ///
-/// by  who sent it, as actor_of() takes it.
+/// by  the sender, as actor_of() takes it.
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory);
 
-/// It stands so with the disk from now on.
+/// The event for a new state of the disk.
 v1::Event event_of(const simulation::Storage& storage);
 
 } // namespace evod::protocol

@@ -149,7 +149,7 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
         }
     }
     if (!complete) {
-        // The request is refused whatever the world says, so the rest is judged on its own.
+        // The request is refused in any case, so check the other assignments without the world.
         for (const parameters::Assignment& assignment : made) {
             if (auto fault = parameters::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));
@@ -178,10 +178,11 @@ parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
             return parameters::fault_of({value.name(), parameters::ParameterValue{0u}});
         }
         if (!can_be_scheduled(*description)) {
-            return base::Violation{{}, "one value: it can change only at a reset", "a scheduled one"};
+            return base::Violation{
+                {}, "no scheduled values, because it only changes with a reset", "a scheduled value"};
         }
         if (value.generation() < 2) {
-            return base::Violation{{}, "a generation from 2 on", std::to_string(value.generation())};
+            return base::Violation{{}, "a generation from 2", std::to_string(value.generation())};
         }
         if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             return base::Violation{{}, description->allowed(), "no value"};

@@ -1,4 +1,4 @@
-// Parameters to and from messages.
+// Converts parameters, schedules and planned changes to messages and back.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -18,22 +18,22 @@ v1::ParameterValue to_proto(const parameters::ParameterValue& value);
 v1::ParameterDescription to_proto(const parameters::ParameterDescription& description);
 v1::ParameterSet to_proto(const parameters::ParameterSet& set);
 
-/// What is planned for the generations after that one.
+/// The scheduled values of later generations.
 google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters::Schedule& schedule,
                                                                 std::uint64_t after_generation);
 
 v1::PlannedChange to_proto(const parameters::PlannedChange& change);
 
-/// What holds, and what is waiting, of one parameter.
+/// The current and the pending value of one parameter.
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);
 
-/// Assignments that have a value each. Those without are added to `violations`, and then so is whatever is wrong with
-/// the others on their own; what is wrong with them otherwise is found by parameters::assign, which knows the world.
+/// The assignments that have a value. Those without a value are added to `violations`; then all other assignments are
+/// checked on their own, too. parameters::assign checks what depends on the world.
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations);
 
-/// The schedule of a world that begins with these parameters, which are valid; what is wrong is added to `violations`.
+/// The schedule of a world that begins with these valid parameters. Invalid values are added to `violations`.
 parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,
                                  const parameters::Parameters& parameters, std::string_view field_prefix,
                                  std::vector<base::Violation>& violations);

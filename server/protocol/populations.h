@@ -1,4 +1,4 @@
-// Populations: what a world is given to begin with ⇄ messages.
+// Converts first populations to messages and back.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -8,8 +8,8 @@
 
 namespace evod::protocol {
 
-/// nullptr where the request has none, or where the numbers of an island are no whole number of chromosomes, which is
-/// then added to the violations.
+/// nullptr if the request has none, or if the numbers of an island are not a whole number of chromosomes; the latter is
+/// added to `violations`.
 simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
                                                 std::vector<base::Violation>& violations);
 

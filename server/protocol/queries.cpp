@@ -1,13 +1,17 @@
 #include "server/protocol/queries.h"
 
 #include "proto/codec/little_endian.h"
+#include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/parameters.h"
+#include "server/protocol/refusals.h"
+#include "server/protocol/request_rules.h"
 #include "server/protocol/worlds.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 namespace evod::protocol {
 namespace {
@@ -15,13 +19,13 @@ namespace {
 base::Refusal no_such(const char* what, std::string field, std::uint64_t count, std::uint64_t got,
                       base::Reason reason) {
     return {.code = base::RefusalCode::NotFound,
-            .message = std::string{"there is no such "} + what,
+            .message = std::string{"no such "} + what,
             .violations = {{std::move(field), count == 0 ? "none" : "0 to " + std::to_string(count - 1),
                             std::to_string(got)}},
             .reason = reason};
 }
 
-/// An island of a world, by the names of a query.
+/// Finds world and island of a query.
 struct Found {
     const simulation::World& world;
     const simulation::Island& island;
@@ -39,7 +43,7 @@ base::Result<Found> find_island(const simulation::Laboratory& laboratory, const 
     return Found{(*entry)->world, islands[island]};
 }
 
-/// One number of 4 bytes of each row, little-endian, after what is there.
+/// Appends one little-endian 4-byte number per row.
 template <class Rows, class Of>
 void append_column(std::string& bytes, const Rows& rows, Of&& of) {
     std::size_t at = bytes.size();
@@ -59,7 +63,7 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
             *list.add_worlds() = to_proto(*entry);
         }
     }
-    // Which world was created first is not known after a restart.
+    // The order of creation is not known after a restart.
     std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
               [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
     return list;
@@ -260,6 +264,80 @@ base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, con
                        base::Reason::IslandNotFound);
     }
     return Watched{(*entry)->name, island_count};
+}
+
+QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
+                       v1::Response& response) {
+    const auto refuse = [&](const base::Refusal& refused) {
+        *response.mutable_status() = to_proto(with_paths(refused, name_of(request)));
+    };
+    const auto put = [&]<class Message>(base::Result<Message> result, Message* (v1::Response::*field)()) {
+        if (result) {
+            *(response.*field)() = *std::move(result);
+        } else {
+            refuse(result.error());
+        }
+    };
+    switch (request.kind_case()) {
+    case v1::Request::kListWorlds:
+        *response.mutable_worlds() = list_worlds(laboratory);
+        break;
+    case v1::Request::kGetParameters:
+        put(get_parameters(laboratory, request.get_parameters()), &v1::Response::mutable_parameters);
+        break;
+    case v1::Request::kGetStatistics:
+        put(get_statistics(laboratory, request.get_statistics()), &v1::Response::mutable_statistics);
+        break;
+    case v1::Request::kGetOrganism:
+        put(get_organism(laboratory, request.get_organism()), &v1::Response::mutable_organism);
+        break;
+    case v1::Request::kGetMotion:
+        put(get_motion(laboratory, request.get_motion()), &v1::Response::mutable_motion);
+        break;
+    case v1::Request::kGetHistory: {
+        if (auto part = get_history(laboratory, request.get_history())) {
+            return *std::move(part);
+        } else {
+            refuse(part.error());
+        }
+        break;
+    }
+    case v1::Request::kGetPopulation: {
+        if (auto rows = get_population(laboratory, request.get_population())) {
+            return *std::move(rows);
+        } else {
+            refuse(rows.error());
+        }
+        break;
+    }
+    default:
+        refuse(base::refusal(base::RefusalCode::Unimplemented, "not a query of the simulation",
+                             base::Reason::RequestUnknown));
+        break;
+    }
+    if (users_only) {
+        keep_users_only(response);
+    }
+    return {};
+}
+
+void put_rows(const QueryRows& rows, v1::Response& response) {
+    if (const auto* part = std::get_if<HistoryPart>(&rows)) {
+        *response.mutable_history() = to_proto(*part);
+    } else if (const auto* columns = std::get_if<PopulationRows>(&rows)) {
+        *response.mutable_population() = to_proto(*columns);
+    }
+}
+
+std::size_t row_bytes_max(const v1::Request& request) {
+    switch (request.kind_case()) {
+    case v1::Request::kGetHistory:
+        return history_statistics_max * sizeof(simulation::GenerationStatistics);
+    case v1::Request::kGetPopulation:
+        return population_rows_max * population_row_bytes;
+    default:
+        return 0;
+    }
 }
 
 } // namespace evod::protocol

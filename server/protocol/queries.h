@@ -1,19 +1,23 @@
 // Answers to queries, read from the laboratory between two ticks.
+//
+// Threads      get_…() and find_…() run on the simulation thread, to_proto() on the network thread.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
 #include "server/base/result.h"
 #include "server/simulation/laboratory.h"
 
+#include <cstddef>
 #include <optional>
+#include <variant>
 #include <vector>
 
 namespace evod::protocol {
 
-/// Answers to a history query at most so many GenerationStatistics, but a whole generation at least.
+/// The most GenerationStatistics in an answer, but at least one whole generation.
 constexpr std::size_t history_statistics_max = 1000;
 
-/// Organisms in an answer to a population query at most.
+/// The most organisms in an answer.
 constexpr std::size_t population_rows_max = 10'000;
 
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory);
@@ -21,23 +25,23 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query);
 base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query);
 
-/// Part of a world's history, shared with it, so that the simulation need not wait for messages to be made.
+/// A part of a world's history that shares its memory, so that the simulation does not wait for the conversion.
 struct HistoryPart {
     std::vector<simulation::GenerationRows> generations;
     std::optional<std::uint32_t> island; // nullopt: all
     std::optional<std::uint64_t> next_generation;
-    bool begins_late = false; // some of those that were asked for are not kept any more
+    bool begins_late = false; // some requested generations are no longer kept
 };
 base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
 v1::History to_proto(const HistoryPart& part);
 
-/// Organisms of an island, copied as they lie for the same reason.
+/// Copied columns of an island's organisms, so that the simulation does not wait for the conversion.
 struct PopulationRows {
     std::uint64_t generation, generation_tick;
     std::uint32_t organism_count, first;
     std::vector<evolution::Chromosome> genes;
     std::vector<evolution::Parents> parents; // empty in the first generation
-    std::vector<std::uint32_t> founders;     // empty where the world does not know
+    std::vector<std::uint32_t> founders;     // empty if the world does not know them
     std::vector<simulation::Intention> intentions;
 };
 constexpr std::size_t population_row_bytes =
@@ -47,7 +51,20 @@ v1::Population to_proto(const PopulationRows& rows);
 
 base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query);
 
-/// The world that is to be watched, as found by name.
+/// The copied rows of an answer that is converted later; monostate: the answer is complete.
+using QueryRows = std::variant<std::monostate, HistoryPart, PopulationRows>;
+
+/// Answers a query that reads the laboratory. A refusal goes into the response.
+///
+/// users_only  the client may not see other clients' programs and addresses.
+QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
+                       v1::Response& response);
+/// Converts the rows and adds them to the response.
+void put_rows(const QueryRows& rows, v1::Response& response);
+/// The most bytes of the rows that answer_query() copies.
+std::size_t row_bytes_max(const v1::Request& request);
+
+/// The world of a subscription, found by name.
 struct Watched {
     std::string world;
     std::uint32_t island_count;

@@ -1,15 +1,14 @@
 #include "server/protocol/refusals.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace evod::protocol {
 namespace {
 
-// Enough of them to mend a request; a hostile one should not be answered with megabytes.
-constexpr std::size_t violations_told_max = 200;
+// Enough to correct a request; a hostile request must not get megabytes in return.
+constexpr std::size_t violations_listed_max = 200;
 
-/// Of a refusal without one, where its code has a single reason.
+/// The default reason of a code, for refusals without a reason.
 base::Reason reason_of(const base::Refusal& refusal) {
     if (refusal.reason != base::Reason::Unspecified) {
         return refusal.reason;
@@ -36,16 +35,16 @@ v1::Status to_proto(const base::Refusal& refusal) {
     status.set_reason(static_cast<v1::Reason>(reason_of(refusal)));
     status.set_message(quotable(refusal.message, 2000));
     for (const base::Violation& violation : refusal.violations) {
-        if (static_cast<std::size_t>(status.violations_size()) == violations_told_max) {
+        if (static_cast<std::size_t>(status.violations_size()) == violations_listed_max) {
             status.mutable_message()->append(" (" + std::to_string(refusal.violations.size()) +
-                                             " fields are wrong; the first " + std::to_string(violations_told_max) +
+                                             " fields are invalid; the first " + std::to_string(violations_listed_max) +
                                              " are listed)");
             break;
         }
-        v1::Violation& told = *status.add_violations();
-        told.set_field(quotable(violation.field, 200));
-        told.set_allowed(quotable(violation.allowed, 2000));
-        told.set_got(violation.got.empty() ? "nothing" : quotable(violation.got, 200));
+        v1::Violation& listed = *status.add_violations();
+        listed.set_field(quotable(violation.field, 200));
+        listed.set_allowed(quotable(violation.allowed, 2000));
+        listed.set_got(violation.got.empty() ? "nothing" : quotable(violation.got, 200));
     }
     return status;
 }
@@ -59,8 +58,8 @@ v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal) {
 
 namespace {
 
-/// Bytes of the character that `text` begins with, if it steers a terminal, ends a line or turns the order of what
-/// follows; else 0.
+/// The bytes of the first character of `text` if it controls a terminal, ends a line or changes the text direction;
+/// else 0.
 std::size_t steering_bytes(std::string_view text) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
     const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
@@ -85,7 +84,7 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
     if (cut) {
         std::size_t end = bytes_max;
         while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
-            --end; // not in the middle of a character
+            --end; // not within a character
         }
         text = text.substr(0, end);
     }
@@ -96,12 +95,6 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
         text.remove_prefix(std::max<std::size_t>(steering, 1));
     }
     return cut ? quoted + "…" : quoted;
-}
-
-std::string number_text(double value) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value);
-    return {digits, end.ptr};
 }
 
 base::Refusal with_paths(base::Refusal refused, const std::string& request_name) {

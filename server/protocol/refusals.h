@@ -1,4 +1,4 @@
-// Refusals as clients read them, and what is quoted in them.
+// Refusals as messages, and text from clients made safe for messages and logs.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -11,17 +11,14 @@ namespace evod::protocol {
 
 v1::Status to_proto(const base::Refusal& refusal);
 
-/// A response that says no.
+/// A response with a refusal.
 v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal);
 
-/// Text from outside as it may stand in a message or a log: control characters become '?', and of more than
-/// `bytes_max` bytes the rest is "…". Valid UTF-8 stays valid.
+/// Text from a client as a message or log may contain it: control characters become '?', and a text above `bytes_max`
+/// bytes ends in "…". Valid UTF-8 stays valid.
 std::string quotable(std::string_view text, std::size_t bytes_max = 64);
 
-/// Shortest text that reads back as the same number: "0.1", "nan".
-std::string number_text(double value);
-
-/// The core names fields of a command; clients know them by their path in the request.
+/// Prefixes the field names of the core with the request, as clients spell them: "set_parameters.mutation_chance".
 base::Refusal with_paths(base::Refusal refused, const std::string& request_name);
 
 } // namespace evod::protocol

@@ -1,6 +1,6 @@
 #include "server/replay/mismatch.h"
 
-#include "server/protocol/refusals.h"
+#include "server/base/number_text.h"
 
 #include <algorithm>
 #include <span>
@@ -14,13 +14,13 @@ using simulation::IslandState;
 using Found = std::optional<Mismatch>;
 
 std::string text_of(double value) {
-    return protocol::number_text(value + 0.0); // SQLite stores −0 as 0
+    return base::number_text(value + 0.0); // SQLite keeps −0 as 0
 }
 /// "3 4.5 6"
 template <class... Numbers>
 std::string text_of_numbers(Numbers... numbers) {
     std::string text;
-    ((text += (text.empty() ? "" : " ") + protocol::number_text(static_cast<double>(numbers) + 0.0)), ...);
+    ((text += (text.empty() ? "" : " ") + base::number_text(static_cast<double>(numbers) + 0.0)), ...);
     return text;
 }
 std::string text_of(std::uint64_t value) {

@@ -1,4 +1,4 @@
-// Clock: where the shells ask the time, so that tests can set it. The core never asks.
+// Clock: the time source of everything outside the core; tests set it. The core reads no clock.
 #pragma once
 
 #include <chrono>

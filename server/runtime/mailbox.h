@@ -1,12 +1,13 @@
-// Mailbox: commands and queries on their way to the simulation thread, in the order in which they came.
+// Mailbox: commands and queries on their way to the simulation thread, in order of arrival.
 //
-// Threads      pushed to by any, drained by the simulation thread between two ticks.
-// Full         at `mailbox_commands_max` waiting, the next is refused; its sender is told "busy" at once.
+// Threads      any thread pushes; the simulation thread drains it between two ticks.
+// Full         at `mailbox_commands_max` entries try_push() fails and the sender gets REASON_SERVER_BUSY.
 #pragma once
 
 #include "server/base/result.h"
 #include "server/replay/stored_run.h"
 #include "server/runtime/clock.h"
+#include "server/runtime/commands.h"
 #include "server/simulation/laboratory.h"
 
 #include <atomic>
@@ -21,31 +22,12 @@ namespace evod::runtime {
 
 constexpr std::size_t mailbox_commands_max = 1024;
 
-/// The answer to a command, and how to give it to whoever waits for it.
-struct CommandAnswer {
-    std::string frame;
-    std::function<void()> give; // called on the simulation thread or the storage thread; must not block
-};
-
-/// Called on the simulation thread as soon as the command is applied or refused: what it reads of the laboratory is the
-/// state in which the command begins to hold. The answer is given at once, or when the command is on the disk.
-///
-/// command  as applied: it names its world.
-using CommandReply = std::function<CommandAnswer(const simulation::Laboratory&, const simulation::Command& command,
-                                                 const base::Result<simulation::Applied>&)>;
-
-struct CommandMail {
-    simulation::Command command;
-    run_file::Origin origin;
-    CommandReply reply;
-};
-
-/// A client reads; called on the simulation thread between two ticks, when the query budget allows it. Commands do not
-/// wait for it, so a session sends nothing more until it is answered.
+/// A query. The simulation thread calls it between two ticks, when the query budget allows. Commands do not wait for
+/// queries, so a session sends nothing more until its query is answered.
 struct QueryMail {
     std::function<void(const simulation::Laboratory&)> ask;
 };
-/// Another part of the server continues on the simulation thread; must be short.
+/// A short call of another part of the server on the simulation thread.
 struct CallMail {
     std::function<void()> call;
 };
@@ -94,18 +76,18 @@ class Mailbox {
   public:
     explicit Mailbox(std::size_t capacity = mailbox_commands_max) : capacity_{capacity} {}
 
-    /// false: full, and nothing was taken from `mail`.
+    /// false: full; `mail` is unchanged.
     bool try_push(Mail&& mail);
-    /// The same however full: for what is bounded elsewhere, and must not be lost.
+    /// Ignores the capacity, for entries that are bounded elsewhere and must not be lost.
     void push(Mail&& mail);
 
-    /// Makes wait() return: something else than mail wants to be looked at.
+    /// Makes wait() return without mail.
     void wake();
 
-    /// Whether there is something to drain or a wake() to mind; cheap enough to ask after every tick.
+    /// Whether there is mail or a wake() that drain() has not seen; cheap enough for every tick.
     bool pending() const { return pending_.load(std::memory_order_acquire); }
 
-    /// Everything that waits, oldest first. `emptied` lends its memory.
+    /// Everything that waits, oldest first. The result reuses the memory of `emptied`.
     std::vector<Mail> drain(std::vector<Mail> emptied = {});
 
     struct Fill {
@@ -113,7 +95,7 @@ class Mailbox {
     };
     Fill fill() const;
 
-    /// Returns when there is mail, after a wake(), or at `until`; nullopt is never.
+    /// Returns when there is mail, after a wake(), or at `until`; nullopt: no time limit.
     void wait(std::optional<Clock::time_point> until);
 
   private:
@@ -121,7 +103,7 @@ class Mailbox {
 
     const std::size_t capacity_;
     std::atomic<bool> pending_ = false;
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::vector<Mail> waiting_;
 };

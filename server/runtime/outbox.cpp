@@ -5,16 +5,24 @@
 
 namespace evod::runtime {
 
-void Outbox::answer(Delivery delivery) {
+void Outbox::answer(Call call) {
+    add(std::move(call));
+}
+
+void Outbox::done(CommandDone done) {
+    add(std::move(done));
+}
+
+void Outbox::add(Delivery delivery) {
     std::unique_lock lock{mutex_};
     waiting_.deliveries.push_back(std::move(delivery));
     added(std::move(lock));
 }
 
-void Outbox::event(Delivery delivery) {
+void Outbox::event(Call call) {
     std::unique_lock lock{mutex_};
     if (events_waiting_ < events_max_) {
-        waiting_.deliveries.push_back(std::move(delivery));
+        waiting_.deliveries.push_back(std::move(call));
         ++events_waiting_;
     } else {
         ++waiting_.dropped_events;
@@ -22,15 +30,15 @@ void Outbox::event(Delivery delivery) {
     added(std::move(lock));
 }
 
-void Outbox::picture(SnapshotPtr snapshot) {
+void Outbox::snapshot(SnapshotPtr snapshot) {
     std::unique_lock lock{mutex_};
     const bool after_change = snapshot->after_change;
     const auto same_world =
-        std::find_if(waiting_.pictures.begin(), waiting_.pictures.end(),
-                     [&](const Picture& picture) { return picture.snapshot->world == snapshot->world; });
-    SnapshotPtr replaced; // released after the lock, as that may give its memory back
-    if (same_world == waiting_.pictures.end()) {
-        waiting_.pictures.push_back({std::move(snapshot), 0, after_change});
+        std::find_if(waiting_.snapshots.begin(), waiting_.snapshots.end(),
+                     [&](const NewestSnapshot& other) { return other.snapshot->world == snapshot->world; });
+    SnapshotPtr replaced; // released after the lock, because releasing may free memory
+    if (same_world == waiting_.snapshots.end()) {
+        waiting_.snapshots.push_back({std::move(snapshot), 0, after_change});
     } else {
         replaced = std::exchange(same_world->snapshot, std::move(snapshot));
         ++same_world->replaced_count;

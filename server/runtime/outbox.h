@@ -1,58 +1,64 @@
-// Outbox: what the simulation thread hands to the network thread: answers and events in order, and the newest pictures.
+// Outbox: what the simulation thread hands to the network thread: answers and events in order, and the newest
+// snapshots.
 //
-// Threads      filled by the simulation thread, taken by the network thread, which `wake` calls for.
-// Full         answers are at most as many as the mailbox and the sessions let in, and news of the disk a few a second.
-//              Of events `events_max` wait; more are dropped and counted. Of each world the newest picture waits; the
-//              ones it replaced are counted.
+// Threads      the simulation thread fills it, and the storage thread adds answers to journaled commands. The network
+//              thread takes everything after `wake`.
+// Full         the mailbox and the sessions bound the answers. Of events, `events_max` wait; further ones are dropped
+//              and counted. Of each world only the newest snapshot waits; replaced ones are counted.
 #pragma once
 
+#include "server/runtime/commands.h"
 #include "server/runtime/snapshot.h"
 
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <variant>
 #include <vector>
 
 namespace evod::runtime {
 
 constexpr std::size_t outbox_events_max = 4096;
 
-/// Run on the network thread.
-using Delivery = std::function<void()>;
+/// An answer to a query, or an event: called on the network thread.
+using Call = std::function<void()>;
+using Delivery = std::variant<Call, CommandDone>;
 
 class Outbox {
   public:
-    /// wake  called on the simulation thread when the outbox is no longer empty; must not block.
+    /// wake  called on the filling thread when the outbox is no longer empty; must not block.
     explicit Outbox(std::function<void()> wake, std::size_t events_max = outbox_events_max)
         : wake_{std::move(wake)}, events_max_{events_max} {}
 
-    void answer(Delivery delivery);
-    void event(Delivery delivery);
-    void picture(SnapshotPtr snapshot);
+    void answer(Call call);
+    void done(CommandDone done);
+    void event(Call call);
+    void snapshot(SnapshotPtr snapshot);
 
-    struct Picture {
+    struct NewestSnapshot {
         SnapshotPtr snapshot;
-        std::uint64_t replaced_count = 0; // pictures of the world that this one replaced here
-        bool after_change = false;        // one of them, or this, showed a change by command or goal
+        std::uint64_t replaced_count = 0; // snapshots of the world that this one replaced here
+        bool after_change = false;        // this snapshot or a replaced one shows the effect of a command or goal
     };
     struct Taken {
         std::vector<Delivery> deliveries;
-        std::uint64_t dropped_events = 0; // since the last time
-        std::vector<Picture> pictures;    // at most one of a world
+        std::uint64_t dropped_events = 0;      // since the last take()
+        std::vector<NewestSnapshot> snapshots; // at most one per world
     };
     Taken take();
 
     struct Fill {
-        std::size_t deliveries = 0, events = 0, events_max = 0; // events are among the deliveries
+        std::size_t deliveries = 0, events = 0, events_max = 0; // deliveries include the events
     };
     Fill fill() const;
 
   private:
+    void add(Delivery delivery);
     void added(std::unique_lock<std::mutex> lock);
 
     const std::function<void()> wake_;
     const std::size_t events_max_;
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     Taken waiting_;
     std::size_t events_waiting_ = 0;
     bool woken_ = false;

@@ -164,7 +164,7 @@ void Replays::read_and_seek(const replay::StoredRun& run, const std::optional<re
                             replay::RecordedUntil known, std::uint64_t owner, SeekDone done, const Begun& begun) {
     if (pending_.size() + seeks_.size() >= seeks_max) {
         return done(
-            refusal(RefusalCode::ResourceExhausted, "too many seeks are under way: try again", base::Reason::PastsMax));
+            refusal(RefusalCode::ResourceExhausted, "too many seeks are under way: try again", base::Reason::ReplaysMax));
     }
     const std::uint64_t number = ++last_seek_;
     pending_.emplace(number, PendingSeek{.owner = owner, .begun = begun, .done = std::move(done)});
@@ -288,7 +288,7 @@ void Replays::open(const OpenReplay& request, const ReplayReply& reply) {
                                                     " replays open already: close one first"
                                               : "all clients together have " + std::to_string(replays_of_all_max) +
                                                     " replays open already: try again when one of them is closed",
-                                          base::Reason::PastsMax));
+                                          base::Reason::ReplaysMax));
     }
     const std::string name = (*origin)->replays_another_world() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;

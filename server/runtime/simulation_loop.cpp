@@ -3,6 +3,8 @@
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/log/log.h"
+#include "server/protocol/answers.h"
+#include "server/protocol/events.h"
 
 #include <algorithm>
 #include <memory>
@@ -18,24 +20,30 @@ Clock::duration seconds(double s) {
 
 constexpr std::chrono::milliseconds measuring_time{1000};
 
-void give(const CommandAnswer& answer) {
-    if (answer.give) {
-        answer.give();
-    }
-}
-
-/// How many ticks may come between two looks at the clock, where one takes so long.
+/// How many ticks to take between two readings of the clock, for a given length of a tick.
 std::uint32_t ticks_a_look(Clock::duration tick) {
     constexpr std::int64_t most = 100;
     return static_cast<std::uint32_t>(
         tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_looks / tick, 1, most) : 1);
 }
 
-/// Whether it builds a world, and changes nothing before that is done.
+/// Whether the command builds a world and changes nothing before that succeeds.
 bool builds_a_world(const simulation::Command& command) {
     return std::holds_alternative<simulation::CreateWorld>(command) ||
            std::holds_alternative<simulation::ResetWorld>(command) ||
            std::holds_alternative<simulation::ForkWorld>(command);
+}
+
+/// What a command does to the run of its world.
+enum class RunEffect { Begins, BeginsAsFork, BeginsAgain, Ends, Continues };
+
+RunEffect effect_of(const simulation::Command& command) {
+    return std::visit(base::Overloaded{[](const simulation::CreateWorld&) { return RunEffect::Begins; },
+                                       [](const simulation::ForkWorld&) { return RunEffect::BeginsAsFork; },
+                                       [](const simulation::ResetWorld&) { return RunEffect::BeginsAgain; },
+                                       [](const simulation::DeleteWorld&) { return RunEffect::Ends; },
+                                       [](const auto&) { return RunEffect::Continues; }},
+                      command);
 }
 
 bool changes_something(const simulation::Command& command) {
@@ -65,15 +73,15 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
 }
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
-    mind_mail();
+    poll_mailbox();
     answer_queries();
-    mind_demand();
-    mind_storage();
+    poll_demand();
+    poll_storage();
     follow_worlds();
 
-    // Paced worlds that live first: they have a time to keep.
+    // Paced live worlds first, because they have due times.
     std::optional<Clock::time_point> next;
-    std::optional<Clock::time_point> in_time; // the same of those that keep their pace
+    std::optional<Clock::time_point> in_time; // of the worlds that keep their pace
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
     if (waiting_since_ && !laboratory_.storage()->worlds_wait()) {
         at_latest(*waiting_since_ + slow_disk_patience);
@@ -101,7 +109,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
             in_time = in_time ? std::min(*in_time, track.due) : track.due;
         }
     }
-    // The others share what is left until then, journeys like a world.
+    // The others share the time until then; all seeks together count as one world.
     const auto wants_share = [&](const simulation::Entry& entry) {
         return !has_to_be_in_time(entry) && wants_tick(entry) &&
                (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
@@ -127,12 +135,12 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         }
     }
     if (replays_.under_way()) {
-        // A world that cannot keep its pace anyway shares the processor with them.
+        // Seeks share the processor with worlds that cannot keep their pace anyway.
         const auto end = end_of_share(in_time);
         replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
-    mind_arrivals();
+    announce_finished_seeks();
     if (const auto again = answer_queries()) { // until the next tick is due
         at_latest(*again);
     }
@@ -152,13 +160,13 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     return next;
 }
 
-void SimulationLoop::mind_arrivals() {
-    follow_worlds(); // there may be new ones
+void SimulationLoop::announce_finished_seeks() {
+    follow_worlds(); // a seek may have opened a replay
     for (const std::string& name : replays_.take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
-            continue; // closed since
+            continue; // closed in the meantime
         }
         track->second.changed = true;
         outputs_.events(laboratory_,
@@ -166,7 +174,7 @@ void SimulationLoop::mind_arrivals() {
     }
 }
 
-void SimulationLoop::mind_mail() {
+void SimulationLoop::poll_mailbox() {
     if (!mailbox_.pending()) {
         return;
     }
@@ -175,7 +183,7 @@ void SimulationLoop::mind_mail() {
         std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
                                     [this](QueryMail& query) { queries_.push_back(std::move(query)); },
                                     [](CallMail& call) { call.call(); },
-                                    [this](ReplayMail& mail) { replays_.apply(std::move(mail)); },
+                                    [this](ReplayMail& past) { replays_.apply(std::move(past)); },
                                     [this](FindRun& run) { replays_.find_run(run); }},
                    mail);
     }
@@ -188,7 +196,7 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
     }
     auto now = clock_.now();
     const auto end = now + slice;
-    bool woken = false; // perhaps for something else than mail, which the rest of a pass looks at
+    bool woken = false; // the wake-up may be for something other than mail, so the rest of the pass must run
     while (!queries_.empty()) {
         if (now >= end) {
             return now;
@@ -203,7 +211,7 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
             query_budget_.spend(now - began);
         }
         if (mailbox_.pending()) {
-            mind_mail();     // commands do not wait for the queries of others
+            poll_mailbox();  // commands do not wait for queries
             follow_worlds(); // a command may have created a world
             woken = true;
         }
@@ -228,7 +236,7 @@ bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
 }
 
 void SimulationLoop::apply(CommandMail& mail) {
-    // From here on the command names its world, so that it means the same when it is read again.
+    // From here on the command names its world explicitly, so that a rerun of the journal finds the same world.
     std::visit(
         [this](auto& command) {
             if constexpr (requires { command.world; }) {
@@ -271,7 +279,7 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     }
     const simulation::Entry* entry = entry_in(command);
     const bool only_a_look =
-        entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
+        entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // replays are not journaled
     if (only_a_look) {
         return std::nullopt;
     }
@@ -317,7 +325,7 @@ void SimulationLoop::fork(CommandMail& mail) {
     if (*command.at_generation == origin->world.moment().generation) {
         return answer(mail, fork_at_opening(false), before);
     }
-    // Others are served meanwhile.
+    // The seek runs in slices, so other clients are served meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
     replays_.begin_seek(origin->name, generation, [this, waiting, before](base::Result<Replays::SeekResult> arrival) {
@@ -335,47 +343,65 @@ void SimulationLoop::fork(CommandMail& mail) {
 
 void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                             const std::optional<RunBefore>& before) {
-    tell_events();
-    CommandAnswer answer = mail.reply(laboratory_, mail.command, applied);
-    if (recorder_ && applied && changes_something(mail.command)) {
-        record(mail, *applied, std::move(answer), before);
-    } else {
-        give(answer);
-    }
+    publish_events();
     if (applied) {
         if (const auto track = tracks_.find(applied->world); track != tracks_.end()) {
             track->second.changed = true;
         }
     }
+    CommandDone done = done_of(std::move(mail), applied);
+    if (recorder_ && applied && changes_something(done.mail.command)) {
+        record(std::move(done), before);
+    } else {
+        outputs_.done(std::move(done));
+    }
 }
 
-void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
-                            const std::optional<RunBefore>& before) {
-    const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
+CommandDone SimulationLoop::done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const {
+    CommandDone done{.mail = std::move(mail), .outcome = applied, .frame = {}};
+    done.frame = protocol::frame_of(
+        protocol::answer_of(done.mail.origin.request_id, done.mail.request_name, laboratory_, applied));
+    if (!applied) {
+        return done;
+    }
+    if (const auto entry = laboratory_.find(applied->world); entry && (*entry)->control.leased) {
+        done.lease = (*entry)->control.lease;
+    }
+    if (demand_.events_wanted()) {
+        done.event = protocol::event_of(done.mail.command, *applied, done.mail.origin.client, laboratory_);
+    }
+    return done;
+}
+
+void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& before) {
+    const simulation::Applied applied = *done.outcome;
+    const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
     if (entry && (*entry)->replay) {
-        return give(answer); // how somebody looks at the past is nobody else's
+        return outputs_.done(std::move(done)); // the journal holds no commands to replays
     }
-    recording::CommandRecord command{.tick = applied.tick,
-                                     .control = ends ? simulation::RunControl{} : (*entry)->control,
-                                     .origin = std::move(mail.origin),
-                                     .answer = std::move(answer.frame),
-                                     .done = std::move(answer.give)};
-    if (ends) {
-        recorder_->end(applied.world, before->run_id, std::move(command));
-    } else if (std::holds_alternative<simulation::CreateWorld>(mail.command)) {
-        recorder_->begin(**entry, std::move(command));
-    } else if (std::holds_alternative<simulation::ForkWorld>(mail.command)) {
-        recorder_->begin_fork(**entry, before->run_id, std::move(command), executor_);
-    } else if (std::holds_alternative<simulation::ResetWorld>(mail.command)) {
-        recorder_->begin_again(**entry, before->run_id, before->tick, std::move(command));
-    } else {
-        recorder_->of(applied.world)->journal(std::move(command));
+    recording::CommandRecord record{.tick = applied.tick,
+                                    .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
+                                    .origin = done.mail.origin,
+                                    .answer = done.frame};
+    // The storage thread hands the command on once it is on the disk.
+    record.done = [hand_on = outputs_.done, done = std::move(done)]() mutable { hand_on(std::move(done)); };
+    switch (effect) {
+    case RunEffect::Begins:
+        return recorder_->begin(**entry, std::move(record));
+    case RunEffect::BeginsAsFork:
+        return recorder_->begin_fork(**entry, before->run_id, std::move(record), executor_);
+    case RunEffect::BeginsAgain:
+        return recorder_->begin_again(**entry, before->run_id, before->tick, std::move(record));
+    case RunEffect::Ends:
+        return recorder_->end(applied.world, before->run_id, std::move(record));
+    case RunEffect::Continues:
+        return recorder_->of(applied.world)->journal(std::move(record));
     }
 }
 
 void SimulationLoop::close() {
-    mind_mail();
+    poll_mailbox();
     while (!queries_.empty()) {
         answer_query();
     }
@@ -384,7 +410,7 @@ void SimulationLoop::close() {
     }
 }
 
-void SimulationLoop::mind_demand() {
+void SimulationLoop::poll_demand() {
     if (!demand_.changed()) {
         return;
     }
@@ -395,11 +421,11 @@ void SimulationLoop::mind_demand() {
     }
 }
 
-void SimulationLoop::mind_storage() {
+void SimulationLoop::poll_storage() {
     if (!recorder_) {
         return;
     }
-    // In this order, for room is made before trouble is over.
+    // Read trouble() before has_room(): the storage thread makes room before it clears the trouble.
     const auto trouble = recorder_->trouble();
     worlds_wait_ = !recorder_->has_room();
     if (!worlds_wait_ || trouble) {
@@ -422,7 +448,7 @@ void SimulationLoop::mind_storage() {
     if (now.worlds_wait() && !before.worlds_wait()) {
         log::warn("worlds wait for the disk: {}", now.reason);
     } else if (before.worlds_wait() && !now.worlds_wait()) {
-        log::info("worlds go on");
+        log::info("worlds continue");
     }
     laboratory_.set_storage(now);
     outputs_.storage(now);
@@ -455,12 +481,12 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     if (recorder_) {
         track.recorder = recorder_->of(entry.name);
     }
-    // A short wait is part of its pace.
+    // A short wait for the disk counts as running.
     const bool wants_tick = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait());
     const double tick_s = entry.world.parameters().active.tick_s;
-    const bool anew = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
-    if (wants_tick && (anew || !track.running)) {
-        // Its clock starts now: it owes nothing for the time in which it stood, or went at another speed.
+    const bool restarts = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
+    if (wants_tick && (restarts || !track.running)) {
+        // Restart the pace: the time before the pause or at another speed does not count.
         track.due = clock_.now();
         track.measured_since = track.due;
         track.ticks = 0;
@@ -470,7 +496,7 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     if (!wants_tick) {
         entry.ticks_per_s = 0;
         entry.slowed = false;
-        track.changed |= track.running; // as when it is paused
+        track.changed |= track.running; // as after Pause
     }
     track.run_id = entry.run_id;
     track.speed = entry.control.speed;
@@ -499,7 +525,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             }
             ++taken;
             stopped = !entry.wants_tick();
-            tell_events();
+            publish_events();
         } while (!paced && taken < track.ticks_a_look && !stopped && !mailbox_.pending());
         track.ticks += taken;
         if (stopped) {
@@ -520,14 +546,14 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             track.counted->tick_time.add(spent / taken, taken);
         }
         track.ticks_a_look = ticks_a_look(spent / taken);
-        mind_checkpoint(entry, track, spent);
+        make_due_checkpoint(entry, track, spent);
         if (stopped || now >= end || (paced && track.due > now)) {
             return;
         }
     } while (!mailbox_.pending() && !demand_.changed());
 }
 
-void SimulationLoop::mind_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
+void SimulationLoop::make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
     if (!track.recorder || !track.recorder->checkpoint_due(entry.world, spent)) {
         return;
     }
@@ -538,7 +564,7 @@ void SimulationLoop::mind_checkpoint(const simulation::Entry& entry, Track& trac
 
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {
     const std::chrono::duration<double> passed = now - track.measured_since;
-    // The first figure comes soon, for somebody may be waiting to see one.
+    // Report the first figure early, because a user may be waiting for it.
     if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time)) {
         return;
     }
@@ -559,8 +585,8 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
     const bool newcomer = track.newcomers_served != watch.newcomers;
     const auto between = seconds(1 / watch.rate_hz);
     if (!newcomer && !track.changed) {
-        // A tenth early rather than a whole tick late: ticks do not fall exactly on a picture's time.
-        if (entry.world.moment().tick == track.pictured_tick || now + between / 10 < track.next_picture) {
+        // A snapshot may come 10 % early rather than a whole tick late, because ticks rarely fall on its time.
+        if (entry.world.moment().tick == track.shown_tick || now + between / 10 < track.next_snapshot) {
             return;
         }
     }
@@ -577,21 +603,21 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
         }
     }
     const auto began = clock_.now();
-    outputs_.picture(pool_.take(entry, island_indices_, track.changed));
+    outputs_.snapshot(pool_.take(entry, island_indices_, track.changed));
     if (track.counted) {
-        track.counted->picture_time.add(clock_.now() - began);
+        track.counted->snapshot_time.add(clock_.now() - began);
     }
-    // Kept on a grid, so that the rate holds on average; begun anew after a pause or a picture out of turn.
-    track.next_picture += between;
-    if (newcomer || track.changed || track.next_picture <= now) {
-        track.next_picture = now + between;
+    // Snapshots keep to a grid, so that the average rate holds. The grid restarts after a pause or an extra snapshot.
+    track.next_snapshot += between;
+    if (newcomer || track.changed || track.next_snapshot <= now) {
+        track.next_snapshot = now + between;
     }
     track.newcomers_served = watch.newcomers;
     track.changed = false;
-    track.pictured_tick = entry.world.moment().tick;
+    track.shown_tick = entry.world.moment().tick;
 }
 
-void SimulationLoop::tell_events() {
+void SimulationLoop::publish_events() {
     auto events = laboratory_.take_events();
     if (!events.empty()) {
         outputs_.events(laboratory_, std::move(events));

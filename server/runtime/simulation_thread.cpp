@@ -13,13 +13,13 @@ SimulationThread::SimulationThread(Mailbox& mailbox, StreamDemand& demand, base:
     , recorder_{recorder}
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
     , thread_{[this] {
-        pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
+        pthread_setname_np(pthread_self(), "simulation"); // the name in `top -H`
         if (recorder_) {
             recorder_->when_changed([this] { mailbox_.wake(); });
         }
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
-            // A pass takes the call to stop for mail if it came after the look at it above.
+            // A stop() after the check above looks like mail to the pass, so check again before waiting.
             if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending())) {
                 mailbox_.wait(next);
             }

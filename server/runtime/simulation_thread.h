@@ -1,5 +1,4 @@
-// Simulation thread: the one that owns all worlds. Sleeps when nothing is due, no mail comes and the disk
-// has no news.
+// Simulation thread: owns all worlds. Sleeps while no world is due, no mail arrives and the disk state does not change.
 #pragma once
 
 #include "server/runtime/simulation_loop.h"
@@ -13,16 +12,16 @@ namespace evod::runtime {
 
 class SimulationThread {
   public:
-    /// Starts. Everything handed in outlives the thread.
+    /// Starts the thread. Everything handed in outlives it.
     SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                      LoopOutputs outputs, simulation::Laboratory laboratory = {},
                      recording::Recorder* recorder = nullptr, std::optional<Replays::FileReplay> replay = {});
     ~SimulationThread() { stop(); }
 
-    /// Minds the mail that waits and ends; returns when it has.
+    /// Handles the remaining mail and ends the thread.
     void stop();
 
-    /// To ask the system about it; not after stop().
+    /// For CPU-time queries; not after stop().
     pthread_t handle() { return thread_.native_handle(); }
 
   private:

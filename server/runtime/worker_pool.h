@@ -1,8 +1,8 @@
-// Worker pool: the executor that a server gives to the core.
+// Worker pool: the executor that the server gives to the core.
 //
-// Threads      `threads` of them work at once, the one that starts a loop included. oneTBB does the scheduling; where
-//              ThreadSanitizer has to see everything, tests/support's ThreadExecutor does (EVOD_THREAD_EXECUTOR).
-// Determinism  the pieces are those that Executor promises, whoever runs them.
+// Threads      up to `threads` work at once, including the calling thread. oneTBB schedules them; under ThreadSanitizer
+//              the ThreadExecutor of tests/support does (EVOD_THREAD_EXECUTOR).
+// Determinism  the pieces are those that Executor promises, whichever thread computes them.
 #pragma once
 
 #include "server/base/executor.h"
@@ -12,7 +12,7 @@
 
 namespace evod::runtime {
 
-/// threads  >= 1; 1 runs every loop on its caller and starts nothing.
+/// threads  >= 1; with 1 every loop runs on its caller and no thread starts.
 std::unique_ptr<base::Executor> make_executor(std::size_t threads);
 
 } // namespace evod::runtime

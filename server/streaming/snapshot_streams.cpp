@@ -154,8 +154,8 @@ runtime::WorldDemands SnapshotStreams::demand() const {
     return worlds;
 }
 
-void SnapshotStreams::deliver(std::vector<runtime::Outbox::Picture> snapshots) {
-    for (runtime::Outbox::Picture& snapshot : snapshots) {
+void SnapshotStreams::deliver(std::vector<runtime::Outbox::NewestSnapshot> snapshots) {
+    for (runtime::Outbox::NewestSnapshot& snapshot : snapshots) {
         const auto of = std::ranges::find_if(in_progress_, [&](const InProgress& other) {
             return other.snapshot.snapshot->world == snapshot.snapshot->world;
         });

@@ -52,7 +52,7 @@ class SnapshotStreams {
     runtime::WorldDemands demand() const;
 
     /// Accepts snapshots for distribute(). Of each world a newer snapshot replaces one that waits here.
-    void deliver(std::vector<runtime::Outbox::Picture> snapshots);
+    void deliver(std::vector<runtime::Outbox::NewestSnapshot> snapshots);
     /// Distributes the next islands to the queues and has them sent. true: more islands are left for another call.
     bool distribute(runtime::Clock::time_point now);
 
@@ -71,12 +71,12 @@ class SnapshotStreams {
     };
     /// A snapshot whose islands are being distributed.
     struct InProgress {
-        runtime::Outbox::Picture snapshot;
+        runtime::Outbox::NewestSnapshot snapshot;
         bool begun = false;
         runtime::Clock::time_point began = {};
         std::size_t next_island = 0;                       // in the snapshot
         std::set<GroupName> groups = {};                   // that receive it
-        std::optional<runtime::Outbox::Picture> next = {}; // a newer snapshot of the same world
+        std::optional<runtime::Outbox::NewestSnapshot> next = {}; // a newer snapshot of the same world
     };
     struct Viewer {
         SnapshotQueue* queue;

@@ -1,8 +1,10 @@
-// Any bytes a client may send as a message: parsed, judged and turned into a command, or refused with fields named.
+// Fuzzes requests: any bytes of a message are parsed, checked and converted into a command, or refused with field
+// names.
 #include "evod/v1/session.pb.h"
 #include "proto/codec/framing.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
+#include "server/protocol/request_rules.h"
 #include "server/simulation/world_name.h"
 
 #include <cstdlib>
@@ -15,10 +17,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const v1::Request& request = message->request();
     base::Refusal refusal;
-    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
+    if (protocol::kind_of(request) == v1::REQUEST_KIND_COMMAND) {
         const auto command = protocol::to_command(request, {.seed = {1}, .run_id = {2, 3}});
         if (command) {
-            // What the core is given must be right in itself.
+            // The core's input must be valid in itself.
             if (const auto* create = std::get_if<simulation::CreateWorld>(&*command)) {
                 if (!simulation::is_world_name(create->name) || !parameters::validate(create->parameters).empty()) {
                     std::abort();

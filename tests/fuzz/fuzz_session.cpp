@@ -1,9 +1,11 @@
-// Any script of what clients may do, on a server without threads, port and disk: connect, say hello, ask for anything
-// with fields right and wrong, send bytes in pieces, read or not, acknowledge, go; while the simulation and the time go
-// on when the script says so. What must hold at every step is told in watched_server.h and watching_client.h; in the
-// end every request is answered, every session ends when its client goes, and every world is as its twin.
+// Fuzzes sessions: a script of client actions on a server without threads, port and disk. Clients connect, send a
+// Hello, send requests with valid and invalid fields, send bytes in pieces, read or do not read, acknowledge and
+// disconnect. The script also advances the simulation and the clock. watched_server.h and watching_client.h check the
+// invariants after every step. In the end every request is answered, every session has ended after its client, and
+// every world equals its twin.
 //
-// An action is a byte for what (low half) and who (high half), the bytes it takes, and one for how it goes on.
+// An action is one byte for the kind (low half) and the client (high half), the bytes of its arguments, and one byte
+// for what follows.
 #include "server/log/log.h"
 #include "server/network/session.h"
 #include "server/parameters/parameters.h"
@@ -24,7 +26,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Small and short, unless the script says otherwise.
+/// Small and short by default.
 void make_light(v1::CreateWorld& create, Script& script) {
     struct Given {
         const char* name;
@@ -101,7 +103,7 @@ class Play {
         }
     }
 
-    /// Unless the script says otherwise, everything is sent, read, minded, answered and heard.
+    /// By default everything is sent, read, processed, answered and received.
     void go_on() {
         const auto how = script_.take();
         for (const auto& client : clients_) {
@@ -131,9 +133,9 @@ class Play {
         const bool refused = how % 16 == 15 || server_.going_away();
         std::array<int, 2> ends{};
         require(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0);
-        if (how % 16 >= 8) { // a narrow line, so that things have to wait
+        if (how % 16 >= 8) { // a small socket buffer, so that data has to wait
             const int bytes = 1;
-            require(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) == 0); // the least there is
+            require(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) == 0); // the smallest possible
         }
         clients_.push_back(std::make_unique<WatchingClient>(ends[0], answers_, refused));
         if (refused) {
@@ -197,7 +199,7 @@ class Play {
     }
 
     void end() {
-        // As long as that goes on, everybody is served. A frame that is cut in the middle stays so.
+        // Every client is served meanwhile. A frame that is cut off stays incomplete.
         constexpr int rounds_max = 1000;
         for (int round = 0;; ++round) {
             require(round < rounds_max);
@@ -226,13 +228,13 @@ class Play {
 
     bool is_through(const WatchingClient& client) const {
         if (client.closed()) {
-            // Nobody is sent away without a reason, and who says no more gets all answers.
+            // No session is closed without a reason, and a half-closed client gets all answers.
             require(client.end_announced() || client.may_have_stalled() || server_.going_away() ||
                     (client.finished() && (client.refused() || client.all_answered())));
             return true;
         }
         if (client.end_announced() || server_.going_away() || client.refused() || client.finished()) {
-            return false; // its end has yet to come
+            return false; // the end is still to come
         }
         return client.all_answered();
     }

@@ -1,4 +1,4 @@
-// Any text as a token file: tokens, which are written and read back the same, or a refusal.
+// Fuzzes the token file: any text gives tokens that survive a round trip, or a refusal.
 #include "server/access/token_file.h"
 
 #include <cstdlib>

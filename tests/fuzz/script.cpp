@@ -59,7 +59,7 @@ std::string text_for(const FieldDescriptor& field, Script& script) {
     return wanted < parameters.size() ? std::string{parameters[wanted].name} : "none";
 }
 
-/// Of a repeated field, one more.
+/// Adds an element to a repeated field.
 void fill(Message& message, const FieldDescriptor& field, Script& script) {
     const Reflection& reflection = *message.GetReflection();
     const auto put = [&](auto set, auto add, auto value) {
@@ -68,7 +68,7 @@ void fill(Message& message, const FieldDescriptor& field, Script& script) {
     switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_INT32:
     case FieldDescriptor::CPPTYPE_INT64:
-        break; // there are none
+        break; // none exist
     case FieldDescriptor::CPPTYPE_UINT32:
         return put(&Reflection::SetUInt32, &Reflection::AddUInt32, static_cast<std::uint32_t>(script.one_of(numbers)));
     case FieldDescriptor::CPPTYPE_UINT64:
@@ -79,7 +79,7 @@ void fill(Message& message, const FieldDescriptor& field, Script& script) {
         return put(&Reflection::SetFloat, &Reflection::AddFloat, static_cast<float>(script.take()));
     case FieldDescriptor::CPPTYPE_BOOL:
         return put(&Reflection::SetBool, &Reflection::AddBool, script.take() % 2 == 0);
-    case FieldDescriptor::CPPTYPE_ENUM: // of which there is one too many
+    case FieldDescriptor::CPPTYPE_ENUM: // with one undefined value
         return put(&Reflection::SetEnumValue, &Reflection::AddEnumValue,
                    script.take() % (field.enum_type()->value_count() + 1));
     case FieldDescriptor::CPPTYPE_STRING:

@@ -1,5 +1,5 @@
-// A script: bytes taken as numbers, and as the fields of messages. When they are used up they go on as zeros, which
-// leave fields out, so that every script ends.
+// A script: bytes read as numbers and as message fields. After its end it continues with zeros, which mean absent
+// fields, so every script ends.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -25,7 +25,7 @@ class Script {
         std::memcpy(&value, taken.data(), taken.size());
         return value;
     }
-    /// Fewer at the end.
+    /// Fewer near the end.
     std::string take_bytes(std::size_t count) {
         const auto taken = bytes_.first(std::min(count, bytes_.size()));
         bytes_ = bytes_.subspan(taken.size());
@@ -35,15 +35,15 @@ class Script {
     const T& one_of(const T (&choices)[count]) {
         return choices[take() % count];
     }
-    /// `likely` three times of four.
+    /// `likely` in three of four cases.
     bool rarely() { return take() % 4 == 3; }
 
   private:
     std::span<const std::uint8_t> bytes_;
 };
 
-/// Gives a message's fields values that are often those of something that is there, and now and then extreme ones. Of a
-/// oneof, at most one field.
+/// Fills the fields of a message, often with values of existing things and sometimes with extreme ones. Sets at most
+/// one field of a oneof.
 void fill(google::protobuf::Message& message, Script& script);
 
 } // namespace evod::fuzz

@@ -1,6 +1,7 @@
 #include "tests/fuzz/watched_server.h"
 
 #include "server/network/random_ids.h"
+#include "server/protocol/answers.h"
 #include "server/protocol/queries.h"
 #include "server/protocol/worlds.h"
 #include "tests/fuzz/valid_snapshot.h"
@@ -12,19 +13,19 @@
 #include <variant>
 #include <vector>
 
-// ---- what a script must not depend on --------------------------------------------------------------------------
+// ---- replacements that make a script reproducible --------------------------------------------------------------------------
 
 evod::support::ManualClock& evod::fuzz::clock() {
     static support::ManualClock clock;
     return clock;
 }
 
-// Taken instead of the library's by all of the program.
+// Replaces the library's function in the whole program.
 std::chrono::steady_clock::time_point std::chrono::steady_clock::now() noexcept {
     return evod::fuzz::clock().now();
 }
 
-// Asio lets the kernel tell it of timers, who has another clock; without that it looks at the time itself.
+// Asio normally uses timers of the kernel, which has another clock. Without timerfd it reads the clock itself.
 extern "C" int timerfd_create(int, int) noexcept {
     errno = ENOSYS;
     return -1;
@@ -34,7 +35,7 @@ namespace {
 std::uint64_t drawn = 0;
 } // namespace
 
-// Instead of server/network/random_ids.cpp.
+// Replaces server/network/random_ids.cpp.
 evod::base::Seed evod::network::draw_seed() {
     return {++drawn};
 }
@@ -45,7 +46,7 @@ evod::simulation::RunId evod::network::draw_run_id() {
 namespace evod::fuzz {
 namespace {
 
-/// Worlds beyond this would take a script's time; they are refused as if the machine were full.
+/// Larger worlds would take too long; the harness refuses them like a full machine.
 struct Bound {
     const char* parameter;
     double max;
@@ -79,7 +80,7 @@ bool too_large(const simulation::Command& command) {
     });
 }
 
-/// Decides only when a world advances.
+/// Such commands only decide when a world advances.
 bool is_run_control(const simulation::Command& command) {
     using namespace simulation;
     return std::holds_alternative<Run>(command) || std::holds_alternative<RunUntilTick>(command) ||
@@ -97,7 +98,8 @@ base::Result<access::Visitor> admit(const std::string& token) {
 }
 
 WatchedServer::WatchedServer()
-    : buffers_{network::client_buffer_bytes_max, [] { require(false); }} // which no script has a client leave unread
+    : send_memory_{network::client_buffer_bytes_max, [] { require(false); }}
+    // a script leaves less than this unread
     , outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
     , dispatcher_{context_,
@@ -113,7 +115,8 @@ WatchedServer::WatchedServer()
             executor_,
             clock(),
             {.events = streams_.outlet(outbox_),
-             .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }}} {
+             .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
+             .done = [this](runtime::CommandDone command) { done(std::move(command)); }}} {
     drawn = 0;
     host_.limits = network::limits_message({});
     host_.instance_id = "fuzz";
@@ -132,7 +135,7 @@ WatchedServer::WatchedServer()
 
 void WatchedServer::accept(int descriptor, const std::optional<base::Refusal>& refusal) {
     network::tcp::socket socket{context_};
-    socket.assign(network::tcp::v4(), descriptor); // of another family, which nobody asks for
+    socket.assign(network::tcp::v4(), descriptor); // another family, but no code reads it
     const auto session = std::make_shared<network::Session>(std::move(socket), host_, ++session_number_);
     ++connection_count_;
     if (!refusal) {
@@ -146,7 +149,7 @@ void WatchedServer::poll() {
     context_.poll();
     const auto now = clock().now();
     for (const auto& [number, session] : sessions_) {
-        session->mind_progress(now - polled_);
+        session->check_progress(now - polled_);
     }
     polled_ = now;
 }
@@ -169,27 +172,26 @@ void WatchedServer::watch_mail() {
         if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
             require(carried_out_.emplace(command->origin.client_key, command->origin.request_id).second);
             if (too_large(command->command)) {
-                command
-                    ->reply(loop_.laboratory(), command->command,
-                            base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large"))
-                    .give();
+                const base::Result<simulation::Applied> refused =
+                    base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large");
+                const v1::Response answer =
+                    protocol::answer_of(command->origin.request_id, command->request_name, loop_.laboratory(), refused);
+                outbox_.done({.mail = std::move(*command), .outcome = refused, .frame = protocol::frame_of(answer)});
                 continue;
             }
-            const auto before = std::make_shared<std::string>();
-            mailbox_.push(runtime::CallMail{[this, before] { *before = state_of_all(); }});
-            command->reply = [this, before, reply = std::move(command->reply)](
-                                 const simulation::Laboratory& laboratory, const simulation::Command& carried_out,
-                                 const base::Result<simulation::Applied>& applied) {
-                if (applied) {
-                    follow(carried_out, *applied);
-                } else {
-                    require(state_of_all() == *before);
-                }
-                return reply(laboratory, carried_out, applied);
-            };
+            mailbox_.push(runtime::CallMail{[this] { state_before_ = state_of_all(); }});
         }
         mailbox_.push(std::move(mail));
     }
+}
+
+void WatchedServer::done(runtime::CommandDone done) {
+    if (done.outcome) {
+        follow(done.mail.command, *done.outcome);
+    } else {
+        require(state_of_all() == state_before_);
+    }
+    outbox_.done(std::move(done));
 }
 
 std::string WatchedServer::state_of_all() const {
@@ -203,7 +205,7 @@ void WatchedServer::follow(const simulation::Command& command, const simulation:
     if (const auto* set = std::get_if<simulation::SetParameters>(&command); set != nullptr && set->dry_run) {
         return;
     }
-    // What stays is caught up with first.
+    // First advance twins that continue.
     const auto* fork = std::get_if<simulation::ForkWorld>(&command);
     if (fork != nullptr || std::holds_alternative<simulation::SetParameters>(command)) {
         const auto origin = loop_.laboratory().find(fork != nullptr ? fork->world : applied.world);
@@ -237,9 +239,11 @@ void WatchedServer::compare_with_twins() {
 }
 
 void WatchedServer::deliver() {
-    streams_.deliver(outbox_.take());
+    runtime::Outbox::Taken taken = outbox_.take();
+    dispatcher_.deliver(std::move(taken.deliveries));
+    streams_.deliver(std::move(taken));
     while (streams_.send_some(clock().now())) {
-        // Until nothing is left.
+        // Until none is left.
     }
 }
 

@@ -1,9 +1,7 @@
-// Watched server: everything of a server but its threads, its port and its disk, on a clock that only the owner moves,
-// and with an eye on every command.
+// Watched server: a server without threads, port and disk, with a manual clock, that checks every command.
 //
-// What must hold of commands is checked here: none runs twice; a refused one changes nothing; and every world is what
-// the parameters, its seed and the changes at their ticks make of it, as a twin of it shows that nobody watches, paces
-// or pauses.
+// Invariants: no command runs twice; a refused command changes nothing; every world equals a twin that is built from
+// the same parameters, seed and changes, and that is never viewed, paced or paused.
 //
 // Threads      none: poll() is the network thread's turn, pass() the simulation thread's.
 #pragma once
@@ -21,15 +19,16 @@
 
 namespace evod::fuzz {
 
-/// The time of the whole program, that of Asio's timers too.
+/// The clock of the whole program, including Asio's timers.
 support::ManualClock& clock();
 
 class WatchedServer {
   public:
     WatchedServer();
 
-    /// One end of a connection, whose other end it owns from now on.
-    /// refusal  told instead of a welcome.
+    /// Takes over one end of a connection.
+    ///
+    /// refusal  sent instead of a Welcome.
     void accept(int descriptor, const std::optional<base::Refusal>& refusal = {});
 
     void poll();
@@ -39,21 +38,22 @@ class WatchedServer {
     /// Connections whose sessions have not ended.
     std::size_t connection_count() const { return connection_count_; }
 
-    /// Every world as its twin says.
+    /// Asserts that every world equals its twin.
     void compare_with_twins();
 
   private:
-    /// Puts itself between the commands that wait and their answers.
+    /// Records the state of the worlds before each command that waits.
     void watch_mail();
+    void done(runtime::CommandDone done);
     void follow(const simulation::Command& command, const simulation::Applied& applied);
-    /// Its twin, at its tick.
+    /// Advances the twin to the world's tick.
     simulation::Entry& catch_up(const simulation::Entry& entry);
     std::string state_of_all() const;
     void deliver();
     void go_away();
 
     network::LimitCounters limit_counters_;
-    network::Buffers buffers_; // outlives the sessions
+    network::SendMemory send_memory_; // outlives the sessions
     boost::asio::io_context context_{1};
     base::InlineExecutor executor_;
     runtime::Mailbox mailbox_;
@@ -63,7 +63,7 @@ class WatchedServer {
     std::uint64_t session_number_ = 0;
     runtime::Clock::time_point polled_ = clock().now();
     std::size_t connection_count_ = 0;
-    network::SessionHost host_{limit_counters_, buffers_};
+    network::SessionHost host_{limit_counters_, send_memory_};
     network::Streams streams_;
     network::Dispatcher dispatcher_;
     runtime::SimulationLoop loop_;
@@ -71,9 +71,10 @@ class WatchedServer {
 
     simulation::Laboratory twins_;
     std::set<std::pair<std::string, std::uint64_t>> carried_out_; // client_key and request_id of commands
+    std::string state_before_;                                    // of all worlds, before the next command
 };
 
-/// Who comes with a token: "viewer", "controller" and "admin" are such.
+/// Authenticates the tokens "viewer", "controller" and "admin".
 base::Result<access::Visitor> admit(const std::string& token);
 
 } // namespace evod::fuzz

@@ -1,7 +1,7 @@
 #include "tests/fuzz/watching_client.h"
 
 #include "server/network/limits.h"
-#include "server/protocol/commands.h"
+#include "server/protocol/request_rules.h"
 #include "tests/fuzz/valid_snapshot.h"
 #include "tests/fuzz/watched_server.h"
 
@@ -19,11 +19,11 @@ namespace {
 /// Whether the simulation answers the request; it answers in order of arrival.
 bool goes_to_the_simulation(const v1::Request& request) {
     switch (protocol::kind_of(request)) {
-    case protocol::RequestKind::Command:
+    case v1::REQUEST_KIND_COMMAND:
         return true;
-    case protocol::RequestKind::Query:
+    case v1::REQUEST_KIND_QUERY:
         return !request.has_describe() && !request.has_get_metrics() && !request.has_get_breeding();
-    case protocol::RequestKind::Subscription:
+    case v1::REQUEST_KIND_SUBSCRIPTION:
         return request.has_subscribe_snapshots() || request.has_subscribe_events();
     default:
         return false;
@@ -111,7 +111,7 @@ void WatchingClient::said(const codec::Frame& frame) {
         return;
     }
     const v1::Request& request = message->request();
-    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
+    if (protocol::kind_of(request) == v1::REQUEST_KIND_COMMAND) {
         ++answers_.times_sent[{request.client_key(), request.request_id()}];
     }
     owed(request.request_id(), {.request = request, .place = ++place_});
@@ -204,9 +204,9 @@ void WatchingClient::heard(const v1::Response& response) {
 
 void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
     const v1::Request& request = asked.request;
-    require(role_ >= access::role_needed(request.kind_case(), false));
+    require(role_ >= access::role_needed(*protocol::rules_of(request), false));
     bool once = true;
-    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
+    if (protocol::kind_of(request) == v1::REQUEST_KIND_COMMAND) {
         require(response.has_applied_tick());
         const Answers::Command command{request.client_key(), request.request_id()};
         const std::string answer = response.SerializeAsString();

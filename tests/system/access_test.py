@@ -1,4 +1,4 @@
-"""Who gets in, and what they may do: tokens, roles and TLS over real sockets. EVOD and EVOCTL name the programs, MESSAGES
+"""Tokens, roles and TLS over real sockets. EVOD and EVOCTL name the programs, MESSAGES
 the folder of the message classes."""
 import csv
 import io
@@ -23,10 +23,10 @@ from past_test import EVOD, EVOCTL, c, plain
 
 from evod.v1 import session_pb2, world_pb2 as w  # noqa: E402  (its folder is in sys.path now)
 
-VIEWER, CONTROLLER, ADMIN = session_pb2.ROLE_VIEWER, session_pb2.ROLE_CONTROLLER, session_pb2.ROLE_ADMIN
+VIEWER, CONTROLLER, ADMIN = c.ROLE_VIEWER, c.ROLE_CONTROLLER, c.ROLE_ADMIN
 PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 16
 
-# The least role of every request: a new one has to be given its line here too.
+# The lowest role of every request, stated independently of commands.proto. Add new requests here, too.
 LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
     "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
@@ -48,7 +48,7 @@ def token_command(*words, data, status=0):
 
 
 class Client(past.Client):
-    """token: sent in the hello. come_from: an address of this machine. tls: a context, instead of in the clear."""
+    """token: sent in the Hello. come_from: an address of this machine. tls: a context; None: without TLS."""
 
     def __init__(self, server, token="", come_from="127.0.0.1", tls=None, host="localhost"):
         over = self.connected(server, come_from)
@@ -97,7 +97,7 @@ class Roles(Access):
         for role, name in NAMES.items():
             client = self.come(server, self.secrets[name])
             self.assertEqual((client.welcome.role, client.welcome.user), (role, NAMES[role]))
-            # The last one ends the server; an empty request does nothing, or is refused for what it lacks.
+            # ShutDown ends the server. An empty request does nothing, or is refused for missing fields.
             for request in sorted(requests, key="shut_down".__eq__):
                 if request == "shut_down" and role == ADMIN:
                     continue
@@ -151,7 +151,7 @@ class Roles(Access):
         after = viewer.world()
         self.assertEqual(after.SerializeToString(), before.SerializeToString())
 
-    def test_frames_of_those_who_create_no_worlds_are_shorter(self):
+    def test_only_admins_may_send_long_frames(self):
         tokens = {role: self.token(name, role) for name, role in (("ada", ADMIN), ("bob", CONTROLLER), ("eve", VIEWER))}
         server = self.serve("--require-token")
         for role, longest in ((ADMIN, 1 << 20), (CONTROLLER, 1 << 16), (VIEWER, 1 << 16)):
@@ -177,7 +177,7 @@ class Roles(Access):
             viewer.call(**request)
         viewer.call(PERMISSION_DENIED, run=c.Run(world="default"))
 
-    def test_everybody_is_told_who_did_it(self):
+    def test_events_name_their_actor(self):
         karl, anna = self.token("karl", CONTROLLER), self.token("anna", VIEWER)
         server = self.serve("--require-token")
         controller, viewer = self.come(server, karl), self.come(server, anna)
@@ -201,7 +201,7 @@ class Roles(Access):
 
 
 class Tokens(Access):
-    def test_on_the_loopback_interface_no_token_is_needed_and_one_is_minded(self):
+    def test_on_loopback_a_token_is_optional_but_respected(self):
         server = self.serve()
         self.assertEqual(self.come(server).welcome.role, ADMIN)
         self.assertEqual(self.come(server).welcome.user, "")
@@ -211,12 +211,12 @@ class Tokens(Access):
         self.assertEqual((client.welcome.role, client.welcome.user), (VIEWER, "anna"))
         self.assertEqual(self.come(server, "evod_nonsense").refusal.code, UNAUTHENTICATED)
 
-    def test_elsewhere_it_is_refused_without_tokens_and_says_what_to_do(self):
+    def test_on_other_interfaces_a_token_must_exist(self):
         done = waiting.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"evod token add NAME --role admin --data {self.folder}", done.stderr)
 
-    def test_whoever_has_none_or_a_wrong_one_stays_outside(self):
+    def test_a_missing_or_wrong_token_is_refused(self):
         self.token("anna", VIEWER)
         server = self.serve("--require-token")
         self.assertEqual(self.come(server).refusal.code, UNAUTHENTICATED)
@@ -234,7 +234,7 @@ class Tokens(Access):
             waits = self.come(server, "another", come_from="127.0.0.2").refusal
             self.assertEqual(waits.code, RESOURCE_EXHAUSTED)
             self.assertRegex(waits.message, r"try again in \d+ s")
-        waiting.quicker_than(0.5, fail)  # for which a first failure makes its address wait
+        waiting.quicker_than(0.5, fail)  # after the first failure the address must wait this long
         self.assertIsNotNone(self.come(server, secret, come_from="127.0.0.2").welcome, "a good token need not wait")
 
         def let_in():
@@ -274,7 +274,7 @@ class Tokens(Access):
         self.assertIn("no token", token_command("revoke", "otto", data=self.folder, status=1))
         self.assertIn("must be 1 to 64", token_command("add", "a b", "--role", "admin", data=self.folder, status=1))
 
-    def test_a_file_that_others_can_read_or_that_is_damaged_is_not_believed(self):
+    def test_a_readable_or_damaged_token_file_is_refused(self):
         secret = self.token("anna", VIEWER)
         path = pathlib.Path(self.folder) / "tokens"
         server = self.serve("--require-token")
@@ -282,8 +282,8 @@ class Tokens(Access):
         path.chmod(0o644)
         plain.until(lambda: Client(server, secret).refusal, "it is noticed")
         self.assertEqual(self.come(server, secret).refusal.code, UNAVAILABLE)
-        self.assertIn("chmod 600", server.output())
-        client.call(list_worlds=c.ListWorlds())  # whoever is in stays in
+        self.assertIn("chmod it to 600", server.output())
+        client.call(list_worlds=c.ListWorlds())  # admitted sessions continue
         server.end()
         for change, words in ((lambda: None, "chmod 600"),
                               (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])), "tokens is damaged: line 2")):
@@ -297,7 +297,7 @@ class Tokens(Access):
         server = self.serve("--require-token")
         client = self.come(server, secret)
         client.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
-        # Whatever can be refused, with the token in it where it belongs, and everything about it wrong elsewhere.
+        # Sends a token in every message that may contain one, with everything else wrong, to see what gets logged.
         refusals = [self.come(server, secret[:-1] + "x", come_from="127.0.0.3").refusal]
         for hello in (dict(protocol_version=2), dict(client_version="v" * 65), dict(client_name="n" * 65)):
             with plain.Client(server, hello=False) as stranger:
@@ -325,7 +325,7 @@ class Tokens(Access):
             for path in pathlib.Path(self.folder).iterdir():
                 self.assertNotIn(digits.encode(), path.read_bytes(), path)
 
-    def test_evoctl_takes_it_from_the_environment_a_file_or_a_person(self):
+    def test_evoctl_reads_a_token_from_env_file_or_terminal(self):
         secret = self.token("anna", VIEWER)
         server = self.serve("--require-token")
         self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_TOKEN": secret}))
@@ -335,7 +335,7 @@ class Tokens(Access):
         self.assertIn("chmod 600", self.evoctl("--token-file", str(path), "worlds", server=server, status=2))
         path.chmod(0o600)
         self.assertIn("default", self.evoctl("--token-file", str(path), "worlds", server=server))
-        self.assertIn("wants a token", self.evoctl("worlds", server=server, status=4, stdin=subprocess.DEVNULL))
+        self.assertIn("requires a token", self.evoctl("worlds", server=server, status=4, stdin=subprocess.DEVNULL))
         self.assertIn("needs the role controller",
                       self.evoctl("pause", server=server, environment={"EVOD_TOKEN": secret}, status=1))
         terminal, side = pty.openpty()
@@ -351,7 +351,7 @@ class Tokens(Access):
             self.assertNotIn(secret[5:].encode(), shown)
         os.close(terminal)
 
-    def test_a_signal_at_the_prompt_leaves_the_terminal_as_it_was(self):
+    def test_a_signal_at_the_prompt_restores_the_terminal(self):
         self.token("otto", VIEWER)
         server = self.serve("--require-token")
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -375,17 +375,17 @@ class Tokens(Access):
                 stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")
                 while stranger.recv(1000):
                     pass
-        self.assertLess(server.output().count("is closed"), 150)
+        self.assertLess(server.output().count(" closed: "), 150)
 
         def another():
             with socket.create_connection(("127.0.0.1", server.port)) as stranger:
                 stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")
                 while stranger.recv(1000):
                     pass
-            return "others before it are not logged" in server.output()
+            return "earlier ones are not logged" in server.output()
         plain.until(another, "how many were left out")
 
-    def test_clients_of_the_same_machine_are_logged_at_level_debug(self):
+    def test_local_clients_are_logged_at_level_debug(self):
         for options, logged in (((), False), (("--log-level", "debug"), True)):
             server = self.serve(*options)
             self.come(server).world()
@@ -425,14 +425,14 @@ class Tls(Access):
         context = ssl.create_default_context(cafile=pathlib.Path(self.folder) / folder / "evod.crt")
         return context
 
-    def test_a_client_that_believes_the_certificate_talks_as_ever(self):
+    def test_a_client_that_trusts_the_certificate_connects(self):
         secret = self.token("anna", ADMIN)
         server = self.serve("--require-token", *self.files())
         client = self.come(server, secret, tls=self.context())
         self.assertIn(client.socket.version(), ("TLSv1.2", "TLSv1.3"))
         client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
         client.call(run_until_tick=c.RunUntilTick(tick=30))
-        client.next_picture(lambda picture: picture.tick == 30)
+        client.next_snapshot(lambda snapshot: snapshot.tick == 30)
         self.assertIsNotNone(self.come(server, secret, tls=self.context(), host="127.0.0.1").welcome)
         server.end()
 
@@ -440,7 +440,7 @@ class Tls(Access):
         server = self.serve(*self.files())
         client, other = self.come(server, tls=self.context()), self.come(server, tls=self.context())
         failing = self.come(server, tls=self.context())
-        for one in (client, other, failing):  # what is cut off raises, and is no end
+        for one in (client, other, failing):  # a connection cut without close_notify raises an error
             one.socket.suppress_ragged_eofs = False
         failing.socket.sendall(b"not a frame")
         self.assertEqual(failing.control().goodbye.status.code, 3)
@@ -452,7 +452,7 @@ class Tls(Access):
             one.assert_closed()
         self.assertEqual(waiting.ended(server.process), 0)
 
-    def test_after_a_sighup_new_connections_are_shown_the_new_certificate(self):
+    def test_after_sighup_new_connections_get_the_new_one(self):
         server = self.serve(*self.files())
         old = self.come(server, tls=self.context())
         self.pair("new")
@@ -460,16 +460,16 @@ class Tls(Access):
             (pathlib.Path(self.folder) / "new" / name).replace(pathlib.Path(self.folder) / "certificates" / name)
         new = self.context()
         server.process.send_signal(signal.SIGHUP)
-        plain.until(lambda: "certificate was read again" in server.output(), "a line in the log")
+        plain.until(lambda: "certificate reloaded" in server.output(), "a line in the log")
         self.assertIsNotNone(self.come(server, tls=new).welcome)
         old.call(list_worlds=c.ListWorlds())
         (pathlib.Path(self.folder) / "certificates" / "evod.crt").write_text("nothing")
         server.process.send_signal(signal.SIGHUP)
-        plain.until(lambda: "the certificate stays as it is: --tls-cert" in server.output(), "a line in the log")
+        plain.until(lambda: "keeping the old certificate: --tls-cert" in server.output(), "a line in the log")
         self.assertIsNotNone(self.come(server, tls=new).welcome)
         server.end()
 
-    def test_older_tls_other_authorities_and_other_hosts_are_not_believed(self):
+    def test_old_tls_and_wrong_authority_or_host_are_refused(self):
         server = self.serve(*self.files())
         self.pair("strangers")
         with self.assertRaises(ssl.SSLCertVerificationError):
@@ -484,13 +484,13 @@ class Tls(Access):
             self.come(server, tls=old)
         self.assertIsNotNone(self.come(server, tls=self.context()).welcome)
 
-    def test_who_speaks_in_the_clear_is_told(self):
+    def test_a_client_without_tls_gets_a_goodbye(self):
         server = self.serve(*self.files())
-        self.assertIn("speaks TLS only", self.come(server).refusal.message)
-        self.assertIn("speaks TLS only", self.evoctl("worlds", server=server, status=3))
+        self.assertIn("requires TLS", self.come(server).refusal.message)
+        self.assertIn("requires TLS", self.evoctl("worlds", server=server, status=3))
         with socket.create_connection(("127.0.0.1", server.port)) as silent:
-            self.assertEqual(waiting.receive(silent, 1), b"")  # nothing can be told before TLS has begun
-        plain.until(lambda: "no hello came within 5 s" in server.output(), "it is logged")
+            self.assertEqual(waiting.receive(silent, 1), b"")  # no Goodbye is possible before TLS has begun
+        plain.until(lambda: "no Hello was received within 5 s" in server.output(), "it is logged")
         self.assertNotIn("Operation canceled", server.output())
         for hello in (b"\x16", b"\x16\x03\x01\x00\x05nonsense", b"\x00" * 100):
             with socket.create_connection(("127.0.0.1", server.port)) as rude:
@@ -516,8 +516,8 @@ class Tls(Access):
                                   server=self.serve(*self.files("elsewhere"))))
 
     def test_evoctl_says_that_a_server_does_not_speak_tls(self):
-        told = self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "worlds", server=self.serve(), status=3)
-        self.assertRegex(told, "no TLS with localhost:[0-9]+: it does not use TLS: leave out --ca")
+        answer = self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "worlds", server=self.serve(), status=3)
+        self.assertRegex(answer, "no TLS with localhost:[0-9]+: it does not use TLS: leave out --ca")
 
     def test_clients_may_have_to_show_a_certificate(self):
         clients = self.pair("clients", "client")
@@ -526,7 +526,7 @@ class Tls(Access):
         with self.assertRaises((ssl.SSLError, ConnectionError, AssertionError)):
             self.come(server, tls=context)
         trusting = ["--ca", f"{self.folder}/certificates/evod.crt"]
-        # The server's word may be lost with the connection.
+        # The refusal may be lost with the connection.
         lost = "closed the connection: it may require another client certificate, see --cert"
         self.assertRegex(self.evoctl(*trusting, "worlds", server=server, status=3),
                          f"it requires a client certificate: give one with --cert and --key|{lost}")
@@ -540,12 +540,12 @@ class Tls(Access):
                                              str(clients / "evod.crt"), "--key", str(clients / "evod.key"), "worlds",
                                              server=server))
 
-    def test_what_is_wrong_with_the_files_is_named(self):
+    def test_faults_of_the_certificate_files_are_named(self):
         path = pathlib.Path(self.folder) / "certificates"
         (path / "none.pem").write_text("nothing")
         (path / "none.pem").chmod(0o600)
         other = self.pair("strangers")
-        for options, words in ((["--tls-cert", path / "evod.crt"], "--tls-cert needs --tls-key"),
+        for options, words in ((["--tls-cert", path / "evod.crt"], "--tls-cert requires --tls-key"),
                                (["--tls-cert", path / "none.pem", "--tls-key", path / "evod.key"], "--tls-cert: .*none.pem"),
                                (["--tls-cert", path / "evod.crt", "--tls-key", path / "gone"], "--tls-key: .*gone.*No such"),
                                (["--tls-cert", path / "evod.crt", "--tls-key", path / "none.pem"], "--tls-key: .*none.pem"),
@@ -559,7 +559,7 @@ class Tls(Access):
         self.assertIn("chmod 600", done.stderr)
         again = waiting.run([EVOD, "certificate", "localhost", "--folder", path], capture_output=True, text=True)
         self.assertEqual(again.returncode, 1)
-        self.assertIn("is there already", again.stderr)
+        self.assertIn("exists already", again.stderr)
 
 
 if __name__ == "__main__":

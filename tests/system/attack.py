@@ -1,4 +1,4 @@
-"""tests/system/attacker.py under way, from where its work is to be seen."""
+"""Runs tests/system/attacker.py and reports its counts."""
 import json
 import pathlib
 import subprocess
@@ -8,7 +8,7 @@ import waiting
 
 
 class Attack:
-    """Also a context that ends with the attack."""
+    """A running attack; as a context manager it ends the attack."""
 
     def __init__(self, messages, port, kind, number):
         self.process = subprocess.Popen(
@@ -24,11 +24,11 @@ class Attack:
         waiting.communicate(self.process)
 
     def counts(self):
-        """What has become of it so far."""
+        """The counts so far."""
         self.process.stdin.write("counts\n")
         self.process.stdin.flush()
         return json.loads(self.process.stdout.readline())
 
     def end(self):
-        """Ends it. Returns what has become of it."""
+        """Ends the attack and returns its counts."""
         return json.loads(waiting.communicate(self.process, "enough\n")[0])

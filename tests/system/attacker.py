@@ -1,23 +1,23 @@
-"""Clients that mean no good, or fail: a process of its own, so that what they cost is not the honest clients' to bear.
+"""Hostile and failing clients in a separate process, so that their cost does not slow the honest clients.
 
     attacker.py MESSAGES PORT ATTACK NUMBER [SECONDS]
 
-Prints "ready" once all of it is under way. Answers the line "counts" on its standard input with what has become of it so
-far, as JSON, and prints that once more at its end, which comes with any other line, the end of the input, or after SECONDS.
-It never has more than NUMBER connections, and makes no more than 1,000 a second.
+Prints "ready" once the attack runs. Answers the line "counts" on its standard input with its counts so
+far, as JSON. Prints them again at its end, which comes with any other line, the end of the input, or after SECONDS.
+It never has more than NUMBER connections, and opens at most 1,000 per second.
 
-    idle N       N sessions that log in and say nothing more
-    slow N       N connections that send a frame a byte at a time; those that are closed come again
-    strangers N  N connections that say nothing; those that are closed come again
-    deaf N       N sessions that subscribe to pictures and never read them
-    pauses N     a viewer of the world w who reads for a second, then not for N seconds, and reads on; if it is closed
-                 it comes again, and its bytes are counted anew
-    connects N   N connections a second, each closed at once
-    malformed N  N frames a second with bodies that are no message, on one session that reads its answers
-    churn N      N sessions that watch, listen and ask for half a second or so and leave, some of them rudely; then
-                 others come
-    views N      N viewers of the world w, each of a part of it of its own; pictures are read away
-    watch N      N viewers of the whole world w; pictures are read away
+    idle N       N sessions that send a Hello and nothing more
+    slow N       N connections that send a frame byte by byte; closed ones reconnect
+    strangers N  N connections that send nothing; closed ones reconnect
+    deaf N       N sessions that subscribe to snapshots and never read them
+    pauses N     a viewer of the world w that reads for a second, pauses for N seconds, and reads on; if it is closed, it
+                 reconnects and counts its bytes from zero
+    connects N   N connections per second, each closed at once
+    malformed N  N frames per second with invalid bodies, on one session that reads its answers
+    churn N      N sessions that subscribe and query for about half a second and disconnect, some without closing; new
+                 ones follow
+    views N      N viewers of different regions of the world w that read and discard snapshots
+    watch N      N viewers of the whole world w that read and discard snapshots
 """
 import json
 import os
@@ -59,12 +59,12 @@ def subscribing(view=None):
 
 class Connection(socket.socket):
     since = 0.0  # time.monotonic()
-    position = 0  # of the next byte to send, where they are sent one by one
+    position = 0  # of the next byte to send, if bytes are sent one by one
     leaves = 0.0  # time.monotonic()
 
 
 def connect(i, *sent, receive_bytes=None):
-    """From one of many addresses, as if from many machines."""
+    """Connects from one of many addresses, as if from many machines."""
     connection = Connection()
     if receive_bytes:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
@@ -83,7 +83,7 @@ def print_counts():
 
 
 def over():
-    """Whether it has to end. Also answers "counts"."""
+    """Whether the attack must end. Also answers "counts"."""
     global enough
     if select.select([0], [], [], 0)[0]:
         if os.read(0, 100) == b"counts\n":
@@ -94,7 +94,7 @@ def over():
 
 
 def take(connection):
-    """Reads what there is; False: it was closed."""
+    """Reads the available input; False: the connection is closed."""
     try:
         while got := connection.recv_into(buffer):
             counts["bytes"] += got
@@ -120,7 +120,7 @@ def close(connections, poller, descriptor):
 
 
 def hold(make, reads=True, again=False, each_round=None, pause_s=0.2):
-    """Keeps so many connections; those that are closed come again if `again`."""
+    """Keeps so many connections open; reconnects closed ones if `again`."""
     poller, connections, made = select.epoll(), {}, 0
 
     def add():
@@ -165,7 +165,7 @@ def slow():
         connection.position += 1
         return True
 
-    # Half of them log in first.
+    # Half of them send a Hello first.
     hold(lambda i: connect(i, *([hello] if i % 2 else [])), again=True, each_round=a_byte_more)
 
 
@@ -225,10 +225,10 @@ def churn():
         try:
             if manner == 1:  # in the middle of a frame
                 connection.send(asking(list_worlds=c.ListWorlds())[:9])
-            if manner == 2:  # without a word, and with answers unread
+            if manner == 2:  # without closing, and with unread answers
                 connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         except OSError:
-            pass  # the server was first
+            pass  # the server closed first
         return False
     hold(come, again=True, each_round=stays, pause_s=0.05)
 

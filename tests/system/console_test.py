@@ -111,7 +111,7 @@ class Run(Folder):
         data = pathlib.Path(self.folder.name) / "not made"
         for options, words in ((["--bind", "300.1.1.1"], "give --bind the address of an interface"),
                                (["--http-port", "0", "--http-bind", "x"], "give --http-bind the address of an interface"),
-                               (["--tls-cert", "a.crt"], "--tls-cert needs --tls-key too")):
+                               (["--tls-cert", "a.crt"], "--tls-cert requires --tls-key")):
             self.assertIn(words, evod("--port", "0", "--data", data, *options, status=1).stderr)
             self.assertFalse(data.exists())
 

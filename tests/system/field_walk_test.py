@@ -1,6 +1,6 @@
-"""Every scalar field of everything a client may send, walked from the descriptors that the server tells, with the values
+"""Every scalar field of every client message, found in the server's descriptors, with the values
 that programs get wrong. Each is done, or refused with the field that is at fault; what is refused has changed nothing, and
-afterwards the world goes on as one that nobody touched. EVOD and EVOCTL name the programs, MESSAGES the folder of the
+afterwards the world is equal to an untouched one. EVOD and EVOCTL name the programs, MESSAGES the folder of the
 message classes."""
 import pathlib
 import struct
@@ -15,9 +15,9 @@ from google.protobuf import descriptor_pb2, descriptor_pool  # noqa: E402
 from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
 
 OK, INVALID, NOT_FOUND = 0, 3, 5
-LONG = 1 << 20  # bytes; with what stands around it, longer than a frame may be
+LONG = 1 << 20  # bytes; together with the rest of the message longer than a frame may be
 
-# What else has to stand in a request for its fields to matter.
+# Other fields that a request needs for the field under test to matter.
 BASE = {
     "create_world": c.CreateWorld(name="made", seed=1),
     "fork_world": c.ForkWorld(name="made"),
@@ -27,7 +27,7 @@ BASE = {
     "set_view": c.SetView(view=c.View(detail=1)),
     "export_run": c.ExportRun(table=c.RUN_TABLE_GENERATIONS, format=c.TEXT_FORMAT_CSV),
 }
-# Fields with bounds of their own: the last that is taken on either side, and the first that is not.
+# Fields with their own bounds: the last valid and the first invalid value on either side.
 EDGES = {
     "run.generations": ([1], [0]),
     "set_speed.speed.real_time_factor": ([0.001, 10000.0], [0.0009, 10001.0, 0.0, -1.0]),
@@ -42,12 +42,12 @@ NAMES = [b"", b"../x", b"/etc/passwd", b"/tmp/x", b"a/b", b"..", b".", b"x\0y", 
          b"\xed\xa0\x80", "ä".encode(), b"n" * 300, b"n" * 5000, b"n" * (LONG - 4096)]
 
 F = descriptor_pb2.FieldDescriptorProto
-# By part of a request: what there has to be beside it.
+# Other fields needed, by part of a request.
 REGION = c.Region(left_px=0, top_px=0, width_px=100, height_px=100)
 NEEDED = {"subscribe_snapshots.view": c.SubscribeSnapshots(codec=plain.stream_pb2.CODEC_DELTA),
           "subscribe_snapshots.view.region": c.SubscribeSnapshots(view=c.View(region=REGION)),
           "set_view.view.region": c.SetView(view=c.View(region=REGION))}
-WHOLE = [0, 1, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63 - 1, 2**63, 2**64 - 1]  # the last is -1, too
+WHOLE = [0, 1, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63 - 1, 2**63, 2**64 - 1]  # the last is also -1
 REAL = [0.0, -0.0, float("nan"), float("inf"), -float("inf"), -1.0, 2.0**63]
 
 
@@ -85,7 +85,7 @@ def encoded(field, value):
 
 
 def scalars(message, path=()):
-    """Every scalar field that stands in a message or below it, with the fields on the way."""
+    """Every scalar field of a message at any depth, with its path."""
     for field in message.fields:
         if field.message_type:
             yield from scalars(field.message_type, path + (field,))
@@ -93,7 +93,7 @@ def scalars(message, path=()):
             yield path, field
 
 
-def told_descriptors(client):
+def server_descriptors(client):
     files = descriptor_pb2.FileDescriptorSet.FromString(
         client.call(describe=c.Describe()).description.file_descriptor_set)
     pool = descriptor_pool.DescriptorPool()
@@ -107,14 +107,14 @@ class Walk(access.Access):
         super().setUp()
         self.server_ = self.serve("--durability", "relaxed")
         self.client = self.come(self.server_)
-        self.pool = told_descriptors(self.client)
+        self.pool = server_descriptors(self.client)
         self.sent = self.subscription_id = 0
         self.make("walked")
         self.make("untouched")
         self.fresh = self.state()
 
     def tearDown(self):
-        """What nobody touched and what everybody has tried to break come to the same."""
+        """The untouched world and the attacked one end in the same state."""
         self.remake()
         hashes = set()
         for world in ("walked", "untouched"):
@@ -139,7 +139,7 @@ class Walk(access.Access):
         return statistics.world, parameters
 
     def remake(self):
-        """Takes back what was done, where something was."""
+        """Undoes the effect of a request, if it had one."""
         if self.subscription_id:
             self.client.call(unsubscribe=c.Unsubscribe(subscription_id=self.subscription_id))
             self.subscription_id = 0
@@ -153,7 +153,7 @@ class Walk(access.Access):
             self.fresh = self.state()
 
     def send(self, body):
-        """A request's bytes; the status it is answered with, or nothing if the session was closed as it must be."""
+        """Sends a request's bytes. Returns the status of the answer, or None if the session was closed as required."""
         self.sent += 1
         message = delimited(2, body)
         self.client.send_body(message)
@@ -181,16 +181,17 @@ class Walk(access.Access):
         return c.Request(client_key=self.client.key, request_id=self.client.request_id, **{name: message})
 
     def check(self, path, value, status, refused=None):
-        """Whether an answer is one that says what is wrong; refused: whether it has to be a refusal."""
+        """Whether an answer names the fault. refused: whether it must be a refusal."""
         said = f"{path} = {value[:50] if isinstance(value, bytes) else value}: {status}"
         if status is None:
             return
         self.assertEqual(bool(status.message), status.code != OK, said)
         if refused is not None:
             self.assertEqual(status.code != OK, refused, said)
-        if status.code == INVALID and "is not a" not in status.message:  # of what can be read as a message
+        if status.code == INVALID and "is not a" not in status.message:  # for messages that can be parsed
             named = [violation.field for violation in status.violations]
-            if ".parameters." in path or ".population." in path or ".schedule." in path:  # is named as what it would have set
+            # the field is named as the parameter or gene that it sets
+            if ".parameters." in path or ".population." in path or ".schedule." in path:
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
             else:
                 self.assertTrue([x for x in named if path == x or path.startswith(x + ".")], said)
@@ -270,7 +271,7 @@ class Walk(access.Access):
                 if one.kind != kinds.PARAMETER_KIND_CHOICE:
                     outside += [dict(choice="1")]
                 outside += [dict(real=x) for x in (float("nan"), float("inf"), -float("inf"))] + [{}]
-                for value in inside:  # what does not go with the others, too, is refused by name
+                for value in inside:  # combinations that do not fit are also refused by name
                     status = self.send(build(one, True, **value))
                     self.check("set_parameters.parameters." + one.name, 1, status)
                     self.assertEqual(self.state(), self.fresh)
@@ -281,7 +282,7 @@ class Walk(access.Access):
                     self.assertEqual(self.state(), self.fresh)
         minus_zero = [x for x in descriptions if x.kind == kinds.PARAMETER_KIND_REAL and x.min == 0]
         self.assertTrue(minus_zero)
-        for one in minus_zero:  # is 0
+        for one in minus_zero:  # -0 equals 0
             statuses = [self.send(build(one, True, real=zero)) for zero in (0.0, -0.0)]
             self.assertEqual(*[[status.code, *(violation.field for violation in status.violations)] for status in statuses])
 

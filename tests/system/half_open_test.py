@@ -1,4 +1,4 @@
-"""Clients that are gone without a word, as when a cable is pulled: a real server in a network of its own that goes down.
+"""Clients that vanish as when a cable is pulled: a real server in its own network namespace that goes down.
 
     EVOD=… MESSAGES=… half_open_test.py     skipped with status 77 where no such network may be made
 """
@@ -20,7 +20,7 @@ found_within_s = 45
 
 
 class HalfOpen(unittest.TestCase):
-    def test_who_is_gone_without_a_word_is_noticed(self):
+    def test_a_vanished_client_is_detected(self):
         waiting.quicker_than(found_within_s, self.vanish)
 
     def vanish(self, lap):
@@ -28,7 +28,7 @@ class HalfOpen(unittest.TestCase):
         server = Server("--keep-nothing", "--start", "--log-level", "debug")
         self.addCleanup(server.log.close)
         self.addCleanup(server.kill)
-        # One says nothing and is sent nothing; another is sent pictures, which nobody takes.
+        # One client is idle. Another receives snapshots and reads none.
         silent, watching = recovery.Client(server, "silent"), recovery.Client(server, "watching")
         self.addCleanup(silent.socket.close)
         self.addCleanup(watching.socket.close)

@@ -1,4 +1,4 @@
-"""Clients that mean no good, or fail, beside honest ones: the run is the same, the others are served, memory comes back.
+"""Hostile and failing clients beside honest ones: the run stays the same, others are served, and memory is released.
 
 EVOD names the program, MESSAGES the folder of the message classes; PAUSE_S is for how long a reader pauses, in whole
 seconds, and where SANITIZED is set memory is not judged: a sanitizer keeps what has been freed. Each test lets
@@ -12,7 +12,7 @@ import sys
 import unittest
 
 EVOD, MESSAGES = os.environ["EVOD"], os.environ["MESSAGES"]
-sys.argv[1:1] = [EVOD, MESSAGES, "-"]  # as plain_client reads them
+sys.argv[1:1] = [EVOD, MESSAGES, "-"]  # arguments of plain_client
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import plain_client as plain  # noqa: E402
 import waiting  # noqa: E402
@@ -43,7 +43,7 @@ class Attacked(unittest.TestCase):
 
     @staticmethod
     def begin_world(client):
-        client.response(client.ask(delete_world=c.DeleteWorld(world="w")))  # of a test that failed
+        client.response(client.ask(delete_world=c.DeleteWorld(world="w")))  # left by a failed test
         client.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(**PARAMETERS)))
         client.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
 
@@ -52,15 +52,15 @@ class Attacked(unittest.TestCase):
         return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) << 10
 
     def honest(self, viewer, control, tick):
-        """One who steps the world, and one who watches: both get all they ask for."""
+        """One client steps the world and one views it: both get everything they request."""
         control.call(run_until_tick=c.RunUntilTick(world="w", tick=tick))
-        picture = viewer.next_picture(lambda one: viewer.decoder.decode(one) is not None and one.tick == tick)
+        snapshot = viewer.next_snapshot(lambda one: viewer.decoder.decode(one) is not None and one.tick == tick)
         stepped = control.run_to(tick, "w")
-        self.assertEqual(picture.state_hash.hex(), stepped.state_hash)
+        self.assertEqual(snapshot.state_hash.hex(), stepped.state_hash)
         return stepped
 
     def attacked(self, kind, number, at_least_s=3.0, memory_back_bytes=MEMORY_BACK_BYTES, enough=lambda counts: True):
-        """What became of the attackers, after honest work beside them, and once that is enough."""
+        """The state of the attackers after honest work beside them."""
         with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
             self.begin_world(control)
             viewer.decoder = Decoder(plain.zstd_content)
@@ -68,7 +68,7 @@ class Attacked(unittest.TestCase):
             self.honest(viewer, control, 1)
             before = self.memory_bytes()
             with Attack(MESSAGES, self.server.port, kind, number) as attack:
-                # At a pace at which it lasts so long.
+                # paced so that it lasts that long
                 pace = w.Speed(real_time_factor=STEPS * STEP_TICKS / 60 / at_least_s)
                 control.call(set_speed=c.SetSpeed(world="w", speed=pace))
                 for step in range(1, STEPS + 1):
@@ -88,27 +88,27 @@ class Hostile(Attacked):
             self.assertEqual((became["open"], became["closed"]), (1000, 0))
         waiting.quicker_than(HELLO_S, stay)
 
-    def test_two_hundred_who_send_a_byte_at_a_time(self):
+    def test_two_hundred_clients_send_single_bytes(self):
         became = self.attacked("slow", 200, at_least_s=1.3 * FRAME_S, enough=lambda counts: counts["closed"] >= 200)
         self.assertGreater(became["closed_after_s"][0], 0.9 * HELLO_S)
 
-    def test_a_hundred_subscribers_who_never_read(self):
+    def test_a_hundred_subscribers_never_read(self):
         became = self.attacked("deaf", 100, at_least_s=2.0 * STALLED_S, enough=lambda counts: counts["closed"] == 100)
         self.assertEqual((became["open"], became["closed"]), (0, 100))
-        self.assertGreater(became["closed_after_s"][0], 0.9 * STALLED_S)  # whatever fits on the way is sent first
+        self.assertGreater(became["closed_after_s"][0], 0.9 * STALLED_S)  # data already in the kernel is sent first
 
     def test_five_hundred_connections_a_second(self):
         self.attacked("connects", 500, enough=lambda counts: counts["connected"] > 500)
 
     def test_fifty_thousand_malformed_frames_a_second(self):
-        # Where the attacker is slow, as many answers wait for it as may; the heap does not shrink for one session.
+        # With a slow attacker as many answers wait as allowed; the heap does not shrink for one session.
         self.attacked("malformed", 50_000, memory_back_bytes=MEMORY_BACK_BYTES + plain.limit("queued_response_bytes_max"),
                       enough=lambda counts: counts["frames"] > 1000)
 
-    def test_a_reader_who_pauses_is_cut_and_comes_again(self):
+    def test_a_pausing_reader_is_closed_and_reconnects(self):
         def has_come_again(counts):
             return (counts.get("paused", 0) >= 1 and counts["closed"] >= 1 and counts["connected"] >= 2 and
-                    counts["bytes"] > 5000)  # of snapshots, since it has come again
+                    counts["bytes"] > 5000)  # of snapshots, since it reconnected
         self.attacked("pauses", PAUSE_S, at_least_s=PAUSE_S + 5.0, enough=has_come_again)
 
 

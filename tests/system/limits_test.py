@@ -26,7 +26,7 @@ from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
 program = pathlib.Path(access.EVOD).read_bytes()
 SLOW = b"__tsan_init" in program
 HELLO_S, STALLED_S = plain.limit("hello_timeout_s"), plain.limit("stalled_timeout_s")
-SANITIZED = SLOW or b"__asan_init" in program  # its memory is not what it would be
+SANITIZED = SLOW or b"__asan_init" in program  # sanitizers change the memory use
 OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 5, 6, 8, 9, 12
 
 
@@ -40,14 +40,14 @@ def request(**fields):
 
 
 def padded(message, size):
-    """The bytes of a message, made that long by a field that nobody knows."""
+    """The bytes of a message, padded to that length by an unknown field."""
     body = message.SerializeToString()
     padding = size - len(body) - 5
     return body + b"\xa2\x06" + bytes([padding & 127 | 128, padding >> 7 & 127 | 128, padding >> 14]) + b"x" * padding
 
 
 def nested(message, depth):
-    """A request with so many unknown groups within each other in it."""
+    """A request with unknown groups nested so deep."""
     body = message.SerializeToString() + b"\xa3\x06" * depth + b"\xa4\x06" * depth
     assert 128 <= len(body) < 128 * 128
     return b"\x12" + bytes([len(body) % 128 + 128, len(body) // 128]) + body
@@ -59,7 +59,7 @@ class Case(access.Access):
 
     @contextlib.contextmanager
     def served_once(self, *options):
-        """A server with a folder of its own, for an attempt that may have to be repeated."""
+        """A server with its own folder, for an attempt that may be repeated."""
         with tempfile.TemporaryDirectory() as self.folder:
             server = self.serve(*options)
             try:
@@ -68,7 +68,7 @@ class Case(access.Access):
                 server.kill()
 
     def small(self, server):
-        """A client of which little fits into the kernel."""
+        """A client with small kernel buffers."""
         over = socket.socket()
         self.addCleanup(over.close)
         over.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -76,14 +76,14 @@ class Case(access.Access):
         over.settimeout(waiting.LONGEST_S)
         return plain.Client(server, over=over)
 
-    def told_and_closed(self, client, code, words):
+    def closed_with_goodbye(self, client, code, words):
         status = client.goodbye()
         self.assertEqual(status.code, code)
         self.assertIn(words, status.message)
         client.assert_closed()
 
     def counts(self, client):
-        """By name, how often each limit was met; nothing where the server has no GetMetrics."""
+        """How often each limit was reached, by name; empty if the server has no GetMetrics."""
         response = client.response(client.ask(get_metrics=c.GetMetrics()))
         if response.status.code == UNIMPLEMENTED:
             return None
@@ -92,7 +92,7 @@ class Case(access.Access):
 
     @contextlib.contextmanager
     def meets(self, client, *limits):
-        """What is done within meets these limits, and after it the client is served as ever."""
+        """The block reaches these limits, and the client is served normally afterwards."""
         before = self.counts(client)
         yield
         client.call(list_worlds=c.ListWorlds())
@@ -126,10 +126,10 @@ class Frames(Case):
         self.assertEqual(longest.response(1).status.code, OK)
         with self.meets(other, "hello_frame_bytes_max"), plain.Client(server, hello=False) as longer:
             longer.socket.sendall(b"EV\x01\x01" + struct.pack("<I", limits.hello_frame_bytes_max + 1))
-            self.told_and_closed(longer, INVALID, str(limits.hello_frame_bytes_max))
+            self.closed_with_goodbye(longer, INVALID, str(limits.hello_frame_bytes_max))
         with self.meets(other, "control_frame_bytes_max"):
             longest.socket.sendall(b"EV\x01\x01" + struct.pack("<I", limits.control_frame_bytes_max + 1))
-            self.told_and_closed(longest, INVALID, str(limits.control_frame_bytes_max))
+            self.closed_with_goodbye(longest, INVALID, str(limits.control_frame_bytes_max))
 
     def test_a_declared_length_takes_no_memory(self):
         server = self.serve()
@@ -147,7 +147,7 @@ class Frames(Case):
         client, other = self.come(server), self.come(server)
         depth = client.welcome.limits.message_depth_max
         asking = c.Request(request_id=7, list_worlds=c.ListWorlds())
-        client.send_body(nested(asking, depth - 1))  # within the request, which is itself within a message
+        client.send_body(nested(asking, depth - 1))  # nested in the request, which is nested in a message
         self.assertEqual(client.response(7).status.code, OK)
         for deeper in (depth, 3000):
             with self.meets(other, "message_depth_max"):
@@ -158,7 +158,7 @@ class Frames(Case):
         client.call(list_worlds=c.ListWorlds())
         with self.meets(other, "message_depth_max"), plain.Client(server, hello=False) as stranger:
             stranger.send_body(nested(asking, depth))
-            self.told_and_closed(stranger, INVALID, f"more than {depth} deep")
+            self.closed_with_goodbye(stranger, INVALID, f"more than {depth} deep")
 
 
 class Sessions(Case):
@@ -178,14 +178,14 @@ class Sessions(Case):
         with self.meets(here[0], "sessions_max"):
             refused = self.come(server, come_from="127.0.0.3")
             self.assertEqual(refused.refusal.code, EXHAUSTED)
-            self.assertIn("6 sessions already", refused.refusal.message)
+            self.assertIn("6 sessions", refused.refusal.message)
             refused.assert_closed()
         for client in here:
             client.call(list_worlds=c.ListWorlds())
         here[3].socket.close()
         plain.until(lambda: self.come(server, come_from="127.0.0.3").welcome, "a place is free again")
 
-    def test_who_says_nothing_makes_room_for_newcomers(self):
+    def test_silent_connections_make_room_for_new_ones(self):
         def make_room(_):
             with self.served_once("--sessions-max", "6", "--sessions-per-address-max", "4") as server:
                 self.make_room(server)
@@ -198,21 +198,21 @@ class Sessions(Case):
         with self.meets(first, "sessions_max"):
             newcomer = self.come(server, come_from="127.0.0.4")
             self.assertEqual(newcomer.welcome.limits.sessions_max, 6)
-        self.told_and_closed(silent[0], EXHAUSTED, "no hello had come")
-        with self.meets(first, "sessions_max"):  # both are full; of the address there is none who is silent
+        self.closed_with_goodbye(silent[0], EXHAUSTED, "no Hello was received")
+        with self.meets(first, "sessions_max"):  # both limits are reached; the address has no silent session
             others = [self.come(server, come_from="127.0.0.4") for _ in range(3)]
         self.assertTrue(all(other.welcome.instance_id for other in others))
         for one in silent[1:4]:
-            self.told_and_closed(one, EXHAUSTED, "no hello had come")
+            self.closed_with_goodbye(one, EXHAUSTED, "no Hello was received")
         with self.meets(first, "sessions_per_address_max"):
             refused = self.come(server, come_from="127.0.0.4")
             self.assertIn("4 sessions from this address", refused.refusal.message)
-        silent[4].hello()  # who was not the first is still there
+        silent[4].hello()  # only the first was closed
         self.assertTrue(silent[4].control().HasField("welcome"))
         for client in (first, newcomer, *others):
             client.call(list_worlds=c.ListWorlds())
 
-    def test_strangers_in_any_number_keep_nobody_from_coming_or_commanding(self):
+    def test_connections_without_hello_block_no_client(self):
         few = resource.RLIMIT_NOFILE, (400, 400)
         server = self.server("--data", self.folder, preexec_fn=lambda: resource.setrlimit(*few))
         attack = self.enterContext(Attack(plain.messages_path, server.port, "strangers", 500))
@@ -225,16 +225,17 @@ class Sessions(Case):
                 client = plain.Client(server)
                 if client.welcome.instance_id:
                     return client
-                client.socket.close()  # it said nothing for so long that the server took it for a stranger
+                client.socket.close()  # it was silent so long that the server closed it to make room
         for i in range(20):
-            with plain.until(welcomed, "a welcome") as honest:  # another each time, and each needs files
+            # a new connection each time, and each needs file descriptors
+            with plain.until(welcomed, "a welcome") as honest:
                 honest.call(create_world=c.CreateWorld(name=f"w{i}", seed=1, parameters=plain.assignments(
                     population_size=5)))
         self.assertLess(tries, 30)
         plain.until(lambda: attack.counts()["closed"] > 0, "strangers that are closed")
         self.assertNotIn("unable to open", server.output())
 
-    def test_a_thousand_who_do_nothing_take_little(self):
+    def test_a_thousand_idle_sessions_take_little_memory(self):
         server = self.serve("--sessions-max", "1100", "--sessions-per-address-max", "1100")
         first = self.come(server)
         before = memory_kib(server)
@@ -255,7 +256,7 @@ class Sessions(Case):
 class Requests(Case):
     @contextlib.contextmanager
     def busy(self, admin, name, organisms=100_000):
-        """The simulation makes a large world, and does nothing else meanwhile."""
+        """Occupies the simulation with creating a large world."""
         asked = admin.ask(create_world=c.CreateWorld(name=name, seed=1, parameters=plain.assignments(
             population_size=organisms, scale_with_population=True, reference_population=50)))
         yield
@@ -285,7 +286,7 @@ class Requests(Case):
             self.assertEqual(client.response(asked.pop(0)).status.code, OK)
             asked.append(client.ask(describe=c.Describe()))
 
-    def test_those_waiting_for_the_simulation(self):
+    def test_the_mailbox_is_bounded(self):
         server = self.serve()
         admin = self.come(server)
         limits = admin.welcome.limits
@@ -302,7 +303,8 @@ class Requests(Case):
                 codes = [client.response(i + 1).status.code for client in clients
                          for i in range(limits.requests_in_flight_max)]
             self.assertLessEqual(set(codes), {OK, EXHAUSTED})
-            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)  # that one may be waiting, too
+            # the large world may still be in the mailbox
+            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)
             return EXHAUSTED in codes
         with self.meets(admin, "mailbox_commands_max"):
             plain.until(crowd, "one too many")
@@ -322,7 +324,7 @@ class Requests(Case):
                 while not over.is_set():
                     other.call(list_worlds=c.ListWorlds())
                     calls += 1
-            except BaseException as fault:  # told below, by the thread that unittest listens to
+            except BaseException as fault:  # reported below by the main thread
                 faults.append(fault)
         with self.meets(self.come(server), "requests_per_s_max", "request_burst_max"):
             began = time.monotonic()
@@ -332,7 +334,7 @@ class Requests(Case):
             neighbour.start()
             try:
                 answers = 0
-                while answers < frames:  # each is answered, and none for being one too many
+                while answers < frames:  # each frame is answered, and none refused for exceeding the rate
                     response = flooding.control().response
                     self.assertEqual((response.request_id, response.status.code), (0, INVALID))
                     answers += 1
@@ -343,10 +345,10 @@ class Requests(Case):
                 neighbour.join()
         self.assertEqual(faults, [])
         self.assertGreater(took, 0.9)
-        self.assertGreater(calls, 20)  # one a time, beside 55,000 frames: they do not wait for all of those
+        self.assertGreater(calls, 20)  # one at a time beside 55,000 frames: they do not wait for all of these
         flooding.call(list_worlds=c.ListWorlds())
 
-    def test_subscriptions_and_their_pictures(self):
+    def test_subscriptions_and_their_snapshots(self):
         server = self.serve()
         client, other = self.come(server), self.come(server)
         limits = client.welcome.limits
@@ -433,7 +435,7 @@ class Worlds(Case):
         with self.meets(other, "worlds_max"):
             client.call(EXHAUSTED, request_id=100_000, create_world=c.CreateWorld(name="one_more", parameters=small))
         client.call(delete_world=c.DeleteWorld(world="default"))
-        # The same request: a refusal that may pass is not kept as its answer.
+        # The same request again: a temporary refusal is not cached.
         client.call(request_id=100_000, create_world=c.CreateWorld(name="one_more", parameters=small))
 
     def test_history(self):
@@ -474,7 +476,7 @@ class Unread(Case):
                     with self.assertRaises((BrokenPipeError, ConnectionResetError)):
                         while True:
                             silent.socket.sendall(many)
-                    plain.until(lambda: " is closed: " in server.output(), "it is logged")
+                    plain.until(lambda: " closed: " in server.output(), "it is logged")
                     self.assertIn("does not read its answers", server.output())
         waiting.quicker_than(STALLED_S, flood)
 
@@ -494,7 +496,7 @@ class Unread(Case):
         waiting.quicker_than(STALLED_S, sleep)
 
     @unittest.skipIf(SLOW, "it takes minutes until so much waits")
-    def test_what_waits_for_all_clients(self):
+    def test_the_memory_of_all_sessions_is_bounded(self):
         def wait(_):
             with self.served_once() as server:
                 self.fill_the_buffers(server)
@@ -509,25 +511,25 @@ class Unread(Case):
         modest = self.small(server)
         answer_bytes = len(modest.call(get_history=c.GetHistory(world="short")).SerializeToString())
         fits = limits.client_buffer_bytes_max // (answer_bytes * limits.requests_in_flight_max)
-        modest.ask(get_history=c.GetHistory(world="short"))  # and does not read it
+        modest.ask(get_history=c.GetHistory(world="short"))  # and does not read the answer
         with self.meets(other, "client_buffer_bytes_max"):
             for _ in range(fits - 2):
                 self.small(server).socket.sendall(asking)
-                other.call(list_worlds=c.ListWorlds())  # which is answered after those
+                other.call(list_worlds=c.ListWorlds())  # answered after the others
             self.assertNotIn("wait for all clients", server.output())
             for _ in range(6):
                 self.small(server).socket.sendall(asking)
             plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
-        if not SANITIZED:  # which keep what was freed
+        if not SANITIZED:  # sanitizers keep freed memory
             self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
-        closed = re.findall(r"closed: more than 256 MiB wait for all clients, of which (\d+) KiB", server.output())
+        closed = re.findall(r"closed: more than 256 MiB wait for all clients, (\d+) KiB", server.output())
         self.assertLess(len(closed), 10)
         self.assertGreater(min(map(int, closed)), 1024)
-        self.assertEqual(modest.response(modest.request_id).status.code, OK)  # whoever had little is still there
+        self.assertEqual(modest.response(modest.request_id).status.code, OK)  # sessions with little memory continue
 
     @unittest.skipIf(SANITIZED, "its memory is not what it would be")
-    def test_a_burst_of_long_answers_takes_no_more_than_may_wait(self):
-        server = self.server("--keep-nothing")  # what waits for the disk is not meant
+    def test_a_burst_of_long_answers_keeps_the_memory_bound(self):
+        server = self.server("--keep-nothing")  # without the write queue of the disk
         other = self.come(server)
         limits = other.welcome.limits
         self.world_of_short_generations(other, 1100, island_count=1)
@@ -536,10 +538,10 @@ class Unread(Case):
         answer_bytes = len(other.call(get_history=c.GetHistory(world="short")).SerializeToString())
         fit = limits.client_buffer_bytes_max // (answer_bytes * limits.requests_in_flight_max)
         clients = [self.small(server) for _ in range(fit + 10)]
-        pathlib.Path(f"/proc/{server.process.pid}/clear_refs").write_text("5")  # the peak begins anew
+        pathlib.Path(f"/proc/{server.process.pid}/clear_refs").write_text("5")  # resets the peak
         with self.meets(other, "client_buffer_bytes_max"):
             for client in clients:
-                with contextlib.suppress(OSError):  # it is one of those that are closed
+                with contextlib.suppress(OSError):  # it may be one of the closed sessions
                     client.socket.sendall(asking)
             plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
         status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
@@ -550,7 +552,7 @@ class Unread(Case):
 
 class Times(Case):
     def test_all_at_once(self):
-        """Side by side, for each takes its time."""
+        """Run in parallel, because each takes long."""
         certificates = pathlib.Path(self.folder) / "certificates"
         access.Tls.pair(self, "certificates")
         self.assertTrue(certificates.exists())
@@ -567,7 +569,7 @@ class Times(Case):
             def run():
                 try:
                     of(*arguments)
-                except BaseException as fault:  # told below, by the thread that unittest listens to
+                except BaseException as fault:  # reported below by the main thread
                     faults.append((of.__name__, fault))
             thread = threading.Thread(target=run)
             thread.start()
@@ -575,7 +577,7 @@ class Times(Case):
         with self.meets(other, "hello_timeout_s", "frame_timeout_s", "stalled_timeout_s", "export_patience_s"):
             parts = [part(self.no_hello, server, limits), part(self.frames_byte_by_byte, server, limits),
                      part(self.subscribers_that_never_read, server, limits), part(self.a_slow_one_stays, server),
-                     part(self.one_of_tls_that_never_reads, encrypted), part(self.an_export_nobody_goes_on_with, server)]
+                     part(self.one_of_tls_that_never_reads, encrypted), part(self.an_abandoned_export, server)]
             while any(thread.is_alive() for thread in parts):
                 other.call(list_worlds=c.ListWorlds())
                 parts[-1].join(0.05)
@@ -584,7 +586,7 @@ class Times(Case):
     def no_hello(self, server, limits):
         began = time.monotonic()
         client = plain.Client(server, hello=False)
-        self.told_and_closed(client, PRECONDITION, "no hello")
+        self.closed_with_goodbye(client, PRECONDITION, "no Hello")
         self.assertGreater(time.monotonic() - began, limits.hello_timeout_s - 0.5)
         client.socket.close()
 
@@ -603,8 +605,9 @@ class Times(Case):
             time.sleep(1)
         self.assertEqual(len(closed), len(clients))
         self.assertGreater(time.monotonic() - began, limits.frame_timeout_s)
-        self.assertLess(sent, limits.frame_timeout_s + 8)  # a byte a second; it is noticed at the next byte but one
-        self.told_and_closed(clients[0], PRECONDITION, "did not come whole")
+        # a byte per second; the server notices at the next byte but one
+        self.assertLess(sent, limits.frame_timeout_s + 8)
+        self.closed_with_goodbye(clients[0], PRECONDITION, "did not arrive")
 
     def subscribers_that_never_read(self, server, limits):
         before, most, deaf = memory_kib(server), 0, 100
@@ -612,7 +615,7 @@ class Times(Case):
         def all_are_closed():
             nonlocal most
             most = max(most, memory_kib(server) - before)
-            return server.output().count("it has taken nothing") >= deaf
+            return server.output().count("it has received nothing") >= deaf
         with Attack(plain.messages_path, server.port, "deaf", deaf) as attack:
             plain.until(all_are_closed, "all are closed", pause_s=0.05)
             self.assertGreater(attack.end()["closed_after_s"][0], limits.stalled_timeout_s)
@@ -635,15 +638,15 @@ class Times(Case):
         client.call(run=c.Run())
         for _ in range(30):
             client.ask(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=120))
-        plain.until(lambda: "it has taken nothing" in server.output(), "it is closed")
+        plain.until(lambda: "it has received nothing" in server.output(), "it is closed")
 
-    def an_export_nobody_goes_on_with(self, server):
+    def an_abandoned_export(self, server):
         client = self.come(server)
         self.world_of_short_generations(client, 300)
         part = client.call(export_run=c.ExportRun(world="short", table=c.RUN_TABLE_ORGANISMS,
                                                   format=c.TEXT_FORMAT_CSV)).export_part
         self.assertFalse(part.last)
-        # Nothing tells that the export is given up but the end of its thread.
+        # Only the end of its thread shows that the export is cancelled.
         began, patience_s = time.monotonic(), client.welcome.limits.export_patience_s
         self.assertIn("export", threads_of(server))
         plain.until(lambda: "export" not in threads_of(server), "the export's end", stalled_s=2 * patience_s)
@@ -652,10 +655,10 @@ class Times(Case):
 
 
 def threads_of(server):
-    """Their names."""
+    """The names of the limits."""
     names = []
     for thread in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir():
-        with contextlib.suppress(OSError):  # it has ended
+        with contextlib.suppress(OSError):  # the thread has ended
             names.append((thread / "comm").read_text().strip())
     return names
 

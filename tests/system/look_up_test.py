@@ -1,4 +1,4 @@
-"""A look-up of a name that never ends keeps no program beyond its time limit. EVOCTL names the program,
+"""An endless host name look-up keeps no program beyond its time limit. EVOCTL names the program,
 ENDLESS_LOOK_UP_LIBRARY what makes getaddrinfo() wait for ever.
 """
 import os

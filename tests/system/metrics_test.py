@@ -1,4 +1,4 @@
-"""What a server tells of itself: /metrics and /healthz over HTTP, GetMetrics, evoctl top, its log. EVOD and EVOCTL name the
+"""Monitoring of a server: /metrics and /healthz over HTTP, GetMetrics, evoctl top and the log. EVOD and EVOCTL name the
 programs, MESSAGES the folder of the message classes."""
 import contextlib
 import ctypes
@@ -24,23 +24,23 @@ import past_test as past
 import waiting
 from past_test import EVOD, EVOCTL, c, plain
 
-SIMULATION_S = 3  # within which the simulation has to answer; else /healthz says that the server is ill
+SIMULATION_S = 3  # the simulation must respond within this time, else /healthz fails
 OPERATIONS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "OPERATIONS.md"
 NAME, UNESCAPED = r"[a-zA-Z_:][a-zA-Z0-9_:]*", {r"\\": "\\", r"\"": '"', r"\n": "\n"}
 LABEL = rf'({NAME})="((?:[^"\\\n]|\\[\\"n])*)"'
 
 
 class Metrics:
-    """A page in Prometheus's text format 0.0.4, read strictly."""
+    """Strictly parses a page in Prometheus's text format 0.0.4."""
 
     def __init__(self, page):
         self.types, self.help, self.samples = {}, {}, {}
         assert page.endswith("\n")
         for line in page.splitlines():
-            if told := re.fullmatch(rf"# (HELP|TYPE) ({NAME}) (.*)", line):
-                where = self.help if told[1] == "HELP" else self.types
-                assert told[2] not in where, line
-                where[told[2]] = told[3]
+            if answer := re.fullmatch(rf"# (HELP|TYPE) ({NAME}) (.*)", line):
+                where = self.help if answer[1] == "HELP" else self.types
+                assert answer[2] not in where, line
+                where[answer[2]] = answer[3]
                 continue
             sample = re.fullmatch(rf"({NAME})(?:{{({LABEL}(?:,{LABEL})*)}})? (\S+)", line)
             assert sample, line
@@ -81,7 +81,7 @@ class Case(past.Case):
         return Metrics(answer.text)
 
     def wait_well(self, server):
-        """Healthy, which a server is not for a moment where the machine stood still for SIMULATION_S."""
+        """Waits for health: after a stall of the machine by SIMULATION_S a server is briefly unhealthy."""
         plain.until(lambda: self.get(server, "/healthz").status == 200, "health")
 
     def wait(self, server, condition, what):
@@ -107,7 +107,7 @@ class Case(past.Case):
 
 
 def read_all(connection):
-    """Until the server closes its end, be it in the middle of what it was sent."""
+    """Sends until the server closes the connection, perhaps within a request."""
     data = b""
     with contextlib.suppress(ConnectionResetError):
         while more := waiting.receive(connection, 65536):
@@ -122,7 +122,7 @@ def catches(process, number):
 
 @contextlib.contextmanager
 def stopped(thread):
-    """One thread of a child stands still, as in a debugger; skipped where that is not allowed."""
+    """Stops one thread of a child with ptrace; skips the test if that is not allowed."""
     libc, seize, interrupt, detach = ctypes.CDLL(None, use_errno=True), 0x4206, 0x4207, 17
 
     def ptrace(request):
@@ -156,15 +156,15 @@ class Counts(Case):
             at_rest = self.wait(server, lambda m: m("evod_ticks_per_second", world="default") == 0, "rest")
             self.assertEqual(at_rest("evod_ticks_total", world="default"), ticks)
 
-    def test_pictures_that_are_given_away(self):
+    def test_snapshots_that_are_given_away(self):
         server = self.serve("--speed", "max", "--start")
         with self.client(server) as client:
             before = self.wait(server, lambda m: m("evod_ticks_total", world="default") > 0, "a tick")
-            self.assertEqual(before("evod_picture_seconds_count", world="default"), 0)
+            self.assertEqual(before("evod_snapshot_seconds_count", world="default"), 0)
             client.call(subscribe_snapshots=c.SubscribeSnapshots(world="default", rate_hz=20))
-            after = self.wait(server, lambda m: m("evod_picture_seconds_count", world="default") > 3, "pictures")
-            self.assertEqual(after.types["evod_picture_seconds"], "histogram")
-            self.assertGreater(after("evod_picture_seconds_sum", world="default"), 0)
+            after = self.wait(server, lambda m: m("evod_snapshot_seconds_count", world="default") > 3, "snapshots")
+            self.assertEqual(after.types["evod_snapshot_seconds"], "histogram")
+            self.assertGreater(after("evod_snapshot_seconds_sum", world="default"), 0)
 
     def test_worlds_come_and_go(self):
         server = self.serve()
@@ -184,7 +184,7 @@ class Counts(Case):
             client.call(open_replay=c.OpenReplay())
             self.assertEqual(self.metrics(server)("evod_worlds"), 1)
 
-    def test_what_a_subscriber_takes_and_does_not_take(self):
+    def test_the_traffic_of_subscribers_is_counted(self):
         crowd = pathlib.Path(self.folder) / "crowd.json"
         crowd.write_text('{"population_size": 3000, "scale_with_population": true, "reference_population": 50}')
         server = self.serve("--experiment", str(crowd), "--speed", "max", "--start")
@@ -192,23 +192,23 @@ class Counts(Case):
         with self.client(server) as reads, self.client(server) as sleeps:
             reads.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=30))
             for _ in range(5):
-                reads.next_picture()
+                reads.next_snapshot()
             taken = self.metrics(server)
-            self.assertGreaterEqual(taken("evod_pictures_sent_total"), 5)
-            self.assertEqual(taken("evod_subscriptions", to="pictures"), 1)
+            self.assertGreaterEqual(taken("evod_snapshots_sent_total"), 5)
+            self.assertEqual(taken("evod_subscriptions", to="snapshots"), 1)
             for name, labels in (("evod_sent_bytes_total", {"channel": "stream"}), ("evod_received_bytes_total", {}),
                                  ("evod_sent_bytes_total", {"channel": "control"}), ("evod_requests_total", {})):
                 self.assertGreater(taken(name, **labels), before(name, **labels), name)
             self.assertGreater(taken("evod_sent_bytes_total", channel="stream"), 5 * 3000)
             reads.socket.close()
-            # Where a generation is a tick there are many events, and with many islands they are long.
+            # A generation per tick causes many events, and many islands make them long.
             made = plain.set_parameters(population_size=5, island_count=16, fitness="gene_sum").parameters
             sleeps.call(create_world=c.CreateWorld(name="events", parameters=made))
             sleeps.call(set_speed=c.SetSpeed(world="events", speed=plain.w.Speed(max=True)))
             sleeps.call(subscribe_snapshots=c.SubscribeSnapshots(world="crowd", rate_hz=120))
             sleeps.call(subscribe_events=c.SubscribeEvents())
             sleeps.ask(run=c.Run(world="events"))
-            dropped = self.wait(server, lambda m: m("evod_pictures_dropped_total") > 100 and
+            dropped = self.wait(server, lambda m: m("evod_snapshots_dropped_total") > 100 and
                                 m("evod_events_dropped_total") > 0, "drops")
             self.assertGreater(dropped("evod_client_buffer_bytes"), 0)
             self.assertEqual(dropped("evod_subscriptions", to="events"), 1)
@@ -222,7 +222,7 @@ class Counts(Case):
         with self.client(server) as client:
             def command():
                 client.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
-            command()  # those that the server began with have been on the disk before it is
+            command()  # the commands of the start are on the disk before this one
             before = self.metrics(server)
             for _ in range(3):
                 command()
@@ -241,7 +241,7 @@ class Counts(Case):
         resident = int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) * 1024
         self.assertLess(abs(metrics("process_resident_memory_bytes") - resident), resident / 2)
         self.assertLess(abs(metrics("process_start_time_seconds") - time.time()), 3600)
-        # One lists what is open with one more descriptor; and a server that has just begun opens files and closes them.
+        # Listing the descriptors opens one more, and a new server opens and closes files.
         self.wait(server, lambda m: abs(m("process_open_fds") - len(os.listdir(f"/proc/{server.process.pid}/fd"))) < 4,
                   "as many as are open")
         threads = [value for (name, _), value in metrics.samples.items() if name == "evod_thread_cpu_seconds_total"]
@@ -250,7 +250,7 @@ class Counts(Case):
         version = waiting.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
         self.assertEqual(metrics("evod_build_info", version=version), 1)
 
-    def test_a_replay_tells_them_too(self):
+    def test_a_replay_has_metrics_too(self):
         server = self.serve("--speed", "max")
         with self.client(server) as client:
             client.call(run_until_tick=c.RunUntilTick(tick=100))
@@ -262,7 +262,7 @@ class Counts(Case):
             client.call(run_until_tick=c.RunUntilTick(tick=50))
             self.wait(replay, lambda m: m("evod_ticks_total", world="default") == 50, "ticks of the replay")
 
-    def test_the_list_of_the_documentation_is_what_is_told(self):
+    def test_the_documentation_lists_every_metric(self):
         listed = dict(re.findall(r"^\| `([a-z_]+)` \| (counter|gauge|histogram) \|", OPERATIONS.read_text(), re.M))
         self.assertEqual(listed, self.metrics(self.serve()).types)
 
@@ -281,17 +281,17 @@ class Clients(Case, access.Access):
                          {"viewer": 2, "controller": 1, "admin": 1})
         self.assertEqual(metrics("evod_logins_failed_total"), 0)
         self.come(server, "evod_" + "0" * 64, come_from="127.0.0.2")
-        self.come(server, come_from="127.0.0.3")  # who has none is asked for one: no failure
+        self.come(server, come_from="127.0.0.3")  # a missing token is not a failed login
         self.assertEqual(self.wait(server, lambda m: m("evod_logins_failed_total") > 0, "it")("evod_logins_failed_total"), 1)
 
-    def test_whoever_may_look_may_ask_for_metrics(self):
+    def test_a_viewer_may_query_metrics(self):
         secret = self.token("anna", access.VIEWER)
         server = self.serve("--require-token")
         viewer = self.come(server, secret)
-        told = viewer.call(get_metrics=c.GetMetrics()).metrics
+        answer = viewer.call(get_metrics=c.GetMetrics()).metrics
         page = self.metrics(server)
-        self.assertEqual({family.name for family in told.families}, page.names())
-        for family in told.families:
+        self.assertEqual({family.name for family in answer.families}, page.names())
+        for family in answer.families:
             self.assertEqual(family.help, page.help[family.name])
             for sample in family.samples:
                 if family.kind == c.METRIC_KIND_HISTOGRAM:
@@ -300,8 +300,8 @@ class Clients(Case, access.Access):
 
 
 class Health(Case):
-    def test_it_is_ill_while_its_disk_fails_and_well_again_afterwards(self):
-        # A file that may not grow is a disk that fails; the signal that would come with it is ignored.
+    def test_health_fails_while_the_disk_fails(self):
+        # A file that must not grow is a failing disk. The signal that comes with it is ignored.
         server = self.serve(restore_signals=False, preexec_fn=lambda: signal.signal(signal.SIGXFSZ, signal.SIG_IGN))
         self.wait_well(server)
         _, hard = resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE)
@@ -310,7 +310,7 @@ class Health(Case):
             client.ask(set_parameters=plain.set_parameters(mutation_chance=0.3))
             ill = plain.until(lambda: (lambda a: a if a.status != 200 else None)(self.get(server, "/healthz")), "illness")
             self.assertEqual(ill.status, 503)
-            self.assertRegex(ill.text, r"^runs cannot be written down: [^\n]*default\.evod[^\n]*\n$")
+            self.assertRegex(ill.text, r"^runs cannot be written: [^\n]*default\.evod[^\n]*\n$")
             metrics = self.wait(server, lambda m: m("evod_storage_state", state="failing") == 1, "a failing disk")
             first = metrics("evod_journal_lag_seconds")
             self.wait(server, lambda m: m("evod_journal_lag_seconds") > max(first, 0.5), "a growing lag")
@@ -334,10 +334,10 @@ class Health(Case):
 
 
 class Http(Case):
-    def test_only_what_is_there_can_only_be_read(self):
+    def test_only_existing_pages_can_be_read(self):
         server = self.serve()
         lost = self.get(server, "/")
-        self.assertEqual((lost.status, lost.text), (404, "there is no such page: there are /healthz and /metrics\n"))
+        self.assertEqual((lost.status, lost.text), (404, "no such page; available: /healthz and /metrics\n"))
         for method in ("POST", "PUT", "DELETE", "OPTIONS", "PATCH"):
             refused = self.get(server, method=method, body=b"x" * 100_000 if method in ("POST", "PUT") else None)
             self.assertEqual((refused.status, refused.headers["Allow"]), (405, "GET, HEAD"), method)
@@ -358,7 +358,7 @@ class Http(Case):
                 answer = connection.getresponse()
                 answer.read()
 
-    def test_requests_that_come_together_are_answered_in_their_order(self):
+    def test_pipelined_requests_are_answered_in_order(self):
         server = self.serve()
 
         def ask(_):
@@ -368,7 +368,7 @@ class Http(Case):
             self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", text, re.M), [b"200"] * 20 + [b"404"])
         waiting.quicker_than(SIMULATION_S, ask)
 
-    def test_what_is_no_request_is_answered_and_closed(self):
+    def test_an_invalid_request_is_answered_and_closed(self):
         server = self.serve()
         for data, status in ((b"\x00\x01\x02\xff" * 100 + b"\r\n\r\n", b"400"), (b"EV\x01\x01\x08\0\0\0abcdefgh\r\n\r\n", b"400"),
                              (b"GET /metrics HTTP/9.9\r\n\r\n", b"400"), (b"GET\r\n\r\n", b"400"),
@@ -384,7 +384,7 @@ class Http(Case):
 
     @contextlib.contextmanager
     def meets(self, server, limit, at_least=1):
-        """What is done within meets this limit so often; it is given what the limit is."""
+        """The block, given the limit's value, reaches this limit so often."""
         before = self.metrics(server)("evod_limit_reached_total", limit=limit)
         yield plain.limit(limit)
         self.wait(server, lambda m: m("evod_limit_reached_total", limit=limit) >= before + at_least, limit)
@@ -400,7 +400,7 @@ class Http(Case):
             plain.until(lambda: status_of(limit) == 200, "health")
             self.assertEqual(status_of(limit + 1), 431)
 
-    def test_whoever_sends_no_whole_request_is_closed(self):
+    def test_an_incomplete_request_is_closed(self):
         server = self.serve()
         with self.meets(server, "http_request_timeout_s", 3) as limit:
             began = time.monotonic()
@@ -409,11 +409,11 @@ class Http(Case):
                 self.assertEqual(read_all(connection), b"")
             self.assertGreater(time.monotonic() - began, limit - 0.5)
 
-    def test_a_crowd_is_told_to_come_back(self):
+    def test_too_many_connections_get_503(self):
         server = self.serve()
 
         def is_well():
-            with contextlib.suppress(ConnectionError):  # closed at once, perhaps before it was read
+            with contextlib.suppress(ConnectionError):  # closed at once, perhaps before the request was read
                 return self.get(server, "/healthz").status == 200
 
         def crowd(_):
@@ -424,15 +424,15 @@ class Http(Case):
                 come(limit - 1)
                 plain.until(is_well, "the last place")
                 come(1)
-                told = self.get(server, "/healthz")
-                self.assertEqual(told.status, 503)
-                self.assertIn(f"{limit} connections are open already", told.text)
+                answer = self.get(server, "/healthz")
+                self.assertEqual(answer.status, 503)
+                self.assertIn(f"{limit} connections are open already", answer.text)
                 come(limit)
                 plain.until(lambda: come(1) or read_all(self.raw(server, b"GET /healthz HTTP/1.1\r\n\r\n")) == b"",
                             "one is closed at once")
                 stack.close()
                 plain.until(is_well, "room")
-        waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)  # after which the silent ones are closed
+        waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)  # after that the silent ones are closed
 
     def test_it_is_closed_with_the_server(self):
         server = self.serve()
@@ -447,7 +447,7 @@ class Http(Case):
         self.assertNotIn("http", server.output())
         for words, status, why in ((["--http-bind", "127.0.0.1"], 2, "--http-port"), (["--http-port", "70000"], 2, "70000"),
                                    (["--http-port", "0", "--http-bind", "here"], 1, "give --http-bind the address"),
-                                   (["--http-port", str(server.port)], 1, "choose another with --http-port")):
+                                   (["--http-port", str(server.port)], 1, "choose another port with --http-port")):
             done = waiting.run([EVOD, "--keep-nothing", "--port", "0", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stderr)
             self.assertIn(why, done.stderr + done.stdout)
@@ -456,7 +456,7 @@ class Http(Case):
 class Top(Case):
     def test_once_is_one_page(self):
         server = self.serve("--speed", "max", "--start")
-        world = r"(?m)^default +[1-9]\d* +\S+ (µs|ms)"  # unless it stood still in these 0.2 s
+        world = r"(?m)^default +[1-9]\d* +\S+ (µs|ms)"  # unless it stalled for these 0.2 s
         page = plain.until(lambda: (lambda one: one if re.search(world, one) else None)(
             self.evoctl(server, "top", "--once", "--interval", "0.2")), "ticks")
         self.assertRegex(page, rf"^evod \d\S* at 127\.0\.0\.1:{server.port}, up ")
@@ -465,12 +465,12 @@ class Top(Case):
             self.assertRegex(page, f"(?m)^{line}")
         self.assertNotIn("\x1b", page)
 
-    def test_json_is_what_the_server_tells(self):
+    def test_json_contains_the_servers_metrics(self):
         server = self.serve()
-        told = json.loads(self.evoctl(server, "--json", "top", "--once"))
-        self.assertEqual({family["name"] for family in told["families"]}, self.metrics(server).names())
+        answer = json.loads(self.evoctl(server, "--json", "top", "--once"))
+        self.assertEqual({family["name"] for family in answer["families"]}, self.metrics(server).names())
 
-    def test_piped_it_prints_page_after_page_until_it_is_interrupted(self):
+    def test_piped_it_prints_pages_until_interrupted(self):
         server = self.serve()
         top = subprocess.Popen([EVOCTL, "--server", f"127.0.0.1:{server.port}", "--json", "top", "--interval", "0.1"],
                                stdout=subprocess.PIPE, text=True)
@@ -499,20 +499,20 @@ class Top(Case):
         self.assertEqual(waiting.ended(top), 0)
         first, second = drawn.split(b"\x1b[J")[1:3]
         lines = second.decode().replace("\r", "").split("\n")
-        # What comes before the next drawing goes up over all of this one.
+        # Anything before the next drawing overwrites all of this one.
         self.assertRegex(lines[-1], r"^\x1b\[\d+A$")
         self.assertEqual(int(lines[-1][2:-1]), len(lines) - 1)
         self.assertLess(len(lines), 25)
         self.assertLessEqual(max(len(line) for line in lines), 80)
         self.assertTrue(any(re.match(r"and \d+ more", line) for line in lines), lines)
 
-    def test_a_server_that_does_not_answer_is_told(self):
+    def test_a_server_that_does_not_answer_is_reported(self):
         done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", "top", "--once"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
 
 
 class Log(Case):
-    def test_lines_of_json_whatever_a_client_calls_itself(self):
+    def test_json_lines_survive_any_client_name(self):
         server = self.serve("--log-format", "json", "--log-level", "trace")
         names = ['quotes " and \\ and \'', "line\nbreak\r\n", "escape \x1b[2J\x1b]0;title\x07", "nul \0 del \x7f",
                  "csi \u009b31m", "\u2028 é 🦠", '","level":"error","x":"']
@@ -539,17 +539,17 @@ class Log(Case):
         refused = [line for line in lines if line.get("code") == "NOT_FOUND"]
         self.assertEqual((len(refused), {line["level"] for line in refused}), (len(names), {"debug"}))
         asked = [line["message"] for line in lines if line["level"] == "trace"]
-        self.assertEqual(sum("asks get_statistics" in message for message in asked), len(names))
+        self.assertEqual(sum("sends get_statistics" in message for message in asked), len(names))
         self.assertFalse(any(line["level"] == "error" for line in lines))
 
-    def test_less_is_told_where_less_is_wanted(self):
-        for level, tells in (("info", True), ("warn", False), ("error", False)):
+    def test_the_log_level_filters_messages(self):
+        for level, written in (("info", True), ("warn", False), ("error", False)):
             process = subprocess.Popen([EVOD, "--keep-nothing", "--port", "0", "--log-level", level],
                                        stdout=subprocess.PIPE, text=True)
             self.addCleanup(process.kill)
             plain.until(lambda: catches(process.pid, signal.SIGTERM), "it minds signals")
             process.terminate()
-            self.assertEqual("listening on" in waiting.communicate(process)[0], tells, level)
+            self.assertEqual("listening on" in waiting.communicate(process)[0], written, level)
 
     def test_every_refusal_is_in_the_log_of_level_debug(self):
         server = self.serve("--log-level", "debug")

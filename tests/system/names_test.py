@@ -1,4 +1,4 @@
-"""One name of a world after another: created, forked, reset and deleted without waiting for answers, by two clients, with
+"""World names reused quickly: created, forked, reset and deleted without waiting for answers, by two clients, with
 kills in between. EVOD names the program, MESSAGES the folder of the message classes.
 
 ROUNDS   of the random sequences; SEED draws them.
@@ -19,7 +19,7 @@ OK, NOT_FOUND, EXISTS = 0, 5, 6
 
 
 class Gathering:
-    """Keeps what is sent."""
+    """Records what is sent."""
 
     bytes = b""
 
@@ -29,11 +29,11 @@ class Gathering:
 
 class Names(past.Case):
     def serve(self):
-        # A world that runs is within a generation, so that a fork of it begins with a checkpoint, which is compressed first.
+        # A running world is within a generation, so a fork begins with a checkpoint that is compressed first.
         return self.server("--data", f"{self.folder}/runs", "--speed", "max", "--start")
 
     def at_once(self, client, *requests):
-        """Sends all of them in one go, so that the server takes the last before the first is on the disk; their statuses."""
+        """Sends all requests at once, so that the server applies the last before the first is on the disk. Returns their statuses."""
         together, client.socket = client.socket, Gathering()
         asked = [client.ask(**request) for request in requests]
         gathered, client.socket = client.socket, together
@@ -112,13 +112,13 @@ class Signals(past.Case):
         client.ask(create_world=c.CreateWorld(name="large", parameters=plain.assignments(
             population_size=3_000_000, island_width_px=100_000.0, island_height_px=100_000.0)))
         client.ask(list_worlds=c.ListWorlds())
-        client.call(get_metrics=c.GetMetrics())  # so that the server has read what was asked
+        client.call(get_metrics=c.GetMetrics())  # so that the server has read the requests
         server.process.terminate()
         client.next_event("server_going_away")
-        self.assertNotIn(1, client.responses)  # the world is still being made
+        self.assertNotIn(1, client.responses)  # the world is still being created
         server.process.terminate()
         self.assertEqual(waiting.ended(server.process), -15)
-        self.assertIn("SIGTERM again: ends at once", server.output())
+        self.assertIn("SIGTERM again: ending at once", server.output())
         server = self.server("--data", f"{self.folder}/runs")
         self.client(server).call(list_worlds=c.ListWorlds())
 
@@ -139,7 +139,7 @@ class Signals(past.Case):
         client.run_to(100, "other")
         server.process.terminate()
         self.assertEqual(waiting.ended(server.process), 4)
-        # The other world's file is whole: the trouble of one keeps no other from being written.
+        # The other world's file is complete: one failing file does not block others.
         with contextlib.closing(sqlite3.connect(f"{self.folder}/runs/other.evod")) as run:
             self.assertEqual(run.execute("SELECT count(*) FROM end_mark").fetchall(), [(1,)])
 

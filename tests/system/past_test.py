@@ -133,11 +133,11 @@ class OpenReplay(Case):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=249))).world.name
         viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=past, rate_hz=60))
-        self.assertEqual(viewer.next_picture().tick, 249)
+        self.assertEqual(viewer.next_snapshot().tick, 249)
         viewer.call(run_until_tick=c.RunUntilTick(world=past, tick=250))
-        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 250).state_hash.hex(), self.hashes[250])
+        self.assertEqual(viewer.next_snapshot(lambda snapshot: snapshot.tick == 250).state_hash.hex(), self.hashes[250])
         viewer.call(seek=c.Seek(world=past, to=at(tick=121)))
-        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 121).state_hash.hex(), self.hashes[121])
+        self.assertEqual(viewer.next_snapshot(lambda snapshot: snapshot.tick == 121).state_hash.hex(), self.hashes[121])
         statistics = viewer.call(get_statistics=c.GetStatistics(world=past)).statistics
         self.assertEqual({row.generation for row in statistics.last}, {1})
         self.assertEqual(len(viewer.call(get_history=c.GetHistory(world=past)).history.generations), 2)

@@ -1,4 +1,4 @@
-"""A stranger's client against a real server: everything docs/PROTOCOL.md promises, and what it says of abuse.
+"""An independent client against a real server: everything that docs/PROTOCOL.md promises, abuse included.
 
 Plain Python 3, protobuf and numpy, with message classes made by protoc, and the decoder of docs/PROTOCOL.md; nothing else
 of this repository. Each class below
@@ -67,9 +67,9 @@ class Server:
 
 class Client:
     def __init__(self, server, hello=True, key=None, come_from="127.0.0.1", over=None):
-        """over: a socket that is connected already."""
+        """over: a connected socket to use."""
         self.key, self.request_id = key or secrets.token_hex(8), 0
-        self.events, self.pictures, self.responses = [], [], {}
+        self.events, self.snapshots, self.responses = [], [], {}
         self.farewell = None  # the status of a Goodbye
         self.socket = over or self.connected(server, come_from)
         if hello:
@@ -122,19 +122,19 @@ class Client:
         return channel, self.read(length)
 
     def control(self):
-        """The next control message; pictures are put aside."""
+        """Returns the next control message and stores snapshots."""
         while True:
             channel, body = self.frame()
             if channel == 1:
                 return session_pb2.ServerMessage.FromString(body)
             assert channel == 2
-            self.pictures.append(stream_pb2.SnapshotFrame.FromString(body))
+            self.snapshots.append(stream_pb2.SnapshotFrame.FromString(body))
 
     def step(self):
-        """One frame, put where it belongs."""
+        """Reads one frame and stores it by its kind."""
         channel, body = self.frame()
         if channel == 2:
-            self.pictures.append(stream_pb2.SnapshotFrame.FromString(body))
+            self.snapshots.append(stream_pb2.SnapshotFrame.FromString(body))
             return
         message = session_pb2.ServerMessage.FromString(body)
         if message.HasField("event"):
@@ -163,7 +163,7 @@ class Client:
         return self.responses.pop(request_id)
 
     def goodbye(self):
-        """The status with which the server ends the session."""
+        """The status of the server's Goodbye."""
         while self.farewell is None:
             self.step()
         return self.farewell
@@ -181,12 +181,12 @@ class Client:
     def wait_world(self, condition, name=""):
         return until(lambda: (lambda x: x if condition(x) else None)(self.world(name)), "world in a state")
 
-    def next_picture(self, condition=lambda picture: True):
+    def next_snapshot(self, condition=lambda snapshot: True):
         while True:
-            while self.pictures:
-                picture = self.pictures.pop(0)
-                if condition(picture):
-                    return picture
+            while self.snapshots:
+                snapshot = self.snapshots.pop(0)
+                if condition(snapshot):
+                    return snapshot
             self.step()
 
     def next_event(self, kind, condition=lambda event: True):
@@ -202,7 +202,7 @@ class Client:
         return self.wait_world(lambda x: x.tick == tick and x.state == w.RUN_STATE_PAUSED, world)
 
     def assert_closed(self):
-        """Nothing more comes, and the server has closed its end."""
+        """Asserts that the server has closed the connection."""
         while True:
             try:
                 self.step()
@@ -280,7 +280,7 @@ class WithServer(unittest.TestCase):
         return result
 
     def tearDown(self):
-        with Client(self.server) as stranger:  # whatever was done to it, the server lives and serves
+        with Client(self.server) as stranger:  # the server still works after the test
             stranger.call(list_worlds=c.ListWorlds())
 
     def new_world(self, name=None, seed=1, **parameters):
@@ -307,7 +307,7 @@ class Handshake(WithServer):
         client.socket.sendall(data)
         return client
 
-    def test_welcome_says_who_the_server_is(self):
+    def test_welcome_identifies_the_server(self):
         welcome = self.client.welcome
         self.assertEqual(welcome.protocol_version, 1)
         self.assertRegex(welcome.server_version, r"^\d+\.\d+\.\d+$")
@@ -326,17 +326,17 @@ class Handshake(WithServer):
             client.socket.sendall(bytes([byte]))
         self.assertEqual(client.control().welcome.protocol_version, 1)
 
-    def test_other_protocols_are_told_and_closed(self):
+    def test_other_protocols_get_a_goodbye(self):
         self.refused(self.raw(b"GET / HTTP/1.1\r\nHost: evod\r\n\r\n"), INVALID, "'EV'")
 
-    def test_a_wrong_framing_version_is_told_and_closed(self):
+    def test_a_wrong_framing_version_gets_a_goodbye(self):
         self.refused(self.raw(b"EV\x02\x01\0\0\0\0"), INVALID, "version 2")
 
-    def test_a_wrong_channel_is_told_and_closed(self):
+    def test_a_wrong_channel_gets_a_goodbye(self):
         self.refused(self.raw(b"EV\x01\x02\0\0\0\0"), INVALID, "channel 2")
         self.refused(self.raw(b"EV\x01\x09\0\0\0\0"), INVALID, "channel 9")
 
-    def test_what_came_before_a_damaged_frame_is_answered(self):
+    def test_requests_before_a_damaged_frame_are_answered(self):
         world = self.new_world(population_size=20)
         for _ in range(20):
             client = self.enterContext(Client(self.server))
@@ -357,10 +357,10 @@ class Handshake(WithServer):
     def test_a_request_before_the_hello_is_refused(self):
         client = self.enterContext(Client(self.server, hello=False))
         client.ask(list_worlds=c.ListWorlds())
-        self.refused(client, PRECONDITION, "hello")
+        self.refused(client, PRECONDITION, "Hello")
 
     def test_an_empty_first_message_is_refused(self):
-        self.refused(self.raw(b"EV\x01\x01\0\0\0\0"), PRECONDITION, "hello")
+        self.refused(self.raw(b"EV\x01\x01\0\0\0\0"), PRECONDITION, "Hello")
 
     def test_another_protocol_version_is_refused(self):
         client = self.enterContext(Client(self.server, hello=False))
@@ -374,7 +374,7 @@ class Handshake(WithServer):
         client.hello(protocol_version=1, protocol_version_max=7, features=["none that exists"])
         self.assertEqual(client.control().welcome.protocol_version, 1)
 
-    def test_frames_keep_to_what_the_client_takes(self):
+    def test_frames_respect_the_clients_size_limit(self):
         small = self.enterContext(Client(self.server, hello=False))
         small.hello(frame_bytes_max=65535)
         status = self.refused(small, INVALID, "frame_bytes_max")
@@ -384,18 +384,18 @@ class Handshake(WithServer):
         self.assertTrue(client.control().HasField("welcome"))
         world = self.new_world(population_size=2000, island_width_px=6000.0, island_height_px=6000.0)
         refused = client.call(EXHAUSTED, get_population=c.GetPopulation(world=world))
-        self.assertIn("the client takes 65536", refused.status.message)
+        self.assertIn("the client accepts 65536", refused.status.message)
         self.assertEqual(refused.status.reason, c.REASON_ANSWER_TOO_LARGE)
         client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
         large = self.new_world(population_size=20_000, island_width_px=20_000.0, island_height_px=20_000.0)
         client.call(subscribe_snapshots=c.SubscribeSnapshots(world=large, rate_hz=60))
-        self.assertEqual(client.next_picture().world, world)
+        self.assertEqual(client.next_snapshot().world, world)
         self.client.call(run_until_tick=c.RunUntilTick(world=large, tick=5))
         self.client.wait_world(lambda x: x.tick == 5, large)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
-        client.next_picture(lambda p: p.world == world and p.tick == 5)
-        self.assertEqual([p for p in client.pictures if p.world == large], [])
-        client.call(list_worlds=c.ListWorlds())  # the session goes on
+        client.next_snapshot(lambda p: p.world == world and p.tick == 5)
+        self.assertEqual([p for p in client.snapshots if p.world == large], [])
+        client.call(list_worlds=c.ListWorlds())  # the session continues
 
     def test_long_names_are_refused_each(self):
         client = self.enterContext(Client(self.server, hello=False))
@@ -409,13 +409,13 @@ class Handshake(WithServer):
         self.assertEqual((response.request_id, response.status.code), (0, PRECONDITION))
         self.client.call(list_worlds=c.ListWorlds())
 
-    def test_who_says_nothing_is_closed_in_time(self):
+    def test_a_silent_connection_is_closed_in_time(self):
         began = time.monotonic()
         client = self.enterContext(Client(self.server, hello=False))
-        self.refused(client, PRECONDITION, "no hello")
+        self.refused(client, PRECONDITION, "no Hello")
         self.assertGreater(time.monotonic() - began, self.client.welcome.limits.hello_timeout_s - 0.5)
 
-    def test_one_session_too_many_is_told(self):
+    def test_one_session_too_many_gets_a_goodbye(self):
         limit = self.client.welcome.limits.sessions_max
         with contextlib.ExitStack() as stack:
             from_one = self.client.welcome.limits.sessions_per_address_max
@@ -430,18 +430,18 @@ class Handshake(WithServer):
             sessions[0].socket.close()
             until(lambda: self.admitted(), "a place is free again")
 
-    def test_a_frame_that_does_not_come_whole_ends_its_session(self):
+    def test_an_incomplete_frame_ends_its_session(self):
         client, patient = self.enterContext(Client(self.server)), self.enterContext(Client(self.server))
         began = time.monotonic()
-        client.socket.sendall(b"EV\x01\x01\x08\x00\x00\x00")  # and then nothing
+        client.socket.sendall(b"EV\x01\x01\x08\x00\x00\x00")  # a header without its body
         message = client.control()
         self.assertEqual(message.goodbye.status.code, PRECONDITION)
-        self.assertIn("did not come whole", message.goodbye.status.message)
+        self.assertIn("did not arrive", message.goodbye.status.message)
         client.assert_closed()
         self.assertGreater(time.monotonic() - began, self.client.welcome.limits.frame_timeout_s - 0.5)
-        patient.call(list_worlds=c.ListWorlds())  # who says nothing at all may stay
+        patient.call(list_worlds=c.ListWorlds())  # an idle session may stay
 
-    def test_frames_that_follow_each_other_closely_may_go_on_for_long(self):
+    def test_a_dense_sequence_of_frames_is_not_late(self):
         body = session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())).SerializeToString()
         frame = b"EV\x01\x01" + struct.pack("<I", len(body)) + body
         limit_s = self.client.welcome.limits.frame_timeout_s
@@ -450,7 +450,7 @@ class Handshake(WithServer):
             with Client(self.server) as client:
                 client.socket.sendall(frame[:5])
                 end = time.monotonic() + limit_s + 1
-                while time.monotonic() < end:  # never a moment without half a frame
+                while time.monotonic() < end:  # a frame is incomplete at every moment
                     client.socket.sendall(frame[5:] + frame[:5])
                     client.response(1)
                     lap()
@@ -463,19 +463,19 @@ class Handshake(WithServer):
 
 
 class Requests(WithServer):
-    def test_an_unknown_request_is_unimplemented_and_the_session_lives(self):
+    def test_an_unknown_request_does_not_end_the_session(self):
         body = session_pb2.ClientMessage(request=c.Request(request_id=7, client_key="k")).SerializeToString()
         unknown = b"\xfa\x3e\x02\x08\x01"  # field 1007, two bytes
         inner = c.Request(request_id=7, client_key="k").SerializeToString() + unknown
         self.client.send_body(b"\x12" + bytes([len(inner)]) + inner)
         self.assertEqual(self.client.response(7).status.code, UNIMPLEMENTED)
-        self.client.send_body(body)  # no request at all
+        self.client.send_body(body)  # without a request
         self.assertEqual(self.client.response(7).status.code, UNIMPLEMENTED)
-        self.client.send_body(unknown)  # no message that is known
+        self.client.send_body(unknown)  # an unknown message
         self.assertEqual(self.client.response(0).status.code, UNIMPLEMENTED)
         self.client.call(list_worlds=c.ListWorlds())
 
-    def test_refusals_tell_programs_the_reason(self):
+    def test_refusals_have_a_reason_for_programs(self):
         world = self.new_world(generation_limit=1)
         nowhere = "no_such_world"
         for reason, request in (
@@ -516,22 +516,22 @@ class Requests(WithServer):
         self.client.send_body(b"\x12" + bytes([len(query)]) + query)
         self.assertEqual(self.client.response(8).status.code, OK)
 
-    def test_a_body_that_is_no_message_is_refused_and_the_session_lives(self):
+    def test_an_invalid_body_does_not_end_the_session(self):
         for body in (b"\xff\xff\xff", b"\x12\x7f", os.urandom(100), b"\x12\x06\x12\x04\xff\xfe\xfd\xfc"):
             self.client.send_body(body)
             self.client.responses.clear()
             self.assertIn(self.client.response(0).status.code, (INVALID, UNIMPLEMENTED))
         self.client.call(list_worlds=c.ListWorlds())
-        self.assertNotIn("libprotobuf", self.server.output())  # or strangers could fill the log
+        self.assertNotIn("libprotobuf", self.server.output())  # otherwise clients could fill the log
 
-    def test_a_frame_too_long_is_told_and_closed(self):
+    def test_a_frame_too_long_gets_a_goodbye(self):
         self.client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", (1 << 20) + 1))
         status = self.client.goodbye()
         self.assertEqual(status.code, INVALID)
         self.assertIn("1048576", status.message)
         self.client.assert_closed()
 
-    def test_a_stream_out_of_step_is_told_and_closed(self):
+    def test_a_stream_out_of_step_gets_a_goodbye(self):
         self.client.send(session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())))
         self.client.socket.sendall(b"xx" * 100)
         self.assertEqual(self.client.response(1).status.code, OK)
@@ -576,7 +576,7 @@ class Requests(WithServer):
             order.append(self.client.control().response.request_id)
         self.assertEqual(order, ids)
 
-    def test_who_says_no_more_still_gets_the_answers(self):
+    def test_a_half_closed_client_still_gets_its_answers(self):
         ids = [self.client.ask(get_parameters=c.GetParameters()) for _ in range(20)]
         self.client.socket.shutdown(socket.SHUT_WR)
         for i in ids:
@@ -584,7 +584,7 @@ class Requests(WithServer):
         self.client.assert_closed()
 
     @unittest.skipIf(os.environ.get("SANITIZED"), "such a server is too slow to have as many answers waiting in time")
-    def test_who_does_not_read_the_answers_is_closed(self):
+    def test_a_client_that_reads_no_answers_is_closed(self):
         one = session_pb2.ClientMessage(request=c.Request(request_id=1, describe=c.Describe())).SerializeToString()
         frame = b"EV\x01\x01" + struct.pack("<I", len(one)) + one
 
@@ -593,17 +593,17 @@ class Requests(WithServer):
             with Client(self.server) as silent, self.assertRaises((BrokenPipeError, ConnectionResetError)):
                 while True:
                     silent.socket.sendall(frame * 1000)
-            until(lambda: " is closed: " in self.server.output()[logged:], "it is logged")
+            until(lambda: " closed: " in self.server.output()[logged:], "it is logged")
             self.assertIn("does not read its answers", self.server.output()[logged:])
         waiting.quicker_than(self.client.welcome.limits.stalled_timeout_s, flood)
 
-    def test_describe_tells_messages_parameters_and_limits(self):
+    def test_describe_has_messages_parameters_and_limits(self):
         description = self.client.call(describe=c.Describe()).description
         files = descriptor_pb2.FileDescriptorSet.FromString(description.file_descriptor_set)
         names = [f.name for f in files.file]
         self.assertEqual(sorted(names), ["evod/v1/commands.proto", "evod/v1/session.proto", "evod/v1/stream.proto",
-                                         "evod/v1/world.proto"])
-        for index, file in enumerate(files.file):  # a file after all that it imports
+                                         "evod/v1/world.proto", "google/protobuf/descriptor.proto"])
+        for index, file in enumerate(files.file):  # a file after its imports
             self.assertLessEqual(set(file.dependency), set(names[:index]))
         self.assertEqual(description.limits, self.client.welcome.limits)
         self.assertGreater(len(description.parameters), 60)
@@ -625,7 +625,7 @@ class Requests(WithServer):
 
 
 class Commands(WithServer):
-    def test_create_delete_and_what_can_be_wrong_with_them(self):
+    def test_worlds_are_created_and_deleted_or_refused(self):
         world = self.client.call(create_world=c.CreateWorld(
             name="a_World-1", seed=5, parameters=assignments(population_size=7))).world
         self.assertEqual((world.name, world.seed, world.tick, world.generation, world.state),
@@ -713,18 +713,18 @@ class Commands(WithServer):
         self.client.call(INVALID, set_speed=c.SetSpeed(world=world, speed=w.Speed(max=False)))
         self.assertTrue(self.client.world(world).speed.max)
 
-    def test_a_paced_world_keeps_its_pace_beside_one_at_full_speed(self):
+    def test_a_paced_world_keeps_its_pace_beside_a_fast_one(self):
         busy, paced = self.new_world(), self.new_world()
         self.client.call(set_speed=c.SetSpeed(world=busy, speed=w.Speed(max=True)))
         self.client.call(run=c.Run(world=busy))
         self.client.call(run=c.Run(world=paced))
         began, first = time.monotonic(), self.client.world(paced).tick
         self.client.wait_world(lambda x: x.tick >= first + 90, paced)
-        self.assertGreater(time.monotonic() - began, 1.3)  # 90 ticks are 1.5 s: never faster
+        self.assertGreater(time.monotonic() - began, 1.3)  # 90 ticks take at least 1.5 s
         self.assertGreater(self.client.world(busy).tick, 1)
-        self.client.wait_world(lambda x: abs(x.ticks_per_s - 60) < 45, paced)  # unless the machine stands still
+        self.client.wait_world(lambda x: abs(x.ticks_per_s - 60) < 45, paced)  # unless the machine stalls
 
-    def test_the_same_seed_gives_the_same_hashes_and_another_does_not(self):
+    def test_only_the_same_seed_gives_the_same_hashes(self):
         world = self.new_world(seed=42, generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         first = [self.client.run_to(t, world).state_hash for t in (1, 100, 333)]
@@ -763,12 +763,12 @@ class Commands(WithServer):
                         {"run_until_tick": c.RunUntilTick(world=world, tick=1 << 30)}):
             status = self.client.call(PRECONDITION, **request).status
             self.assertIn("generation_limit", status.message)
-        self.client.call(set_parameters=set_parameters(world, generation_limit=5))  # and on it goes
+        self.client.call(set_parameters=set_parameters(world, generation_limit=5))  # and it continues
         self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED and x.generation == 5, world)
 
 
 class Control(WithServer):
-    """Several who drive one world: nobody keeps it from the others, and everybody sees one order of things."""
+    """Several controllers of one world: none blocks the others, and all see the same order of events."""
     OF_SERVER = w.ACTOR_KIND_SERVER
 
     def setUp(self):
@@ -780,11 +780,11 @@ class Control(WithServer):
         self.client.call(run=c.Run(world=self.name))
 
     def borrow(self):
-        """Takes the running world half a second on. Returns the tick at which it then stands."""
+        """Steps the running world by half a second. Returns its tick."""
         tick = self.client.world(self.name).tick + 1500
         lent = self.client.call(run_until_tick=c.RunUntilTick(world=self.name, tick=tick))
         self.assertTrue(lent.world.leased)
-        return max(tick, lent.applied_tick)  # it may have been there before the command came
+        return max(tick, lent.applied_tick)  # it may have been there before the command arrived
 
     def wait_standing(self, tick):
         def stands(world):
@@ -793,7 +793,7 @@ class Control(WithServer):
         return self.client.wait_world(stands, self.name)
 
     def while_lent(self, attempt):
-        """The result of attempt(), which must not outlast a lease."""
+        """The result of attempt(), which must finish within a lease."""
         return waiting.quicker_than(self.client.welcome.limits.lease_s, attempt)
 
     def next_control(self, kind, condition=lambda world: True):
@@ -805,7 +805,7 @@ class Control(WithServer):
     def renew(self, expected=OK, client=None):
         return (client or self.client).call(expected, renew_lease=c.RenewLease(world=self.name))
 
-    def test_a_lease_ends_by_itself_and_the_world_goes_on(self):
+    def test_a_lease_expires_and_the_world_continues(self):
         def stand(_):
             tick = self.borrow()
             self.assertTrue(self.wait_standing(tick).leased)
@@ -852,7 +852,7 @@ class Control(WithServer):
         back = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
         self.assertEqual((back.run_until_generation, back.HasField("run_until_tick")), (goal, False))
 
-    def test_what_another_says_holds_and_ends_the_lease(self):
+    def test_another_clients_command_ends_the_lease(self):
         for request, state in (({"pause": c.Pause(world=self.name)}, w.RUN_STATE_PAUSED),
                                ({"resume": c.Resume(world=self.name)}, w.RUN_STATE_RUNNING),
                                ({"run": c.Run(world=self.name)}, w.RUN_STATE_RUNNING)):
@@ -862,7 +862,7 @@ class Control(WithServer):
             self.assertEqual((answer.leased, answer.state), (False, state))
             self.renew(PRECONDITION)
 
-    def test_another_who_steps_takes_the_lease_over(self):
+    def test_another_client_that_steps_takes_the_lease(self):
         def take_over(_):
             self.borrow()
             self.assertTrue(self.other.call(run_until_tick=c.RunUntilTick(world=self.name, tick=0)).world.leased)
@@ -870,12 +870,12 @@ class Control(WithServer):
         self.while_lent(take_over)
         self.renew(PRECONDITION)
 
-    def test_who_wants_it_to_stand_pauses_it_first(self):
+    def test_a_world_paused_before_stays_paused(self):
         paused = self.client.call(pause=c.Pause(world=self.name)).world
         self.assertFalse(self.client.run_to(paused.tick + 5, self.name).leased)
         self.renew(PRECONDITION)
 
-    def test_two_controllers_have_one_order_which_all_are_told(self):
+    def test_all_see_one_order_of_two_controllers(self):
         rounds, clients = 200, [self.client, self.other]
         listeners = [self.enterContext(Client(self.server)) for _ in range(2)]
         for listener in listeners:
@@ -890,28 +890,28 @@ class Control(WithServer):
             answers += [client.response(request) for client, request in asked]
         by_revision = {answer.parameters.revision: answer for answer in answers}
         self.assertEqual(sorted(by_revision), list(range(first + 1, first + 1 + 2 * rounds)))
-        told = [[listener.next_event("parameters_changed") for _ in range(2 * rounds)] for listener in listeners]
-        self.assertEqual(told[0], told[1])
+        seen = [[listener.next_event("parameters_changed") for _ in range(2 * rounds)] for listener in listeners]
+        self.assertEqual(seen[0], seen[1])
         addresses = {f"127.0.0.1:{client.socket.getsockname()[1]}" for client in clients}
-        self.assertEqual({event.parameters_changed.by.address for event in told[0]}, addresses)
-        for event, revision in zip(told[0], sorted(by_revision)):
+        self.assertEqual({event.parameters_changed.by.address for event in seen[0]}, addresses)
+        for event, revision in zip(seen[0], sorted(by_revision)):
             changed, answer = event.parameters_changed, by_revision[revision]
             self.assertEqual((changed.revision, event.tick), (revision, answer.applied_tick))
             self.assertEqual(changed.changed[0].value, as_dict(answer.parameters)["food_health"].value)
-        self.assertEqual([e.tick for e in told[0]], sorted(e.tick for e in told[0]))
+        self.assertEqual([e.tick for e in seen[0]], sorted(e.tick for e in seen[0]))
 
-    def test_a_world_that_is_asked_too_much_goes_slower_and_says_so(self):
+    def test_a_world_too_fast_for_the_machine_is_slowed(self):
         world = self.new_world("crowd" + secrets.token_hex(4), population_size=2000, scale_with_population=True)
         self.client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=10000)))
         self.client.call(run=c.Run(world=world))
-        self.assertFalse(self.client.next_picture().slowed)
-        slowed = self.client.next_picture(lambda picture: picture.slowed)
+        self.assertFalse(self.client.next_snapshot().slowed)
+        slowed = self.client.next_snapshot(lambda snapshot: snapshot.slowed)
         self.assertTrue(self.client.world(world).slowed)
-        self.client.next_picture(lambda picture: picture.tick > slowed.tick)  # it goes on
+        self.client.next_snapshot(lambda snapshot: snapshot.tick > slowed.tick)  # it continues
         paused = self.client.call(pause=c.Pause(world=world)).world
         self.assertFalse(self.client.world(world).slowed)
-        # No tick was left out: without haste it comes to the same.
+        # No tick was skipped: an unhurried run gives the same result.
         twin = self.new_world(population_size=2000, scale_with_population=True)
         self.client.call(set_speed=c.SetSpeed(world=twin, speed=w.Speed(max=True)))
         self.assertEqual(self.client.run_to(paused.tick, twin).state_hash, paused.state_hash)
@@ -927,7 +927,7 @@ class Parameters(WithServer):
         return self.client.call(get_parameters=c.GetParameters(world=self.world)).parameters
 
     def refused(self, **values):
-        """The paths of a refusal; nothing has changed."""
+        """The field paths of a refusal; asserts that nothing has changed."""
         before = self.get()
         status = self.client.call(INVALID, set_parameters=set_parameters(self.world, **values)).status
         self.assertEqual(self.get(), before)
@@ -942,7 +942,7 @@ class Parameters(WithServer):
             self.assertEqual(p.value, description.default_value, p.name)
             self.assertFalse(p.HasField("pending"), p.name)
 
-    def test_every_parameter_refuses_what_is_out_of_its_range_or_of_another_kind(self):
+    def test_every_parameter_refuses_invalid_values(self):
         for p in self.registry:
             wrong = {w.PARAMETER_KIND_REAL: [math.nan, math.inf, -math.inf, math.nextafter(p.max, math.inf),
                                              math.nextafter(p.min, -math.inf), True, "much"],
@@ -980,14 +980,14 @@ class Parameters(WithServer):
         status = self.client.call(INVALID, set_parameters=many).status
         self.assertEqual([v.field for v in status.violations], ["set_parameters.parameters"])
 
-    def test_what_holds_now_and_what_waits(self):
+    def test_current_and_pending_values_are_shown(self):
         answer = self.client.call(set_parameters=set_parameters(
             self.world, food_health=31.0, population_size=60, island_count=2, steering_lookahead_s=1))
         self.assertEqual(answer.applied_tick, 0)
         now = as_dict(answer.parameters)
         self.assertEqual(len(now), len(self.registry))
         self.assertEqual((now["food_health"].value.real, now["food_health"].HasField("pending")), (31, False))
-        self.assertEqual(now["steering_lookahead_s"].value.real, 1)  # a whole number is taken for a real
+        self.assertEqual(now["steering_lookahead_s"].value.real, 1)  # a whole number is accepted for a real
         self.assertEqual((now["population_size"].value.count, now["population_size"].pending.count), (50, 60))
         self.assertEqual((now["island_count"].value.count, now["island_count"].pending.count), (1, 2))
         self.assertEqual(answer.parameters, self.get())
@@ -1014,12 +1014,12 @@ class Parameters(WithServer):
         self.assertEqual(as_dict(self.get())["food_health"].value.real, 1)
 
 
-class Retries(WithServer):
+class Resending(WithServer):
     def again(self, client, request):
         client.send(session_pb2.ClientMessage(request=request))
         return client.response(request.request_id)
 
-    def test_the_first_answer_comes_again_on_any_session(self):
+    def test_the_first_answer_is_repeated_on_any_session(self):
         request = c.Request(request_id=1, client_key="retry-create", create_world=c.CreateWorld(name="once"))
         first = self.again(self.client, request)
         self.assertEqual(first.status.code, OK)
@@ -1039,7 +1039,7 @@ class Retries(WithServer):
         self.client.call(run=c.Run(world=world))
         self.assertEqual(self.again(self.client, request), first)
 
-    def test_a_request_that_was_wrong_in_itself_may_be_mended_with_the_same_id(self):
+    def test_an_invalid_request_may_be_corrected_with_its_id(self):
         world = self.new_world()
         self.client.call(INVALID, request_id=900, run=c.Run(world=world, generations=0))
         self.client.call(request_id=900, run=c.Run(world=world, generations=1))
@@ -1067,7 +1067,7 @@ class Retries(WithServer):
                            run_until_tick=c.RunUntilTick(world=world, tick=0))
         self.assertEqual(self.again(self.client, newest).status.code, OK)
 
-    def test_a_client_that_hangs_up_can_ask_what_became_of_it(self):
+    def test_a_reconnecting_client_gets_its_answer(self):
         request = c.Request(request_id=1, client_key="retry-gone", create_world=c.CreateWorld(name="gone"))
         with Client(self.server) as hasty:
             hasty.send(session_pb2.ClientMessage(request=request))
@@ -1083,7 +1083,7 @@ class Events(WithServer):
     def subscribe(self, world=None):
         return self.watcher.call(subscribe_events=c.SubscribeEvents(world=world)).subscription.subscription_id
 
-    def test_everyone_is_told_of_commands_and_by_whom(self):
+    def test_subscribers_get_commands_with_their_actor(self):
         self.subscribe()
         world = self.new_world(seed=3)
         event = self.watcher.next_event("world_created")
@@ -1104,7 +1104,7 @@ class Events(WithServer):
             self.assertEqual((event.tick, event.run_id), (answer.applied_tick, answer.world.run_id))
         reset = self.client.call(reset_world=c.ResetWorld(world=world)).world
         self.assertEqual(self.watcher.next_event("world_reset").world_reset.world.run_id, reset.run_id)
-        self.client.call(set_parameters=set_parameters(world, dry_run=True, food_health=6.0))  # tells nobody
+        self.client.call(set_parameters=set_parameters(world, dry_run=True, food_health=6.0))  # causes no event
         self.client.call(create_world=c.CreateWorld(name="brief"))
         self.client.call(delete_world=c.DeleteWorld(world="brief"))
         following = [self.watcher.next_event(kind) for kind in ("world_created", "world_deleted")]
@@ -1120,7 +1120,7 @@ class Events(WithServer):
         self.watcher.next_event("run_control_changed")
         self.assertEqual([e.world for e in self.watcher.events], [])
 
-    def test_a_reached_goal_is_told(self):
+    def test_a_reached_goal_causes_an_event(self):
         world = self.new_world()
         self.subscribe(world)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
@@ -1152,7 +1152,7 @@ class Events(WithServer):
         self.assertEqual([(s.generation, s.island) for s in history.generations],
                          list(itertools.product(range(1, 6), range(3))))
 
-    def test_an_island_that_dies_out_is_told(self):
+    def test_an_extinction_causes_an_event(self):
         world = self.new_world(food_count=0, poison_count=0, generation_s=600)
         self.subscribe(world)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
@@ -1179,7 +1179,7 @@ class Events(WithServer):
         self.assertEqual(self.watcher.events, [])
 
 
-class Pictures(WithServer):
+class Snapshots(WithServer):
     def setUp(self):
         super().setUp()
         self.viewer = self.enterContext(Client(self.server))
@@ -1188,24 +1188,24 @@ class Pictures(WithServer):
         return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
             world=world, rate_hz=rate_hz, island=island)).subscription
 
-    def test_a_picture_shows_the_world_as_it_is(self):
+    def test_a_snapshot_shows_the_world_as_it_is(self):
         world = self.new_world(seed=11, obstacle_count=3, crate_count=2, obstacle_size_px=50, crate_size_px=30)
         self.client.run_to(50, world)
         subscription = self.subscribe(world)
-        picture = self.viewer.next_picture()
+        snapshot = self.viewer.next_snapshot()
         info = self.client.world(world)
         for field in ("tick", "generation", "generation_tick", "simulated_s", "state"):
-            self.assertEqual(getattr(picture, field), getattr(info, field), field)
-        self.assertEqual((picture.state_hash.hex(), picture.run_id.hex()), (info.state_hash, info.run_id))
-        self.assertEqual((picture.world, picture.island, picture.island_count), (world, 0, 1))
-        self.assertEqual((picture.width_px, picture.height_px, picture.item_radius_px), (1280, 720, 4))
-        self.assertEqual((picture.codec, picture.subscription_id), (stream_pb2.CODEC_PLAIN, subscription.subscription_id))
+            self.assertEqual(getattr(snapshot, field), getattr(info, field), field)
+        self.assertEqual((snapshot.state_hash.hex(), snapshot.run_id.hex()), (info.state_hash, info.run_id))
+        self.assertEqual((snapshot.world, snapshot.island, snapshot.island_count), (world, 0, 1))
+        self.assertEqual((snapshot.width_px, snapshot.height_px, snapshot.item_radius_px), (1280, 720, 4))
+        self.assertEqual((snapshot.codec, snapshot.subscription_id), (stream_pb2.CODEC_PLAIN, subscription.subscription_id))
         live = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics.live[0]
-        self.assertEqual(picture.live, live)
-        self.assertEqual(picture.organism_count, live.alive_count)
-        self.assertEqual((picture.crate_count, picture.obstacle_count), (2, 3))
-        self.assertLessEqual(picture.food_count, 25)
-        seen = columns(picture)
+        self.assertEqual(snapshot.live, live)
+        self.assertEqual(snapshot.organism_count, live.alive_count)
+        self.assertEqual((snapshot.crate_count, snapshot.obstacle_count), (2, 3))
+        self.assertLessEqual(snapshot.food_count, 25)
+        seen = columns(snapshot)
         self.assertEqual(set(seen["obstacles"]["half_width"]), {25.0})
         self.assertEqual(set(seen["crates"]["half_height"]), {15.0})
         for kind in ("organisms", "food", "poison"):
@@ -1213,50 +1213,50 @@ class Pictures(WithServer):
             self.assertTrue((seen[kind]["x"] <= 1280).all() and (seen[kind]["y"] <= 720).all())
         organisms = seen["organisms"]
         for row, organism in enumerate(organisms["id"]):
-            told = self.client.call(get_organism=c.GetOrganism(world=world, organism=int(organism))).organism
-            self.assertTrue(told.alive)
-            self.assertLessEqual(abs(told.x_px - organisms["x"][row]), 1 / 32)
-            self.assertLessEqual(abs(told.y_px - organisms["y"][row]), 1 / 32)
-            self.assertLessEqual(abs(told.radius_px - organisms["radius"][row]), 1 / 32)
-            self.assertLessEqual(abs(told.health - organisms["health"][row]), 1 / 32)
-            self.assertAlmostEqual(told.lived_s, 50 / 60)
-            self.assertAlmostEqual(told.radius_px, told.genes[2] * 0.1, places=4)
+            answer = self.client.call(get_organism=c.GetOrganism(world=world, organism=int(organism))).organism
+            self.assertTrue(answer.alive)
+            self.assertLessEqual(abs(answer.x_px - organisms["x"][row]), 1 / 32)
+            self.assertLessEqual(abs(answer.y_px - organisms["y"][row]), 1 / 32)
+            self.assertLessEqual(abs(answer.radius_px - organisms["radius"][row]), 1 / 32)
+            self.assertLessEqual(abs(answer.health - organisms["health"][row]), 1 / 32)
+            self.assertAlmostEqual(answer.lived_s, 50 / 60)
+            self.assertAlmostEqual(answer.radius_px, answer.genes[2] * 0.1, places=4)
 
-    def test_pictures_follow_the_run_and_end_with_its_last_tick(self):
+    def test_snapshots_end_with_the_last_tick(self):
         world = self.new_world()
         began = time.monotonic()
         self.subscribe(world, 30.0)
-        self.assertEqual(self.viewer.next_picture().tick, 0)
+        self.assertEqual(self.viewer.next_snapshot().tick, 0)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=40))
-        ticks, picture = [], None
-        while picture is None or picture.tick < 40:
-            picture = self.viewer.next_picture()
-            ticks.append(picture.tick)
+        ticks, snapshot = [], None
+        while snapshot is None or snapshot.tick < 40:
+            snapshot = self.viewer.next_snapshot()
+            ticks.append(snapshot.tick)
         self.assertEqual(ticks, sorted(ticks))
-        # At 30 a second, and a few out of turn: of 40 ticks, which are 2/3 s, some 20 are shown.
+        # At 30 Hz with a few extra snapshots: 40 ticks take 2/3 s, so about 20 are shown.
         self.assertLess(len(ticks), 30 * (time.monotonic() - began) + 8)
-        self.assertEqual((picture.state, picture.state_hash.hex()), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
+        self.assertEqual((snapshot.state, snapshot.state_hash.hex()), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(self.viewer.pictures, [])  # it stands still: nothing more
+        self.assertEqual(self.viewer.snapshots, [])  # the world is idle
 
-    def test_a_newcomer_sees_a_world_that_stands_still(self):
+    def test_a_new_viewer_sees_a_paused_world(self):
         world = self.new_world()
         self.subscribe(world)
-        self.viewer.next_picture()
+        self.viewer.next_snapshot()
         with Client(self.server) as newcomer:
             newcomer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=1))
-            self.assertEqual(newcomer.next_picture().tick, 0)
+            self.assertEqual(newcomer.next_snapshot().tick, 0)
 
     def test_changes_are_shown_at_once_however_low_the_rate(self):
         world = self.new_world()
         self.subscribe(world, 0.001)
-        self.viewer.next_picture()
+        self.viewer.next_snapshot()
         for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)}, {"reset_world": c.ResetWorld(world=world)},
                         {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
             answer = self.client.call(**request).world
-            self.viewer.next_picture(lambda p: p.run_id.hex() == answer.run_id and p.speed == answer.speed)
+            self.viewer.next_snapshot(lambda p: p.run_id.hex() == answer.run_id and p.speed == answer.speed)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=9))
-        self.viewer.next_picture(lambda p: p.tick == 9 and p.state == w.RUN_STATE_PAUSED)
+        self.viewer.next_snapshot(lambda p: p.tick == 9 and p.state == w.RUN_STATE_PAUSED)
 
     def test_islands_alone_and_together(self):
         world = self.new_world(island_count=3)
@@ -1264,8 +1264,8 @@ class Pictures(WithServer):
         self.assertEqual((everyone.subscription_id, one.subscription_id), (1, 2))
         seen = {}
         while len(seen) < 4:
-            picture = self.viewer.next_picture()
-            seen[picture.subscription_id, picture.island] = picture
+            snapshot = self.viewer.next_snapshot()
+            seen[snapshot.subscription_id, snapshot.island] = snapshot
         self.assertEqual(set(seen), {(1, 0), (1, 1), (1, 2), (2, 2)})
         self.assertEqual(seen[1, 2].plain, seen[2, 2].plain)
         status = self.viewer.call(NOT_FOUND, subscribe_snapshots=c.SubscribeSnapshots(
@@ -1289,20 +1289,20 @@ class Pictures(WithServer):
         self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=ids[0]))
         self.viewer.call(subscribe_events=c.SubscribeEvents())
 
-    def test_a_fitness_of_genes_alone_has_empty_pictures(self):
+    def test_a_fitness_of_genes_alone_has_empty_snapshots(self):
         world = self.new_world(fitness="rastrigin")
         self.subscribe(world)
-        picture = self.viewer.next_picture()
-        self.assertEqual((picture.organism_count, len(picture.plain.organisms.id)), (0, 0))
-        self.assertGreater(picture.width_px, 0)
+        snapshot = self.viewer.next_snapshot()
+        self.assertEqual((snapshot.organism_count, len(snapshot.plain.organisms.id)), (0, 0))
+        self.assertGreater(snapshot.width_px, 0)
 
     def test_a_wide_island_has_wide_positions(self):
         world = self.new_world(island_width_px=5000.0)
         self.subscribe(world)
-        picture = self.viewer.next_picture()
-        self.assertGreater(columns(picture)["food"]["x"].max(), 1280)
+        snapshot = self.viewer.next_snapshot()
+        self.assertGreater(columns(snapshot)["food"]["x"].max(), 1280)
 
-    def test_a_slow_viewer_gets_the_newest_and_is_told_what_it_missed(self):
+    def test_a_slow_viewer_gets_the_newest_and_a_drop_count(self):
         world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)  # 400 KB each
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
 
@@ -1311,16 +1311,16 @@ class Pictures(WithServer):
                 for one in (viewer, reader):
                     one.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
                 self.client.call(run=c.Run(world=world))
-                for _ in range(20):  # 8 MB, more than lies between the programs
-                    reader.next_picture()
+                for _ in range(20):  # 8 MB, more than fits between the programs
+                    reader.next_snapshot()
                 paused = self.client.call(pause=c.Pause(world=world)).world
-                newest = reader.next_picture(lambda p: p.tick == paused.tick)
-                snapshot = viewer.next_picture(lambda p: p.tick == paused.tick)
+                newest = reader.next_snapshot(lambda p: p.tick == paused.tick)
+                snapshot = viewer.next_snapshot(lambda p: p.tick == paused.tick)
             self.assertGreater(snapshot.dropped_count, 0)
             self.assertEqual(snapshot.plain, newest.plain)
         waiting.quicker_than(self.client.welcome.limits.stalled_timeout_s, watch_slowly)
 
-    def test_a_viewer_that_dies_in_mid_picture_leaves_no_trace(self):
+    def test_a_viewer_that_dies_in_mid_snapshot_leaves_no_trace(self):
         world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)
         self.client.call(run=c.Run(world=world))
         for _ in range(5):
@@ -1332,7 +1332,7 @@ class Pictures(WithServer):
 
 
 class Deltas(WithServer):
-    """CODEC_DELTA. Every delta that is read here is decoded, so none may come whose base was not sent just before it."""
+    """CODEC_DELTA. Every delta received is decoded, so its base must be the snapshot sent before it."""
 
     def setUp(self):
         super().setUp()
@@ -1343,23 +1343,23 @@ class Deltas(WithServer):
         return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
             world=world, codec=codec, rate_hz=rate_hz, **fields)).subscription.subscription_id
 
-    def acknowledge(self, picture):
+    def acknowledge(self, snapshot):
         self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
-            subscription_id=picture.subscription_id, island=picture.island, sequence=picture.sequence)))
+            subscription_id=snapshot.subscription_id, island=snapshot.island, sequence=snapshot.sequence)))
 
-    def next(self, condition=lambda picture: True):
-        """The next picture that fulfils the condition, and its entities; those before it are decoded too."""
+    def next(self, condition=lambda snapshot: True):
+        """The next snapshot that fulfils the condition, and its entities. Earlier ones are decoded, too."""
         while True:
-            picture = self.viewer.next_picture()
-            self.assertGreater(picture.sequence, 0)
-            if picture.codec == stream_pb2.CODEC_PLAIN:
-                seen = columns(picture)
+            snapshot = self.viewer.next_snapshot()
+            self.assertGreater(snapshot.sequence, 0)
+            if snapshot.codec == stream_pb2.CODEC_PLAIN:
+                seen = columns(snapshot)
             else:
-                decoder = self.decoders.setdefault((picture.subscription_id, picture.island), Decoder(zstd_content))
+                decoder = self.decoders.setdefault((snapshot.subscription_id, snapshot.island), Decoder(zstd_content))
                 seen = {kind: {field: column if field in ("id", "dx", "dy") else column / 16
-                               for field, column in fields.items()} for kind, fields in decoder.decode(picture).items()}
-            if condition(picture):
-                return picture, seen
+                               for field, column in fields.items()} for kind, fields in decoder.decode(snapshot).items()}
+            if condition(snapshot):
+                return snapshot, seen
 
     def assert_same(self, seen, expected):
         for kind, fields in expected.items():
@@ -1367,26 +1367,26 @@ class Deltas(WithServer):
                 numpy.testing.assert_array_equal(seen[kind][field], column, f"{kind} {field}")
 
     def compare(self, world, generations):
-        """Watches the world by every codec at once, until all have shown a good many ticks alike."""
+        """Views the world with every codec at once until all have shown many equal ticks."""
         kinds = {self.subscribe(world, stream_pb2.CODEC_PLAIN): "plain", self.subscribe(world): "delta",
                  self.subscribe(world, compression=stream_pb2.COMPRESSION_ZSTD): "zstd"}
         self.client.call(run=c.Run(world=world))
         shown, alike, deltas, last_generation = {}, 0, 0, 0
         while alike < 100 or deltas < 100 or last_generation < generations:
-            picture, seen = self.next()
-            deltas += picture.base_sequence > 0
-            if picture.base_sequence > 0:
-                self.assertEqual((picture.world, picture.run_id, picture.width_px), ("", b"", 0))
-            of_hash = shown.setdefault((picture.state_hash, picture.island), {})
-            of_hash[kinds[picture.subscription_id]] = seen
+            snapshot, seen = self.next()
+            deltas += snapshot.base_sequence > 0
+            if snapshot.base_sequence > 0:
+                self.assertEqual((snapshot.world, snapshot.run_id, snapshot.width_px), ("", b"", 0))
+            of_hash = shown.setdefault((snapshot.state_hash, snapshot.island), {})
+            of_hash[kinds[snapshot.subscription_id]] = seen
             if len(of_hash) == 3:
                 self.assert_same(of_hash["delta"], of_hash["plain"])
                 self.assert_same(of_hash["zstd"], of_hash["plain"])
-                shown.pop((picture.state_hash, picture.island))
+                shown.pop((snapshot.state_hash, snapshot.island))
                 alike += 1
-                last_generation = picture.generation
+                last_generation = snapshot.generation
 
-    def test_they_show_what_plain_snapshots_show(self):
+    def test_they_equal_plain_snapshots(self):
         world = self.new_world(seed=3, obstacle_count=3, crate_count=4, obstacle_size_px=50, crate_size_px=30,
                                island_count=2, generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=4)))
@@ -1395,28 +1395,28 @@ class Deltas(WithServer):
     def test_they_show_wide_islands(self):
         self.compare(self.new_world(island_width_px=5000.0, crate_count=4), 1)
 
-    def test_a_picture_tells_when_it_is_and_deltas_leave_out_what_stays(self):
+    def test_deltas_omit_constant_fields(self):
         world = self.new_world()
         self.subscribe(world)
         self.client.run_to(30, world)
         info = self.client.world(world)
-        picture, _ = self.next(lambda p: p.tick == 30)
+        snapshot, _ = self.next(lambda p: p.tick == 30)
         for field in ("tick", "generation", "generation_tick", "simulated_s"):
-            self.assertEqual(getattr(picture, field), getattr(info, field), field)
-        self.assertEqual(picture.state_hash.hex(), info.state_hash)
+            self.assertEqual(getattr(snapshot, field), getattr(info, field), field)
+        self.assertEqual(snapshot.state_hash.hex(), info.state_hash)
 
-    def test_everybody_takes_a_keyframe_now_and_then(self):
+    def test_every_viewer_gets_keyframes_now_and_then(self):
         world = self.new_world()
         self.subscribe(world)
         self.client.call(run=c.Run(world=world))
-        before, picture = None, self.next()[0]
-        # One that nothing but time has brought: none was left out before it, and the generation is the same.
-        while not before or picture.base_sequence > 0 or before.base_sequence == 0 or (
-                picture.dropped_count, picture.generation) != (before.dropped_count, before.generation):
-            before, picture = picture, self.next()[0]
-        self.assertEqual(picture.world, world)
+        before, snapshot = None, self.next()[0]
+        # A snapshot caused by time only: none was dropped before it, and the generation is the same.
+        while not before or snapshot.base_sequence > 0 or before.base_sequence == 0 or (
+                snapshot.dropped_count, snapshot.generation) != (before.dropped_count, before.generation):
+            before, snapshot = snapshot, self.next()[0]
+        self.assertEqual(snapshot.world, world)
 
-    def test_nothing_of_islands_and_worlds_that_are_gone_is_sent(self):
+    def test_islands_and_worlds_that_are_gone_are_not_sent(self):
         world = self.new_world(island_count=3)
         self.subscribe(world)
         for _ in range(3):
@@ -1427,15 +1427,15 @@ class Deltas(WithServer):
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=keyframe.subscription_id))
         again, _ = self.next()
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(([again.island, again.run_id.hex()], self.viewer.pictures), ([0, run], []))
+        self.assertEqual(([again.island, again.run_id.hex()], self.viewer.snapshots), ([0, run], []))
         self.client.call(delete_world=c.DeleteWorld(world=world))
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=keyframe.subscription_id))
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(self.viewer.pictures, [])
+        self.assertEqual(self.viewer.snapshots, [])
         self.client.call(create_world=c.CreateWorld(name=world))  # for the end of the test
         self.next(lambda p: p.base_sequence == 0)
 
-    def test_who_joins_costs_the_others_nothing(self):
+    def test_a_new_viewer_costs_the_others_nothing(self):
         world = self.new_world()
         self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=0.01, codec=stream_pb2.CODEC_DELTA))
         self.next()
@@ -1445,11 +1445,11 @@ class Deltas(WithServer):
             for _ in range(50):
                 subscription = restless.call(subscribe_snapshots=c.SubscribeSnapshots(
                     world=world, rate_hz=0.01, codec=stream_pb2.CODEC_DELTA)).subscription
-                self.assertEqual(restless.next_picture().base_sequence, 0)
+                self.assertEqual(restless.next_snapshot().base_sequence, 0)
                 restless.call(unsubscribe=c.Unsubscribe(subscription_id=subscription.subscription_id))
-                restless.pictures.clear()
+                restless.snapshots.clear()
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertLess(len(self.viewer.pictures), 5)  # of the commands for the world, and of no newcomer
+        self.assertLess(len(self.viewer.snapshots), 5)  # only those of the commands, none for the new viewer
 
     def test_a_new_run_begins_with_a_keyframe(self):
         world = self.new_world()
@@ -1457,16 +1457,16 @@ class Deltas(WithServer):
         self.client.call(run=c.Run(world=world))
         self.next(lambda p: p.base_sequence > 0)
         again = self.client.call(reset_world=c.ResetWorld(world=world)).world
-        picture, _ = self.next(lambda p: p.generation_tick == 0 and p.base_sequence == 0)
-        self.assertEqual(picture.run_id.hex(), again.run_id)
+        snapshot, _ = self.next(lambda p: p.generation_tick == 0 and p.base_sequence == 0)
+        self.assertEqual(snapshot.run_id.hex(), again.run_id)
 
-    def test_a_keyframe_comes_when_it_is_asked_for_even_if_the_world_stands_still(self):
+    def test_a_requested_keyframe_comes_from_a_paused_world(self):
         world = self.new_world()
         self.client.run_to(20, world)
         subscription = self.subscribe(world)
         first, seen = self.next()
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(self.viewer.pictures, [])
+        self.assertEqual(self.viewer.snapshots, [])
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
         again, seen_again = self.next()
         self.assertEqual((again.base_sequence, again.sequence, again.body), (0, first.sequence, first.body))
@@ -1474,33 +1474,33 @@ class Deltas(WithServer):
         status = self.viewer.call(NOT_FOUND, request_keyframe=c.RequestKeyframe(subscription_id=99)).status
         self.assertEqual([v.field for v in status.violations], ["request_keyframe.subscription_id"])
 
-    def test_a_damaged_picture_is_refused_and_a_keyframe_mends_it(self):
+    def test_a_keyframe_follows_a_damaged_snapshot(self):
         world = self.new_world()
         subscription = self.subscribe(world)
         self.client.call(run=c.Run(world=world))
-        picture, _ = self.next(lambda p: p.base_sequence > 0)
+        snapshot, _ = self.next(lambda p: p.base_sequence > 0)
         decoder = self.decoders[subscription, 0]
-        damaged = self.viewer.next_picture(lambda p: p.base_sequence > 0)
+        damaged = self.viewer.next_snapshot(lambda p: p.base_sequence > 0)
         damaged.body = bytes([damaged.body[0] ^ 1]) + damaged.body[1:]
         with self.assertRaisesRegex(ValueError, "damaged|not the last"):
             decoder.decode(damaged)
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
-        keyframe = self.viewer.next_picture(lambda p: p.base_sequence == 0)  # deltas are thrown away meanwhile
+        keyframe = self.viewer.next_snapshot(lambda p: p.base_sequence == 0)  # deltas are discarded meanwhile
         decoder.decode(keyframe)
         self.next(lambda p: p.base_sequence > 0)
 
-    def test_pictures_wait_for_acknowledgements_and_the_newest_wins(self):
+    def test_the_newest_snapshot_waits_for_acknowledgements(self):
         world = self.new_world()
         subscription = self.subscribe(world, unacknowledged_max=2)
         self.client.call(run=c.Run(world=world))
         first, second = self.next()[0], self.next()[0]
         with Client(self.server) as other:
             other.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
-            other.next_picture(lambda p: p.tick > second.tick + 60)
+            other.next_snapshot(lambda p: p.tick > second.tick + 60)
             paused = self.client.call(pause=c.Pause(world=world)).world
-            other.next_picture(lambda p: p.tick == paused.tick)
+            other.next_snapshot(lambda p: p.tick == paused.tick)
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(self.viewer.pictures, [])  # two are on their way
+        self.assertEqual(self.viewer.snapshots, [])  # two are unacknowledged
         self.acknowledge(first)
         newest, _ = self.next()
         self.assertEqual((newest.tick, newest.base_sequence), (paused.tick, 0))
@@ -1508,10 +1508,10 @@ class Deltas(WithServer):
         self.acknowledge(newest)
         self.client.call(run=c.Run(world=world))
         for _ in range(20):
-            picture, _ = self.next()
-            self.acknowledge(picture)
+            snapshot, _ = self.next()
+            self.acknowledge(snapshot)
         self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
-            subscription_id=subscription + 1, island=7, sequence=1)))  # means nothing
+            subscription_id=subscription + 1, island=7, sequence=1)))  # is ignored
 
     def test_plain_snapshots_can_be_acknowledged_too(self):
         world = self.new_world()
@@ -1519,12 +1519,12 @@ class Deltas(WithServer):
         self.client.call(run=c.Run(world=world))
         last = 0
         for _ in range(10):
-            picture, _ = self.next()
-            self.assertGreater(picture.tick + 1, last)
-            last = picture.tick
+            snapshot, _ = self.next()
+            self.assertGreater(snapshot.tick + 1, last)
+            last = snapshot.tick
             self.viewer.call(list_worlds=c.ListWorlds())
-            self.assertEqual(self.viewer.pictures, [])
-            self.acknowledge(picture)
+            self.assertEqual(self.viewer.snapshots, [])
+            self.acknowledge(snapshot)
 
     def test_viewers_at_other_rates_keep_their_deltas(self):
         world = self.new_world()
@@ -1532,10 +1532,10 @@ class Deltas(WithServer):
         subscriptions = [self.subscribe(world, rate_hz=rate_hz) for rate_hz in (120.0, 40.0, 30.0)]
         deltas = dict.fromkeys(subscriptions, 0)
         while min(deltas.values()) < 50:
-            picture, _ = self.next(lambda p: p.base_sequence > 0)
-            deltas[picture.subscription_id] += 1
+            snapshot, _ = self.next(lambda p: p.base_sequence > 0)
+            deltas[snapshot.subscription_id] += 1
 
-    def test_what_cannot_be_subscribed_to_is_refused(self):
+    def test_invalid_subscriptions_are_refused(self):
         world = self.new_world()
         plain_by_zstd = c.SubscribeSnapshots(world=world, rate_hz=1, compression=stream_pb2.COMPRESSION_ZSTD)
         status = self.viewer.call(INVALID, subscribe_snapshots=plain_by_zstd).status
@@ -1570,32 +1570,32 @@ class Views(WithServer):
         self.assertEqual(answer.subscription_id, subscription)
 
     def change_view(self, subscription, **view):
-        """set_view, after which next() returns only snapshots that are sent after the change."""
+        """Sends set_view. Afterwards next() returns only snapshots sent after the change."""
         self.set_view(subscription, **view)
-        while self.viewer.pictures:
+        while self.viewer.snapshots:
             self.next()
 
-    def next(self, condition=lambda picture: True):
-        """The next picture that fulfils the condition, and what its tiles show; those before it are decoded too."""
+    def next(self, condition=lambda snapshot: True):
+        """The next snapshot that fulfils the condition, and the contents of its tiles. Earlier ones are decoded, too."""
         while True:
-            picture = self.viewer.next_picture()
+            snapshot = self.viewer.next_snapshot()
             seen = None
-            if picture.codec == stream_pb2.CODEC_DELTA:
-                self.assertEqual(picture.base_sequence, 0)
-                self.assertEqual((picture.tile_px, picture.body), (512, b""))
-                decoder = self.decoders.setdefault((picture.subscription_id, picture.island), TilesDecoder(zstd_content))
-                seen = decoder.decode(picture)
-            if condition(picture):
-                return picture, seen
+            if snapshot.codec == stream_pb2.CODEC_DELTA:
+                self.assertEqual(snapshot.base_sequence, 0)
+                self.assertEqual((snapshot.tile_px, snapshot.body), (512, b""))
+                decoder = self.decoders.setdefault((snapshot.subscription_id, snapshot.island), TilesDecoder(zstd_content))
+                seen = decoder.decode(snapshot)
+            if condition(snapshot):
+                return snapshot, seen
 
-    def tiles_of(self, picture):
-        return math.ceil(picture.width_px / 512), math.ceil(picture.height_px / 512)
+    def tiles_of(self, snapshot):
+        return math.ceil(snapshot.width_px / 512), math.ceil(snapshot.height_px / 512)
 
-    def in_tiles(self, columns_picture):
+    def in_tiles(self, plain_snapshot):
         """{kind: {"tile": …, "id": …, "x": …, …}} in 1/16 px, of a snapshot of CODEC_PLAIN."""
-        across, down = self.tiles_of(columns_picture)
+        across, down = self.tiles_of(plain_snapshot)
         entities = {}
-        for kind, fields in columns(columns_picture).items():
+        for kind, fields in columns(plain_snapshot).items():
             of_kind = {field: numpy.asarray(column * (1 if field == "id" else 16), numpy.int64)
                        for field, column in fields.items()}
             of_kind.setdefault("id", numpy.arange(len(of_kind["x"])))
@@ -1605,7 +1605,7 @@ class Views(WithServer):
         return entities
 
     def assert_full(self, seen, entities):
-        """What tiles of DETAIL_FULL show together is what is in them."""
+        """Asserts that the tiles of DETAIL_FULL together show exactly the entities in them."""
         for kind, expected in entities.items():
             there = numpy.isin(expected["tile"], list(seen))
             order = numpy.argsort(numpy.concatenate([of[kind]["id"] for of in seen.values()] or [[]]), kind="stable")
@@ -1613,47 +1613,47 @@ class Views(WithServer):
                 together = numpy.concatenate([of[kind][field] for of in seen.values()] or [[]])
                 numpy.testing.assert_array_equal(together[order], expected[field][there], f"{kind} {field}")
 
-    def touched(self, picture, region):
-        across, down = self.tiles_of(picture)
+    def touched(self, snapshot, region):
+        across, down = self.tiles_of(snapshot)
         return [row * across + column for row in range(down) for column in range(across)
                 if column * 512 < region.left_px + region.width_px and (column + 1) * 512 > region.left_px and
                 row * 512 < region.top_px + region.height_px and (row + 1) * 512 > region.top_px and
-                region.left_px < picture.width_px and region.top_px < picture.height_px]
+                region.left_px < snapshot.width_px and region.top_px < snapshot.height_px]
 
     def watch_together(self, world, generations=1, **fields):
-        """Plain snapshots, all tiles, and a region that pans with every snapshot."""
+        """Subscribes to plain snapshots, to all tiles, and to a region that moves with every snapshot."""
         whole, all_tiles = self.subscribe(world), self.subscribe(world, c.View(), **fields)
         panning = self.subscribe(world, c.View(region=c.Region(left_px=-500, width_px=600, height_px=600)), **fields)
         regions, step = {}, 0
         self.client.call(run=c.Run(world=world))
         shown, alike, bases, last_generation = {}, 0, {all_tiles: 0, panning: 0}, 0
         while alike < 150 or min(bases.values()) < 150 or last_generation < generations:
-            picture, seen = self.next()
-            subscription = picture.subscription_id
+            snapshot, seen = self.next()
+            subscription = snapshot.subscription_id
             if seen is not None:
-                bases[subscription] += sum(tile.base_sequence > 0 for tile in picture.tiles)
-                self.assertEqual([tile.tile for tile in picture.tiles], sorted(seen))
-                self.assertTrue(all(tile.detail == stream_pb2.DETAIL_FULL for tile in picture.tiles))
+                bases[subscription] += sum(tile.base_sequence > 0 for tile in snapshot.tiles)
+                self.assertEqual([tile.tile for tile in snapshot.tiles], sorted(seen))
+                self.assertTrue(all(tile.detail == stream_pb2.DETAIL_FULL for tile in snapshot.tiles))
             if subscription == panning:
                 step += 1
                 if step % 3 == 0:
                     region = c.Region(left_px=step * 17 % 3400 - 500, top_px=step * 11 % 2200 - 300, width_px=600,
                                       height_px=600)
                     self.set_view(panning, region=region)
-                    regions[tuple(self.touched(picture, region))] = True
+                    regions[tuple(self.touched(snapshot, region))] = True
                     if len(seen) > 0:
                         self.assertLess(len(seen), 10)
-            of_hash = shown.setdefault(picture.state_hash, {})
-            of_hash[subscription] = picture if seen is None else seen
+            of_hash = shown.setdefault(snapshot.state_hash, {})
+            of_hash[subscription] = snapshot if seen is None else seen
             if whole in of_hash and len(of_hash) > 1:
                 entities = self.in_tiles(of_hash[whole])
                 for seen in [of_hash.pop(name) for name in (all_tiles, panning) if name in of_hash]:
                     self.assert_full(seen, entities)
                     alike += 1
-                last_generation = picture.generation
+                last_generation = snapshot.generation
         self.assertGreater(len(regions), 3)
 
-    def test_all_tiles_and_those_of_a_region_show_what_plain_snapshots_show(self):
+    def test_all_tiles_and_regions_equal_plain_snapshots(self):
         world = self.wide_world(generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=3)))
         self.watch_together(world, 2)
@@ -1667,16 +1667,16 @@ class Views(WithServer):
         kinds = {self.subscribe(world, c.View(detail=detail), compression=compression): detail
                  for detail in (stream_pb2.DETAIL_DOTS, stream_pb2.DETAIL_DENSITY) for compression in (1, 2)}
         self.client.run_to(30, world)
-        pictures = {}
-        while len(pictures) < 5:
-            picture, seen = self.next(lambda p: p.tick == 30)
-            pictures[picture.subscription_id] = picture, seen
-        entities = self.in_tiles(pictures[whole][0])
-        across, down = self.tiles_of(pictures[whole][0])
+        snapshots = {}
+        while len(snapshots) < 5:
+            snapshot, seen = self.next(lambda p: p.tick == 30)
+            snapshots[snapshot.subscription_id] = snapshot, seen
+        entities = self.in_tiles(snapshots[whole][0])
+        across, down = self.tiles_of(snapshots[whole][0])
         for subscription, detail in kinds.items():
-            picture, seen = pictures[subscription]
+            snapshot, seen = snapshots[subscription]
             self.assertEqual(sorted(seen), list(range(across * down)))
-            self.assertEqual({tile.detail for tile in picture.tiles}, {detail})
+            self.assertEqual({tile.detail for tile in snapshot.tiles}, {detail})
             for kind, of_kind in list(entities.items())[:5 if detail == stream_pb2.DETAIL_DOTS else 3]:
                 for tile, shown in seen.items():
                     there = of_kind["tile"] == tile
@@ -1691,7 +1691,7 @@ class Views(WithServer):
                         numpy.add.at(expected, (y * cells // 8192, x * cells // 8192), 1)
                         numpy.testing.assert_array_equal(shown[kind], expected)
 
-    def test_a_region_that_moves_is_shown_at_once_even_if_the_world_stands_still(self):
+    def test_a_moved_region_is_sent_from_a_paused_world(self):
         world = self.wide_world()
         self.client.run_to(20, world)
         subscription = self.subscribe(world, c.View(region=c.Region(width_px=600, height_px=100)))
@@ -1713,22 +1713,22 @@ class Views(WithServer):
         self.set_view(subscription)
         self.assertEqual(len(self.next()[1]), 6 * 4)
 
-    def test_a_world_that_stands_still_is_shown_as_closely_as_the_budget_allows_in_time(self):
+    def test_a_paused_world_reaches_full_detail_in_time(self):
         world = self.wide_world()
         self.client.run_to(20, world)
 
         def details():
-            picture, _ = self.next()
-            self.assertEqual(picture.tick, 20)
-            shown.append((picture.sequence, picture.dropped_count))
-            return {tile.detail for tile in picture.tiles}
+            snapshot, _ = self.next()
+            self.assertEqual(snapshot.tick, 20)
+            shown.append((snapshot.sequence, snapshot.dropped_count))
+            return {tile.detail for tile in snapshot.tiles}
         shown = []
         everything = self.subscribe(world, c.View())
         keyframe_bytes = 8 + self.next()[0].ByteSize()
         self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=everything))
 
         def ask_for_too_much(_):
-            # Two seconds' worth is saved at first: 1.2 keyframes. The rest of another is saved in 1.3 s.
+            # Two seconds of budget are saved at first: 1.2 keyframes. The rest of the second takes 1.3 s.
             shown.clear()
             subscription = self.subscribe(world, c.View(bytes_per_s_max=keyframe_bytes * 6 // 10))
             try:
@@ -1737,12 +1737,12 @@ class Views(WithServer):
                 self.assertNotIn(stream_pb2.DETAIL_FULL, details())
             except AssertionError:
                 self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=subscription))
-                self.viewer.pictures.clear()
+                self.viewer.snapshots.clear()
                 raise
             return subscription
         subscription = waiting.quicker_than(1.3, ask_for_too_much)
-        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})  # now there is enough
-        # What is allowed from now on is there at once, too.
+        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})  # now the budget suffices
+        # A raised budget takes effect at once.
         self.change_view(subscription, bytes_per_s_max=1000)
         details()
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
@@ -1753,7 +1753,7 @@ class Views(WithServer):
         self.assertEqual(details(), {stream_pb2.DETAIL_DOTS})
         self.change_view(subscription, bytes_per_s_max=10 * keyframe_bytes)
         self.assertEqual(details(), {stream_pb2.DETAIL_FULL})
-        self.assertEqual(set(shown), {(shown[0][0], 0)})  # all of them are of the one picture, and none was dropped
+        self.assertEqual(set(shown), {(shown[0][0], 0)})  # all show the same snapshot, and none was dropped
 
     def test_a_damaged_tile_is_mended_by_a_keyframe(self):
         world = self.wide_world()
@@ -1761,12 +1761,12 @@ class Views(WithServer):
         self.client.call(run=c.Run(world=world))
         self.next(lambda p: any(t.base_sequence for t in p.tiles))
         decoder = self.decoders[subscription, 0]
-        damaged = self.viewer.next_picture()
+        damaged = self.viewer.next_snapshot()
         damaged.tiles[3].body = bytes([damaged.tiles[3].body[0] ^ 1]) + damaged.tiles[3].body[1:]
         with self.assertRaisesRegex(ValueError, "damaged|not the last"):
             decoder.decode(damaged)
         self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
-        decoder.decode(self.viewer.next_picture(lambda p: not any(t.base_sequence for t in p.tiles)))
+        decoder.decode(self.viewer.next_snapshot(lambda p: not any(t.base_sequence for t in p.tiles)))
         self.next(lambda p: all(t.base_sequence for t in p.tiles))
 
     def test_every_tile_takes_a_keyframe_now_and_then(self):
@@ -1776,11 +1776,11 @@ class Views(WithServer):
         keyframes = dict.fromkeys(range(24), 0)
         before = self.next()[0]
         while min(keyframes.values()) < 2:
-            picture = self.next()[0]
-            if (picture.dropped_count, picture.generation) == (before.dropped_count, before.generation):
-                for tile in picture.tiles:
+            snapshot = self.next()[0]
+            if (snapshot.dropped_count, snapshot.generation) == (before.dropped_count, before.generation):
+                for tile in snapshot.tiles:
                     keyframes[tile.tile] += tile.base_sequence == 0
-            before = picture
+            before = snapshot
 
     def test_they_wait_for_acknowledgements_and_the_newest_wins(self):
         world = self.wide_world()
@@ -1789,11 +1789,11 @@ class Views(WithServer):
         first = self.next()[0]
         with Client(self.server) as other:
             other.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
-            other.next_picture(lambda p: p.tick > first.tick + 60)
+            other.next_snapshot(lambda p: p.tick > first.tick + 60)
             paused = self.client.call(pause=c.Pause(world=world)).world
-            other.next_picture(lambda p: p.tick == paused.tick)
+            other.next_snapshot(lambda p: p.tick == paused.tick)
         self.viewer.call(list_worlds=c.ListWorlds())
-        self.assertEqual(self.viewer.pictures, [])
+        self.assertEqual(self.viewer.snapshots, [])
         self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
             subscription_id=subscription, island=0, sequence=first.sequence)))
         newest, _ = self.next()
@@ -1801,29 +1801,29 @@ class Views(WithServer):
         self.assertFalse(any(t.base_sequence for t in newest.tiles))
         self.assertGreater(newest.dropped_count, 0)
 
-    def test_a_budget_leaves_out_detail_and_then_pictures_and_is_kept(self):
+    def test_a_budget_reduces_detail_then_rate_and_is_kept(self):
         world = self.wide_world()
         subscription = self.subscribe(world, c.View(), rate_hz=60)
         self.client.call(run=c.Run(world=world))
         self.assertEqual({t.detail for t in self.next()[0].tiles}, {stream_pb2.DETAIL_FULL})
         began = time.monotonic()
         wanted_bytes_per_s = sum(8 + self.next()[0].ByteSize() for _ in range(60)) / (time.monotonic() - began)
-        # A few times too much for the first budget, and far too much for the second, however slow the machine is.
+        # A few times too much for the first budget, and far too much for the second, on any machine.
         for bytes_per_s, dropped_count in (wanted_bytes_per_s // 4, 0), (wanted_bytes_per_s // 100, 100):
             bytes_per_s = max(1000, int(bytes_per_s))
-            began, got, details, picture = time.monotonic(), 0, set(), None
+            began, got, details, snapshot = time.monotonic(), 0, set(), None
             self.change_view(subscription, bytes_per_s_max=bytes_per_s)
             while (got < 5 * bytes_per_s or stream_pb2.DETAIL_DENSITY not in details or
-                   picture.dropped_count < dropped_count):
-                picture, _ = self.next()
-                got += 8 + picture.ByteSize()
-                details |= {tile.detail for tile in picture.tiles}
-            # Beside what was saved and on its way before.
+                   snapshot.dropped_count < dropped_count):
+                snapshot, _ = self.next()
+                got += 8 + snapshot.ByteSize()
+                details |= {tile.detail for tile in snapshot.tiles}
+            # In addition to what was saved and in transit.
             self.assertLess(got, bytes_per_s * (time.monotonic() - began + 2) + 60_000)
         self.set_view(subscription)
         self.next(lambda p: {t.detail for t in p.tiles} == {stream_pb2.DETAIL_FULL})
 
-    def test_what_cannot_be_seen_is_refused(self):
+    def test_invalid_views_are_refused(self):
         world = self.new_world()
         nan, good = float("nan"), {"width_px": 1.0, "height_px": 1.0}
         wrong = [("region.left_px", {"region": c.Region(**good, left_px=nan)}),
@@ -1899,27 +1899,27 @@ class Queries(WithServer):
         self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, island=1))
 
     def population(self, world, island=0, first=0, client=None):
-        """Part of a population, with its columns as arrays."""
-        told = (client or self.client).call(
+        """A part of a population, with its columns as arrays."""
+        answer = (client or self.client).call(
             get_population=c.GetPopulation(world=world, island=island, first_organism=first)).population
         columns = lambda data, kind, count: numpy.frombuffer(data, kind).reshape(count, -1)
         return types.SimpleNamespace(
-            told=told, genes=columns(told.genes, "<f4", 6), parents=columns(told.parents, "<u4", 2),
-            founders=numpy.frombuffer(told.founders, "<u4"), choices=numpy.frombuffer(told.choices, "u1"), forces=columns(told.forces, "<f4", 2),
-            targets=columns(told.targets, "<f4", 2))
+            answer=answer, genes=columns(answer.genes, "<f4", 6), parents=columns(answer.parents, "<u4", 2),
+            founders=numpy.frombuffer(answer.founders, "<u4"), choices=numpy.frombuffer(answer.choices, "u1"), forces=columns(answer.forces, "<f4", 2),
+            targets=columns(answer.targets, "<f4", 2))
 
     def compare_with_organisms(self, world, island=0):
-        """Every row of a population is what GetOrganism tells."""
+        """Asserts that every row of a population equals the answer to GetOrganism."""
         all_of_them = self.population(world, island)
-        told = all_of_them.told
-        self.assertEqual((told.first, told.count), (0, told.organism_count))
+        answer = all_of_them.answer
+        self.assertEqual((answer.first, answer.count), (0, answer.organism_count))
         for column in (all_of_them.genes, all_of_them.forces, all_of_them.targets):
-            self.assertEqual(column.shape[1], told.count)
-        for i in range(told.count):
+            self.assertEqual(column.shape[1], answer.count)
+        for i in range(answer.count):
             one = self.client.call(get_organism=c.GetOrganism(world=world, island=island, organism=i)).organism
-            self.assertEqual(one.generation, told.generation)
+            self.assertEqual(one.generation, answer.generation)
             self.assertEqual(list(all_of_them.genes[:, i]), list(one.genes))
-            parents = list(all_of_them.parents[:, i]) if told.parents else []
+            parents = list(all_of_them.parents[:, i]) if answer.parents else []
             self.assertEqual(list(dict.fromkeys(parents)), list(one.parents))
             self.assertEqual(all_of_them.choices[i], one.choice)
             self.assertEqual(list(all_of_them.forces[:, i]), [one.force_x, one.force_y])
@@ -1927,7 +1927,7 @@ class Queries(WithServer):
             self.assertEqual(one.choice == w.CHOICE_UNSPECIFIED, not one.alive)
             if one.choice == w.CHOICE_WANDER:
                 self.assertEqual((one.target_x_px, one.target_y_px), (one.x_px, one.y_px))
-            elif one.choice != w.CHOICE_UNSPECIFIED:  # what it acts on is as far as it sees, or nearer
+            elif one.choice != w.CHOICE_UNSPECIFIED:  # the target is within its range of perception
                 seen = one.genes[4 if one.choice == w.CHOICE_SEEK else 5]
                 self.assertLessEqual(math.hypot(one.target_x_px - one.x_px, one.target_y_px - one.y_px), seen + 0.01)
         return all_of_them
@@ -1936,7 +1936,7 @@ class Queries(WithServer):
         world = self.new_world(generation_s=6, island_count=2, poison_count=200)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         at_first = self.compare_with_organisms(world, 1)
-        self.assertEqual((at_first.told.generation, at_first.told.generation_tick, at_first.told.parents), (1, 0, b""))
+        self.assertEqual((at_first.answer.generation, at_first.answer.generation_tick, at_first.answer.parents), (1, 0, b""))
         self.client.run_to(300, world)
         later = self.compare_with_organisms(world, 1)
         self.assertEqual((later.genes == at_first.genes).all(), True)
@@ -1944,12 +1944,12 @@ class Queries(WithServer):
         self.assertEqual(set(later.choices), {w.CHOICE_UNSPECIFIED, w.CHOICE_WANDER, w.CHOICE_SEEK, w.CHOICE_FLEE},
                          "some have died, and the living do everything that there is")
         self.client.run_to(360, world)
-        over = self.population(world, 1)  # nobody is about to do anything in the generation that is over
+        over = self.population(world, 1)  # organisms of a finished generation do nothing
         self.assertEqual(set(over.choices), {w.CHOICE_UNSPECIFIED})
         self.assertFalse(over.forces.any() or over.targets.any())
         self.client.run_to(361, world)
         bred = self.compare_with_organisms(world, 1)
-        self.assertEqual((bred.told.generation, bred.told.generation_tick, bred.parents.shape), (2, 1, (2, 50)))
+        self.assertEqual((bred.answer.generation, bred.answer.generation_tick, bred.parents.shape), (2, 1, (2, 50)))
         self.assertLess(bred.parents.max(), 50)
         self.assertEqual(list(bred.founders), list(50 + bred.parents[0]))
         for island, first, field, allowed in ((2, 0, "island", "0 to 1"), (0, 50, "first_organism", "0 to 49")):
@@ -1959,38 +1959,38 @@ class Queries(WithServer):
 
     def test_a_population_without_bodies_has_nothing_to_do(self):
         world = self.new_world(fitness="gene_sum")
-        told = self.population(world)
-        self.assertEqual(told.genes.shape, (6, 50))
-        self.assertEqual(set(told.choices), {w.CHOICE_UNSPECIFIED})
+        answer = self.population(world)
+        self.assertEqual(answer.genes.shape, (6, 50))
+        self.assertEqual(set(answer.choices), {w.CHOICE_UNSPECIFIED})
         self.assertEqual(self.client.call(get_motion=c.GetMotion(world=world)).motion.body_count, 0)
 
-    def test_organisms_do_what_they_are_said_to_be_about_to_do(self):
+    def test_organisms_do_what_was_predicted(self):
         world = self.new_world(respawn=False)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         for tick in (0, 60, 300):
             self.client.run_to(tick, world)
             organisms = lambda: [self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
                                  for i in range(50)]
-            before, told = organisms(), self.population(world)
+            before, answer = organisms(), self.population(world)
             self.client.run_to(tick + 1, world)
             pushed = [(i, o) for i, o in enumerate(organisms()) if o.alive and before[i].alive]
             self.assertGreater(len(pushed), 30)
-            as_told = sum(
-                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + told.forces[0, i] / o.mass_kg / 60),
+            as_predicted = sum(
+                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + answer.forces[0, i] / o.mass_kg / 60),
                              rel_tol=1e-4, abs_tol=1e-4) and
-                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + told.forces[1, i] / o.mass_kg / 60),
+                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + answer.forces[1, i] / o.mass_kg / 60),
                              rel_tol=1e-4, abs_tol=1e-4) for i, o in pushed)
-            self.assertGreaterEqual(as_told, 0.8 * len(pushed), "all but those that have bounced")
+            self.assertGreaterEqual(as_predicted, 0.8 * len(pushed), "all but those that have bounced")
 
     def test_a_large_population_comes_in_parts(self):
         rows = self.client.welcome.limits.population_rows_max
         world = self.new_world(population_size=2 * rows + 7, fitness="gene_sum")
         parts, first = [], 0
-        while not parts or first < parts[-1].told.organism_count:
+        while not parts or first < parts[-1].answer.organism_count:
             parts.append(self.population(world, first=first))
-            self.assertEqual(parts[-1].told.first, first)
-            first += parts[-1].told.count
-        self.assertEqual([part.told.count for part in parts], [rows, rows, 7])
+            self.assertEqual(parts[-1].answer.first, first)
+            first += parts[-1].answer.count
+        self.assertEqual([part.answer.count for part in parts], [rows, rows, 7])
         genes = numpy.concatenate([part.genes for part in parts], axis=1)
         for i in (0, rows - 1, rows, 2 * rows + 6):
             one = self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
@@ -2005,30 +2005,30 @@ class Queries(WithServer):
         at_rest = motion()
         self.assertEqual((at_rest.tick, at_rest.body_count, at_rest.kinetic_energy, at_rest.fastest_px_s), (0, 50, 0, 0))
         self.client.run_to(200, world)
-        told = motion()
+        answer = motion()
         alive = [o for o in (self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
                              for i in range(50)) if o.alive]
         speed = lambda o: math.hypot(o.velocity_x_px_s, o.velocity_y_px_s)
-        self.assertEqual((told.tick, told.body_count), (200, len(alive)))
-        self.assertAlmostEqual(told.tick_s, 1 / 60)
-        self.assertAlmostEqual(told.kinetic_energy, sum(o.mass_kg * speed(o) ** 2 / 2 for o in alive), delta=0.1)
-        self.assertAlmostEqual(told.momentum_x, sum(o.mass_kg * o.velocity_x_px_s for o in alive), delta=0.01)
-        self.assertAlmostEqual(told.momentum_y, sum(o.mass_kg * o.velocity_y_px_s for o in alive), delta=0.01)
-        self.assertAlmostEqual(told.fastest_px_s, max(map(speed, alive)), places=3)
-        self.assertAlmostEqual(told.fastest_step_share, max(speed(o) / 60 / o.radius_px for o in alive), places=3)
+        self.assertEqual((answer.tick, answer.body_count), (200, len(alive)))
+        self.assertAlmostEqual(answer.tick_s, 1 / 60)
+        self.assertAlmostEqual(answer.kinetic_energy, sum(o.mass_kg * speed(o) ** 2 / 2 for o in alive), delta=0.1)
+        self.assertAlmostEqual(answer.momentum_x, sum(o.mass_kg * o.velocity_x_px_s for o in alive), delta=0.01)
+        self.assertAlmostEqual(answer.momentum_y, sum(o.mass_kg * o.velocity_y_px_s for o in alive), delta=0.01)
+        self.assertAlmostEqual(answer.fastest_px_s, max(map(speed, alive)), places=3)
+        self.assertAlmostEqual(answer.fastest_step_share, max(speed(o) / 60 / o.radius_px for o in alive), places=3)
         depths = [max(0, a.radius_px + b.radius_px - math.hypot(a.x_px - b.x_px, a.y_px - b.y_px))
                   for a, b in itertools.combinations(alive, 2)]
-        self.assertAlmostEqual(told.deepest_overlap_px, max(depths), places=3)
-        self.assertGreaterEqual(told.cell_px, 2 * max(o.radius_px for o in alive))
+        self.assertAlmostEqual(answer.deepest_overlap_px, max(depths), places=3)
+        self.assertGreaterEqual(answer.cell_px, 2 * max(o.radius_px for o in alive))
         self.client.call(NOT_FOUND, get_motion=c.GetMotion(world=world, island=1))
 
     def test_ticks_too_long_for_their_speeds_are_counted(self):
         world = self.new_world(tick_s=0.05, max_speed_px_s=3000, force_per_unit=100, respawn=False)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         self.client.run_to(60, world)
-        told = self.client.call(get_motion=c.GetMotion(world=world)).motion
-        self.assertGreater(told.too_fast_count, 0)
-        self.assertGreater(told.fastest_step_share, 1)
+        answer = self.client.call(get_motion=c.GetMotion(world=world)).motion
+        self.assertGreater(answer.too_fast_count, 0)
+        self.assertGreater(answer.fastest_step_share, 1)
 
     def test_the_dead_can_be_asked_about(self):
         world = self.new_world(food_count=0, poison_count=0, generation_s=600)
@@ -2067,7 +2067,7 @@ class StartAndEnd(unittest.TestCase):
     def test_a_taken_port_is_said_to_be_taken(self):
         server = self.serve()
         message = self.start_refused("--port", str(server.port))
-        self.assertIn("port is taken", message)
+        self.assertIn("port is in use", message)
         self.assertIn("--port", message)
 
     def test_a_bad_address_is_said_to_be_one(self):
@@ -2088,7 +2088,7 @@ class StartAndEnd(unittest.TestCase):
                         ["--seed", "x"], ["--colour"]):
             self.assertIn(options[0], self.start_refused(*options, status=2))
 
-    def test_an_experiment_gives_the_first_world_its_name_seed_and_parameters(self):
+    def test_an_experiment_defines_the_first_world(self):
         path = self.file('{"seed": 77, "island_count": 2, "description": "two"}')
         server = self.serve("--experiment", path, "--speed", "max", "--start")
         self.assertEqual((server.world, server.seed), ("two_islands", 77))
@@ -2116,7 +2116,7 @@ class StartAndEnd(unittest.TestCase):
                 with Client(server) as client, Client(server) as deaf, Client(server, hello=False):
                     client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
                     deaf.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=120))
-                    client.next_picture(lambda p: p.tick > 0)
+                    client.next_snapshot(lambda p: p.tick > 0)
                     server.process.send_signal(how)
                     client.next_event("server_going_away")
                     client.assert_closed()
@@ -2132,7 +2132,7 @@ class StartAndEnd(unittest.TestCase):
         self.addCleanup(process.terminate)
         line = process.stdout.readline()
         process.stdout.close()
-        server = lambda: None  # as much of a Server as a Client needs
+        server = lambda: None  # the parts of a Server that a Client needs
         server.port = int(re.search(r":(\d+), world", line)[1])
         for _ in range(3):  # each is logged
             with Client(server) as client:
@@ -2144,7 +2144,7 @@ class StartAndEnd(unittest.TestCase):
         for _ in range(5):
             with contextlib.suppress(ProcessLookupError):
                 server.process.send_signal(signal.SIGTERM)
-        # The second ends it at once, if it comes before the end that the first one asked for.
+        # The second signal ends the server at once, unless the first has already ended it.
         self.assertIn(waiting.ended(server.process), (0, -signal.SIGTERM))
 
     @unittest.skipIf(b"__ubsan_handle_dynamic_type" in open(evod_path, "rb").read(),
@@ -2177,9 +2177,9 @@ class StartAndEnd(unittest.TestCase):
 
 
 class Documentation(unittest.TestCase):
-    """docs/PROTOCOL.md is right. Its programs are run by tests/docs."""
+    """The statements of docs/PROTOCOL.md are true. tests/docs runs its programs."""
 
-    def test_its_bytes_mean_what_it_says(self):
+    def test_its_example_bytes_are_right(self):
         text = open(protocol_path, encoding="utf-8").read()
         blocks = [bytes.fromhex("".join(line.split("#")[0] for line in block.splitlines()))
                   for block in re.findall(r"```\n(45 56 .*?)```", text, re.S)]
@@ -2201,7 +2201,7 @@ class Documentation(unittest.TestCase):
         decoder = re.search(r"### Deltas.*?```python\n(.*?)```", text, re.S)[1]
         self.assertEqual(decoder, open(sys.modules[Decoder.__module__].__file__, encoding="utf-8").read())
 
-    def test_it_tells_of_every_request_and_event(self):
+    def test_it_mentions_every_request_and_event(self):
         text = open(protocol_path, encoding="utf-8").read()
         for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields:
             self.assertIn(f"`{field.message_type.name}`", text)

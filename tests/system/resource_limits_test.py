@@ -1,4 +1,4 @@
-"""Real servers that the system gives too little: memory, and room in a file. EVOD and MESSAGES as recovery_test has them."""
+"""Real servers with too little memory or file size. EVOD and MESSAGES as recovery_test has them."""
 import os
 import resource
 import tempfile
@@ -32,7 +32,7 @@ class ResourceLimits(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def allow_memory(self, server, more_bytes):
-        """From now on so many bytes more than it has."""
+        """Limits the memory to so many bytes above the current use."""
         with open(f"/proc/{server.process.pid}/statm") as statm:
             present = int(statm.read().split()[0]) * resource.getpagesize()
         resource.prlimit(server.process.pid, resource.RLIMIT_AS, (present + more_bytes, resource.RLIM_INFINITY))
@@ -64,7 +64,7 @@ class ResourceLimits(unittest.TestCase):
         self.verify()
         self.verify("fork")
 
-    def test_out_of_memory_a_server_ends_and_goes_on_later(self):
+    def test_out_of_memory_a_server_exits_and_resumes_later(self):
         server = self.serve("--seed", "5")
         with Client(server, "k") as client:
             self.assertEqual(client.call(1, **set_parameter("food_health", 7)).status.code, 0)

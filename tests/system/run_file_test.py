@@ -377,7 +377,7 @@ class Export(Case):
         # Without --population the world continues; with another population the server refuses it.
         Server(self.folder, 8).end(signal.SIGTERM, 0)
         evod("export", plain, "--what", "population", "--generation", 2, "--output", path)
-        self.assertIn("began with other organisms", evod("--data", self.folder, "--experiment", self.folder + "/small.json",
+        self.assertIn("with other organisms", evod("--data", self.folder, "--experiment", self.folder + "/small.json",
                                                          "--population", path, status=1))
         self.assertIn("--generation: got 5, allowed 1 to 4",
                       evod("export", plain, "--what", "population", "--generation", 5, status=1))

@@ -113,7 +113,7 @@ class Schedules(access.Access):
         values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
         self.assertEqual((values["impulse_min"], values["mutation_chance"]), (20, 0.1))
 
-        # A reset begins with it again, as far as that goes.
+        # A reset restarts the schedule.
         client.call(reset_world=c.ResetWorld(world="w"))
         self.assertEqual(len(self.parameters(client, "w").schedule), 3)
         values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
@@ -189,7 +189,7 @@ class Planned(access.Access):
         client = self.come(self.serve("--seed", "3"))
         for at, field, allowed in (({"at_tick": 0}, "at_tick", "at least 1"), ({"at_generation": 1}, "at_generation", "at least 2"),
                                    ({"at_generation": 0}, "at_generation", "at least 2"),
-                                   ({"at_generation": 2, "at_tick": 9}, "at_tick", "nothing beside at_generation")):
+                                   ({"at_generation": 2, "at_tick": 9}, "at_tick", "absent if at_generation is set")):
             status = self.plan(client, INVALID, **at).status
             self.assertEqual([(x.field, x.allowed) for x in status.violations], [("set_parameters." + field, allowed)])
         status = client.call(5, cancel_change=c.CancelChange(world="default", id=4)).status

@@ -1,7 +1,7 @@
-"""Clients that come and go for a long time, and worlds that begin anew many times: the server does not grow.
+"""Clients that come and go for a long time and worlds that are reset many times: the server does not grow.
 
 EVOD names the program, MESSAGES the folder of the message classes. SECONDS, which is 20 unless it is set, is for how long
-they come and go, and RESETS, 250, how often worlds begin anew. Where SANITIZED is set there are fewer at a time, and the
+they come and go, and RESETS, 250, how often worlds are reset. Where SANITIZED is set there are fewer at a time, and the
 memory is not judged: a sanitizer keeps what has been freed.
 """
 import math
@@ -20,10 +20,10 @@ CLIENTS, GROWTH_BYTES = (25, math.inf) if os.environ.get("SANITIZED") else (100,
 
 class Soak(hostile.Attacked):
     def test_clients_come_and_go(self):
-        """Round after round, beside honest ones."""
+        """Repeats the attacks beside honest clients."""
         begun, rounds, connected = time.monotonic(), [], 0
         while len(rounds) < 3 or time.monotonic() - begun < SECONDS:
-            # The first brings the heap to its size.
+            # The first round brings the heap to its size.
             back_bytes = GROWTH_BYTES if rounds else 8 * GROWTH_BYTES
             became = self.attacked("churn", CLIENTS, at_least_s=ROUND_S, memory_back_bytes=back_bytes,
                                    enough=lambda counts: counts["closed"] > 5 * CLIENTS)
@@ -39,7 +39,7 @@ class Soak(hostile.Attacked):
         families = client.call(get_metrics=c.GetMetrics()).metrics.families
         return sum(sample.value for family in families if family.name == "evod_sessions" for sample in family.samples)
 
-    def test_worlds_begin_anew(self):
+    def test_worlds_are_reset_many_times(self):
         with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
             control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(
                 population_size=10, food_count=5, poison_count=5)))
@@ -52,12 +52,12 @@ class Soak(hostile.Attacked):
                     asked = [control.ask(reset_world=c.ResetWorld(world="w")) for _ in range(AT_ONCE)]
                     self.assertEqual({control.response(one).status.code for one in asked}, {0})
                     hashes.add(control.run_to(TICKS_EACH, "w").state_hash)
-                    viewer.next_picture(lambda one: one.tick == TICKS_EACH)
+                    viewer.next_snapshot(lambda one: one.tick == TICKS_EACH)
                     viewer.events.clear()
                 memory.append(self.memory_bytes())
             control.call(delete_world=c.DeleteWorld(world="w"))
         print(f"{RESETS} resets; MiB after each tenth:", *(f"{x / (1 << 20):.1f}" for x in memory), file=sys.stderr)
-        self.assertEqual(len(hashes), 1)  # as it was told no other seed
+        self.assertEqual(len(hashes), 1)  # no other seed was given
         self.assertLess(memory[-1], memory[0] + GROWTH_BYTES)
 
 

@@ -22,7 +22,7 @@ import time
 
 STALLED_S, LONGEST_S, LOOK_S = 20.0, 180.0, 0.25
 PATIENT = ("--timeout", "600")  # of evoctl
-LATE_HELLO = "no hello came within"  # what the server says to a client that stood still before its hello
+LATE_HELLO = "no Hello was received within"  # the refusal of a client that sends its Hello too late
 ATTEMPTS_MAX = 5
 
 

@@ -28,7 +28,7 @@ class GateTest : public testing::Test {
     Gate::Clock::time_point now;
 };
 
-TEST_F(GateTest, ATokenThatIsNeededHasToBeThere) {
+TEST_F(GateTest, ARequiredTokenMustExist) {
     EXPECT_EQ(Gate::open(folder, true).error().code, RefusalCode::FailedPrecondition);
     EXPECT_EQ(Gate::open("", true).error().code, RefusalCode::FailedPrecondition);
     auto gate = Gate::open("", false);
@@ -37,7 +37,7 @@ TEST_F(GateTest, ATokenThatIsNeededHasToBeThere) {
     EXPECT_EQ(gate->admit("evod_x", "a", now).error().code, RefusalCode::Unauthenticated);
 }
 
-TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddressAlone) {
+TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddress) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto gate = *Gate::open(folder, true);
     milliseconds delay = Gate::delay_min;
@@ -45,38 +45,38 @@ TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddressAlone) {
         EXPECT_EQ(gate.admit("wrong", "a", now).error().code, RefusalCode::Unauthenticated);
         now += delay - milliseconds{1};
         EXPECT_EQ(gate.admit("another", "a", now).error().code, RefusalCode::ResourceExhausted);
-        EXPECT_EQ(gate.admit("", "a", now).error().code, RefusalCode::Unauthenticated) << "asked for a token";
+        EXPECT_EQ(gate.admit("", "a", now).error().code, RefusalCode::Unauthenticated) << "a token is missing";
         now += milliseconds{1};
     }
     EXPECT_EQ(gate.failed_login_count(), 12u);
     EXPECT_EQ(gate.admit(secret, "a", now)->name, "anna");
-    // A good login, or a long time, and it begins anew.
+    // A successful login or a long time resets the wait.
     EXPECT_EQ(gate.admit("wrong", "a", now).error().code, RefusalCode::Unauthenticated);
     EXPECT_TRUE(gate.admit(secret, "a", now + Gate::delay_min));
 }
 
-TEST_F(GateTest, AKnownTokenIsAdmittedWhateverOthersDo) {
+TEST_F(GateTest, AKnownTokenIsAlwaysAdmitted) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto gate = *Gate::open(folder, true);
-    for (int i = 0; i < 100; ++i, now += milliseconds{200}) { // a stale token behind the same address translation
+    for (int i = 0; i < 100; ++i, now += milliseconds{200}) { // a stale token behind the same NAT
         EXPECT_FALSE(gate.admit("stale", "a", now));
         EXPECT_TRUE(gate.admit(secret, "a", now));
     }
 }
 
-TEST_F(GateTest, WhoHasNoTokenIsAskedForOneAndNeedNotWait) {
+TEST_F(GateTest, AMissingTokenIsRefusedWithoutAWait) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto gate = *Gate::open(folder, true);
     EXPECT_EQ(gate.admit("", "a", now).error().code, RefusalCode::Unauthenticated);
     EXPECT_TRUE(gate.admit(secret, "a", now));
 }
 
-TEST_F(GateTest, AddressesAreForgottenTheOldestFirst) {
+TEST_F(GateTest, TheOldestAddressesAreForgottenFirst) {
     auto gate = *Gate::open(folder, false);
     for (std::size_t i = 0; i < Gate::addresses_max + 1; ++i, now += std::chrono::microseconds{10}) {
         EXPECT_FALSE(gate.admit("wrong", std::to_string(i), now));
     }
-    EXPECT_EQ(gate.admit("wrong", "0", now).error().code, RefusalCode::Unauthenticated); // not remembered
+    EXPECT_EQ(gate.admit("wrong", "0", now).error().code, RefusalCode::Unauthenticated); // forgotten
     EXPECT_EQ(gate.admit("wrong", "2", now).error().code, RefusalCode::ResourceExhausted);
 }
 
@@ -89,7 +89,7 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
     EXPECT_TRUE(gate.refresh());
     EXPECT_FALSE(gate.knows(visitor));
     EXPECT_TRUE(gate.knows(*gate.admit(karl, "a", now)));
-    // The name alone is not the token.
+    // The name alone does not identify the token.
     ASSERT_TRUE(add_token(folder, "anna", Role::Viewer));
     EXPECT_TRUE(gate.refresh());
     EXPECT_FALSE(gate.knows(visitor));
@@ -100,7 +100,7 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
     EXPECT_EQ(gate.admit(karl, "a", now).error().code, RefusalCode::Unavailable);
 }
 
-TEST_F(GateTest, ACertificateCanAlwaysBeReadAgain) {
+TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
     for (int i = 0; i < 300; ++i) {
         ASSERT_TRUE(make_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
         std::FILE* file = std::fopen((folder + "/evod.crt").c_str(), "r");

@@ -23,7 +23,7 @@ struct Folder {
     std::string path;
 };
 
-TEST(TokenFile, ATokenIsFoundByItsSecretAlone) {
+TEST(TokenFile, ATokenIsFoundByItsSecretOnly) {
     const Folder folder;
     const auto anna = add_token(folder.path, "anna", Role::Viewer), karl = add_token(folder.path, "karl", Role::Admin);
     ASSERT_TRUE(anna && karl);
@@ -37,7 +37,7 @@ TEST(TokenFile, ATokenIsFoundByItsSecretAlone) {
     EXPECT_EQ(*parse_tokens(to_text(*tokens)), *tokens);
 }
 
-TEST(TokenFile, EachNameOnceAndRevokedIsGone) {
+TEST(TokenFile, NamesAreUniqueAndRevokedOnesFree) {
     const Folder folder;
     ASSERT_TRUE(add_token(folder.path, "anna", Role::Viewer));
     EXPECT_EQ(add_token(folder.path, "anna", Role::Admin).error().code, RefusalCode::AlreadyExists);
@@ -49,7 +49,7 @@ TEST(TokenFile, EachNameOnceAndRevokedIsGone) {
     }
 }
 
-TEST(TokenFile, IsRefusedWhenItIsNotForItsOwnerAlone) {
+TEST(TokenFile, IsRefusedIfOtherUsersHaveAccess) {
     const Folder folder;
     ASSERT_TRUE(add_token(folder.path, "anna", Role::Viewer));
     const std::string path = token_file_of(folder.path);
@@ -63,7 +63,7 @@ TEST(TokenFile, IsRefusedWhenItIsNotForItsOwnerAlone) {
     EXPECT_FALSE(read_tokens(folder.path));
 }
 
-TEST(TokenFile, WhatIsWrongIsToldByItsLine) {
+TEST(TokenFile, ARefusalNamesTheInvalidLine) {
     const std::string digest(64, 'a');
     const auto wrong = [](const std::string& text) {
         const auto tokens = parse_tokens(text);

@@ -28,7 +28,7 @@ class RegularFileTest : public testing::Test {
     std::string folder, path;
 };
 
-TEST_F(RegularFileTest, IsReadWhole) {
+TEST_F(RegularFileTest, IsReadCompletely) {
     const std::string bytes(200'000, 'x');
     write(bytes);
     EXPECT_EQ(*read_file(path, "a text", 1 << 20), bytes);
@@ -37,11 +37,11 @@ TEST_F(RegularFileTest, IsReadWhole) {
     EXPECT_EQ(*read_file(path, "a text", 0), "");
 }
 
-TEST_F(RegularFileTest, IsReadWhereTheKernelSaysItIsEmpty) {
+TEST_F(RegularFileTest, IsReadThoughTheKernelReportsSizeZero) {
     EXPECT_THAT(*read_file("/proc/self/stat", "a text", 1 << 20), HasSubstr(std::to_string(::getpid())));
 }
 
-TEST_F(RegularFileTest, OneThatIsTooLargeIsRefused) {
+TEST_F(RegularFileTest, IsRefusedIfTooLarge) {
     write("12345");
     const auto refused = read_file(path, "a text", 4);
     ASSERT_FALSE(refused);
@@ -50,7 +50,7 @@ TEST_F(RegularFileTest, OneThatIsTooLargeIsRefused) {
     EXPECT_THAT(read_file("/proc/self/stat", "a text", 4).error().message, HasSubstr("too large"));
 }
 
-TEST_F(RegularFileTest, WhatIsNoFileIsRefusedAtOnce) {
+TEST_F(RegularFileTest, RefusesPipesFoldersAndDevicesAtOnce) {
     ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
     for (const auto& [named, kind] :
          {std::pair{path, "a pipe"}, {folder, "a folder"}, {std::string{"/dev/zero"}, "a device"}}) {
@@ -61,14 +61,14 @@ TEST_F(RegularFileTest, WhatIsNoFileIsRefusedAtOnce) {
     }
 }
 
-TEST_F(RegularFileTest, OneThatIsMissingIsNotFound) {
+TEST_F(RegularFileTest, IsNotFoundIfMissing) {
     const auto refused = read_file(path, "a text", 1);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, RefusalCode::NotFound);
     EXPECT_EQ(refused.error().message, path + ": cannot be read: No such file or directory");
 }
 
-TEST_F(RegularFileTest, ALinkIsFollowedUnlessItIsRefused) {
+TEST_F(RegularFileTest, ALinkIsFollowedUnlessRefused) {
     write("1");
     const std::string link = folder + "/link";
     std::filesystem::create_symlink(path, link);

@@ -17,7 +17,7 @@ boost::json::object read(const std::string& line) {
     return boost::json::parse(line).as_object();
 }
 
-TEST(JsonLine, TellsTimeLevelMessageAndTheFieldsThatAreKnown) {
+TEST(JsonLine, HasTimeLevelMessageAndKnownFields) {
     EXPECT_EQ(json_line(moment, Level::Warn, {}, "worlds wait"),
               R"({"time":"2025-11-22T04:40:52.007Z","level":"warn","message":"worlds wait"})");
     EXPECT_EQ(json_line(moment, Level::Info, {.session = 3, .client = "anna", .world = "lesson"}, "hello"),
@@ -25,7 +25,7 @@ TEST(JsonLine, TellsTimeLevelMessageAndTheFieldsThatAreKnown) {
               R"("world":"lesson"})");
 }
 
-TEST(JsonLine, EveryByteOfAMessageComesBack) {
+TEST(JsonLine, EveryByteOfAMessageSurvives) {
     std::string every;
     for (int c = 1; c < 128; ++c) {
         every += static_cast<char>(c);
@@ -36,7 +36,7 @@ TEST(JsonLine, EveryByteOfAMessageComesBack) {
     EXPECT_EQ(object.at("client").as_string(), every);
 }
 
-TEST(JsonLine, NoByteThatSteersATerminalIsInIt) {
+TEST(JsonLine, HasNoTerminalControlCharacters) {
     std::string every;
     for (int c = 0; c < 256; ++c) {
         every += static_cast<char>(c);
@@ -49,7 +49,7 @@ TEST(JsonLine, NoByteThatSteersATerminalIsInIt) {
     EXPECT_EQ(line.find("\xc2\x9b"), std::string::npos);
 }
 
-TEST(JsonLine, WhatIsNoUtf8IsReplaced) {
+TEST(JsonLine, InvalidUtf8IsReplaced) {
     for (const std::string wrong : {"\xff", "\xc3", "\xc0\xaf", "\xe2\x82", "\xed\xa0\x80", "\xf0\x80\x80\x80",
                                     "\xf4\x90\x80\x80", "\x80", "\xf8\x88\x80\x80\x80"}) {
         const auto object = read(json_line(moment, Level::Info, {}, "a" + wrong + "b"));
@@ -60,7 +60,7 @@ TEST(JsonLine, WhatIsNoUtf8IsReplaced) {
     }
 }
 
-TEST(PlainLine, LeavesNothingThatSteersATerminal) {
+TEST(PlainLine, HasNoTerminalControlCharacters) {
     EXPECT_EQ(plain_line("cannot\n  a: \x1b[31m\r\t\x7f"), "cannot\n  a: ?[31m???");
 }
 

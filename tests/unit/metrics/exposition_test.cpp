@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A strict reader of the text format: whatever it does not know is an error.
+/// A strict parser of the text format: anything unknown is an error.
 class Reader {
   public:
     struct Sample {
@@ -53,7 +53,7 @@ class Reader {
     std::string until(char end) {
         const auto found = text_.find(end, at_);
         if (found == std::string::npos) {
-            throw std::runtime_error{"no end of " + text_.substr(at_, 40)};
+            throw std::runtime_error{"missing end of " + text_.substr(at_, 40)};
         }
         std::string word = text_.substr(at_, found - at_);
         at_ = found + 1;
@@ -67,7 +67,7 @@ class Reader {
             word += text_[at_];
         }
         if (word.empty() || std::isdigit(static_cast<unsigned char>(word[0]))) {
-            throw std::runtime_error{"no name at " + text_.substr(at_, 40)};
+            throw std::runtime_error{"missing name at " + text_.substr(at_, 40)};
         }
         return word;
     }
@@ -76,7 +76,7 @@ class Reader {
         std::string value;
         for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
             if (text_[at_] == '\n') {
-                throw std::runtime_error{"a label's value goes over the end of its line"};
+                throw std::runtime_error{"a label value is longer than its line"};
             }
             if (text_[at_] != '\\') {
                 value += text_[at_];
@@ -84,7 +84,7 @@ class Reader {
             }
             const char c = text_.at(++at_);
             if (c != '\\' && c != '"' && c != 'n') {
-                throw std::runtime_error{"an escape that there is not"};
+                throw std::runtime_error{"unknown escape"};
             }
             value += c == 'n' ? '\n' : c;
         }
@@ -110,7 +110,7 @@ class Reader {
                 const std::string label = name();
                 expect('=');
                 if (!sample.labels.emplace(label, quoted()).second) {
-                    throw std::runtime_error{"label twice: " + label};
+                    throw std::runtime_error{"duplicate label: " + label};
                 }
             } while (text_.at(at_) == ',');
             expect('}');
@@ -120,7 +120,7 @@ class Reader {
         std::size_t read = 0;
         sample.value = std::stod(number, &read);
         if (read != number.size()) {
-            throw std::runtime_error{"no number: " + number};
+            throw std::runtime_error{"not a number: " + number};
         }
         samples.push_back(sample);
     }
@@ -129,10 +129,10 @@ class Reader {
     std::size_t at_ = 0;
 };
 
-TEST(TimeHistogram, ABoundIsWithinItsBucket) {
+TEST(TimeHistogram, ABoundIsInclusive) {
     TimeHistogram histogram;
     histogram.add(0ns);
-    histogram.add(-5ns); // a clock that is set back
+    histogram.add(-5ns); // a clock that was set back
     histogram.add(1us);
     histogram.add(1001ns);
     histogram.add(2us);
@@ -149,7 +149,7 @@ TEST(TimeHistogram, ABoundIsWithinItsBucket) {
     EXPECT_DOUBLE_EQ(histogram.sum_s(), 3602.000004002);
 }
 
-TEST(TimeHistogram, EveryTimeIsInTheFirstBucketWhoseBoundItDoesNotExceed) {
+TEST(TimeHistogram, ATimeIsInTheFirstBucketThatCanHoldIt) {
     std::vector<std::uint64_t> times{0, 1, 99, 3'000'000'000};
     for (const auto bound : TimeHistogram::bounds) {
         for (const int off : {-1, 0, 1}) {
@@ -178,7 +178,7 @@ TEST(TimeHistogram, BoundsAreOneTwoAndFiveOfEveryDecade) {
     EXPECT_EQ(TimeHistogram::bounds.back(), 1s);
 }
 
-TEST(Exposition, TellsHelpTypeAndSamplesOfAFamily) {
+TEST(Exposition, HasHelpTypeAndSamplesOfAFamily) {
     v1::Metrics metrics;
     add_counter(metrics, "evod_things_total", "Things").add(12);
     add_gauge(metrics, "evod_room_bytes", "Room").add(0.25, {{"of", "a"}}).add(-3, {{"of", "b"}});
@@ -191,7 +191,7 @@ TEST(Exposition, TellsHelpTypeAndSamplesOfAFamily) {
                                       "evod_room_bytes{of=\"b\"} -3\n");
 }
 
-TEST(Exposition, LabelsAndHelpComeBackAsTheyWere) {
+TEST(Exposition, LabelsAndHelpSurviveARoundTrip) {
     const std::string hostile = "a\"b\\c\nd},e=\"f\\n{\t\x1b é";
     v1::Metrics metrics;
     add_gauge(metrics, "evod_room", "one \\ two\nthree \"four\"").add(1, {{"world", hostile}, {"other", ""}});
@@ -201,7 +201,7 @@ TEST(Exposition, LabelsAndHelpComeBackAsTheyWere) {
     ASSERT_EQ(read.samples.size(), 1u);
 }
 
-TEST(Exposition, NumbersComeBackAsTheyWere) {
+TEST(Exposition, NumbersSurviveARoundTrip) {
     v1::Metrics metrics;
     auto family = add_gauge(metrics, "evod_number", "Numbers");
     const std::vector<double> numbers{0,
@@ -228,7 +228,7 @@ TEST(Exposition, NumbersComeBackAsTheyWere) {
     EXPECT_NE(text.find(" 1000000000000000\n"), std::string::npos);
 }
 
-TEST(Exposition, BucketsOfAHistogramHoldThoseBefore) {
+TEST(Exposition, HistogramBucketsAreCumulative) {
     TimeHistogram histogram;
     for (const TimeHistogram::duration took : {500ns, 1500ns, 1500ns, 30'000'000ns, 30'000'000ns, 30'000'000ns}) {
         histogram.add(took);

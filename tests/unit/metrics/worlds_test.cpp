@@ -8,7 +8,7 @@
 namespace evod::metrics {
 namespace {
 
-TEST(Worlds, AreListedByNameWhileSomebodyHoldsThem) {
+TEST(Worlds, AreListedByNameWhileHeld) {
     Worlds worlds;
     const auto lesson = worlds.add("lesson");
     auto gone = worlds.add("gone");
@@ -22,8 +22,8 @@ TEST(Worlds, AreListedByNameWhileSomebodyHoldsThem) {
     EXPECT_EQ(listed[1]->ticks_per_s.value(), 60);
 }
 
-TEST(Process, IsWhatTheSystemSaysOfIt) {
-    const Process process = look_at_process();
+TEST(Process, MatchesTheSystemsReport) {
+    const Process process = read_process();
     EXPECT_GT(process.resident_bytes, 100'000u);
     EXPECT_GE(process.virtual_bytes, process.resident_bytes);
     EXPECT_GE(process.open_files, 3u);
@@ -33,7 +33,7 @@ TEST(Process, IsWhatTheSystemSaysOfIt) {
     EXPECT_GT(process.start_time_s, static_cast<double>(std::time(nullptr)) - 86400);
     const auto of_this_thread = cpu_s_of(pthread_self());
     ASSERT_TRUE(of_this_thread);
-    EXPECT_LE(*of_this_thread, look_at_process().cpu_s);
+    EXPECT_LE(*of_this_thread, read_process().cpu_s);
 }
 
 } // namespace

@@ -7,7 +7,7 @@
 namespace evod::network {
 namespace {
 
-TEST(Limits, HaveARowEachInTheirOrder) {
+TEST(Limits, HaveOneRowEachInEnumOrder) {
     std::set<std::string_view> names;
     for (std::size_t i = 0; i < limit_table().size(); ++i) {
         const LimitRow& row = limit_table()[i];
@@ -20,7 +20,7 @@ TEST(Limits, HaveARowEachInTheirOrder) {
     EXPECT_EQ(limit_table().size(), LimitCounters::limit_count);
 }
 
-TEST(Limits, AreToldToClientsAsTheTableHasThem) {
+TEST(Limits, ReachClientsAsTheTableHasThem) {
     const v1::Limits limits = limits_message({.sessions_max = 7, .sessions_per_address_max = 3});
     EXPECT_EQ(limits.sessions_max(), 7u);
     EXPECT_EQ(limits.sessions_per_address_max(), 3u);
@@ -33,7 +33,7 @@ TEST(Limits, AreToldToClientsAsTheTableHasThem) {
     EXPECT_NE(list.find("| `sessions_max` | 256 | "), std::string::npos) << list;
 }
 
-TEST(Limits, AreCountedEachByItself) {
+TEST(Limits, HaveACounterEach) {
     LimitCounters counters;
     counters.met(Limit::Sessions);
     counters.met(Limit::OutboxEvents, 5);

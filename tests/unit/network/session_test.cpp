@@ -1,4 +1,4 @@
-// A session's line to a client on the loopback interface, with nobody else in the server.
+// A session with a client on the loopback interface, without the rest of the server.
 #include "server/network/session.h"
 
 #include "tests/support/manual_clock.h"
@@ -19,7 +19,7 @@ class SessionTest : public testing::Test {
     SessionTest() : client{context} {
         tcp::acceptor acceptor{context, tcp::endpoint{asio::ip::address_v4::loopback(), 0}};
         client.open(tcp::v4());
-        client.set_option(asio::socket_base::receive_buffer_size{4096}); // so that large pictures have to wait
+        client.set_option(asio::socket_base::receive_buffer_size{4096}); // so that large snapshots do not fit
         client.connect(acceptor.local_endpoint());
         host.clock = &clock;
         host.ended = [this](Session&) { over = true; };
@@ -80,7 +80,7 @@ class SessionTest : public testing::Test {
     support::ManualClock clock;
     codec::Compressor compressor;
     LimitCounters counters;
-    Buffers buffers{std::size_t{1} << 30, [] {}};
+    SendMemory buffers{std::size_t{1} << 30, [] {}};
     SessionHost host{counters, buffers};
     asio::io_context context;
     tcp::socket client;
@@ -91,7 +91,7 @@ class SessionTest : public testing::Test {
     std::vector<v1::SnapshotFrame> frames;
 };
 
-TEST_F(SessionTest, APictureThatTheLineTakesIsSentAtOnce) {
+TEST_F(SessionTest, ASnapshotIsSentAtOnceIfTheSocketHasRoom) {
     offer(2, 5, 7, 100);
     send();
     read(); // no turn of the loop was needed
@@ -100,15 +100,15 @@ TEST_F(SessionTest, APictureThatTheLineTakesIsSentAtOnce) {
     EXPECT_EQ(frames[0].dropped_count(), 0U);
     EXPECT_EQ(frames[0].sequence(), 7U);
     EXPECT_EQ(frames[0].world(), name_of(7, 100));
-    EXPECT_EQ(host.traffic.pictures_sent.value(), 1U);
+    EXPECT_EQ(host.traffic.snapshots_sent.value(), 1U);
     EXPECT_EQ(buffers.bytes(), 0U);
 }
 
-TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
+TEST_F(SessionTest, ALargeSnapshotArrivesWholeBeforeTheNext) {
     constexpr std::size_t large = 20'000'000;
     offer(1, 0, 1, large);
     send();
-    EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
+    EXPECT_EQ(host.traffic.snapshots_sent.value(), 0U);
     EXPECT_GT(buffers.bytes(), large) << "what waits is counted";
     // Meanwhile others come for it: of each island the newest goes on waiting.
     for (std::uint64_t sequence = 2; sequence < 6; ++sequence) {
@@ -117,7 +117,7 @@ TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
         send();
     }
     context.poll();
-    EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
+    EXPECT_EQ(host.traffic.snapshots_sent.value(), 0U);
     read_until(3);
     EXPECT_EQ(frames[0].sequence(), 1U);
     EXPECT_EQ(frames[0].world(), name_of(1, large));
@@ -127,32 +127,32 @@ TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
     EXPECT_EQ(frames[2].subscription_id(), 2U);
     EXPECT_EQ(frames[2].world(), name_of(5, 60'000));
     context.poll();
-    EXPECT_EQ(host.traffic.pictures_sent.value(), 3U);
+    EXPECT_EQ(host.traffic.snapshots_sent.value(), 3U);
     EXPECT_EQ(buffers.bytes(), 0U);
     EXPECT_EQ(host.traffic.sent_stream_bytes.value(),
               3 * codec::header_bytes + frames[0].ByteSizeLong() + frames[1].ByteSizeLong() + frames[2].ByteSizeLong());
 }
 
-TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
+TEST_F(SessionTest, AStalledClientIsClosedInTime) {
     using namespace std::chrono_literals;
     offer(1, 0, 1, 20'000'000);
     send();
     context.poll();
-    session->mind_progress(0s);
+    session->check_progress(0s);
     for (int i = 0; i < 9; ++i) {
-        session->mind_progress(1s);
+        session->check_progress(1s);
     }
     read(); // now it takes something
     context.poll();
     for (int i = 0; i < 10; ++i) {
         EXPECT_EQ(counters.count(Limit::StalledTimeout), 0U) << i;
-        session->mind_progress(1s);
+        session->check_progress(1s);
     }
-    session->mind_progress(1s);
+    session->check_progress(1s);
     EXPECT_EQ(counters.count(Limit::StalledTimeout), 1U);
 }
 
-TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
+TEST_F(SessionTest, ASlowReaderGetsSmallSnapshotsInOrder) {
     std::uint64_t sequence = 0;
     for (int round = 0; round < 1000; ++round) {
         offer(1, static_cast<std::uint32_t>(round), ++sequence, 20'000);
@@ -161,14 +161,14 @@ TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
             context.poll();
         }
     }
-    EXPECT_LT(host.traffic.pictures_sent.value(), 1000U) << "otherwise none had to wait";
+    EXPECT_LT(host.traffic.snapshots_sent.value(), 1000U) << "otherwise none had to wait";
     read_until(1000);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         EXPECT_EQ(frames[i].sequence(), i + 1);
     }
 }
 
-TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {
+TEST_F(SessionTest, AnswersGoBeforeSnapshots) {
     offer(1, 0, 1, 10);
     v1::Response response;
     response.set_request_id(4);
@@ -178,7 +178,7 @@ TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {
     EXPECT_EQ(channels, (std::vector{codec::Channel::Control, codec::Channel::Stream}));
 }
 
-TEST_F(SessionTest, AClientThatHasGoneEndsTheSession) {
+TEST_F(SessionTest, ADisconnectedClientEndsTheSession) {
     client.set_option(asio::socket_base::linger{true, 0});
     client.close();
     for (int i = 0; i < 3; ++i) {

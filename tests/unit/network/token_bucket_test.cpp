@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class TokenBucketOf : public testing::Test {
+class TokenBucketTest : public testing::Test {
   protected:
     int take_all() {
         int taken = 0;
@@ -20,11 +20,11 @@ class TokenBucketOf : public testing::Test {
     TokenBucket bucket{100, 20, now};
 };
 
-TEST_F(TokenBucketOf, ABurstIsThereAtOnce) {
+TEST_F(TokenBucketTest, ABurstIsAvailableAtOnce) {
     EXPECT_EQ(take_all(), 20);
 }
 
-TEST_F(TokenBucketOf, TokensComeAtTheirRateAndNoMoreThanItHolds) {
+TEST_F(TokenBucketTest, TokensArriveAtTheirRateUpToTheCapacity) {
     take_all();
     now += 50ms;
     EXPECT_EQ(take_all(), 5);
@@ -36,7 +36,7 @@ TEST_F(TokenBucketOf, TokensComeAtTheirRateAndNoMoreThanItHolds) {
     EXPECT_EQ(take_all(), 20);
 }
 
-TEST_F(TokenBucketOf, WhoIsNotFasterNeverWaits) {
+TEST_F(TokenBucketTest, ASenderBelowTheRateNeverWaits) {
     take_all();
     for (int i = 0; i < 1000; ++i) {
         now += 10ms;
@@ -44,7 +44,7 @@ TEST_F(TokenBucketOf, WhoIsNotFasterNeverWaits) {
     }
 }
 
-TEST_F(TokenBucketOf, MoreThanItHoldsIsPaidForAfterwards) {
+TEST_F(TokenBucketTest, TakingMoreThanTheCapacityLeavesADebt) {
     EXPECT_TRUE(bucket.take(50, now)) << "a whole burst is there";
     now += 300ms;
     EXPECT_FALSE(bucket.take(1, now)) << "30 are still to be paid for";
@@ -58,7 +58,7 @@ TEST_F(TokenBucketOf, MoreThanItHoldsIsPaidForAfterwards) {
     EXPECT_TRUE(bucket.take(1, now));
 }
 
-TEST_F(TokenBucketOf, WaitingAsLongAsItSaysIsLongEnough) {
+TEST_F(TokenBucketTest, WaitingForTheReportedTimeIsEnough) {
     take_all();
     EXPECT_EQ(bucket.time_for(10), 100ms);
     now += bucket.time_for(10);

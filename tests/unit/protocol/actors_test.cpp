@@ -14,15 +14,15 @@ std::string parts(const v1::Actor& actor) {
     return std::to_string(actor.kind()) + "|" + actor.user() + "|" + actor.client() + "|" + actor.address();
 }
 
-TEST(Actors, TextIsTakenApart) {
+TEST(Actors, TextIsSplitIntoItsParts) {
     EXPECT_EQ(parts(actor_of("karl: evoctl 127.0.0.1:5000")), "1|karl|evoctl|127.0.0.1:5000");
     EXPECT_EQ(parts(actor_of("evoctl 127.0.0.1:5000")), "1||evoctl|127.0.0.1:5000");
     EXPECT_EQ(parts(actor_of("karl: my own client [::1]:5000")), "1|karl|my own client|[::1]:5000");
     EXPECT_EQ(parts(actor_of("evod")), "4|||");
-    EXPECT_EQ(parts(actor_of("evod 127.0.0.1:5000")), "1||evod|127.0.0.1:5000") << "a client may have this name";
+    EXPECT_EQ(parts(actor_of("evod 127.0.0.1:5000")), "1||evod|127.0.0.1:5000") << "a client may use this name";
 }
 
-TEST(Actors, ViewersAreToldUsersOnlyHoweverDeep) {
+TEST(Actors, AViewerSeesOnlyUsersAtAnyDepth) {
     v1::Event event;
     auto& cancelled = *event.mutable_change_cancelled();
     *cancelled.mutable_by() = actor_of("karl: evoctl 127.0.0.1:5000");

@@ -20,7 +20,7 @@ void read_all(std::vector<Mail> mail) {
     }
 }
 
-TEST(Mailbox, GivesWhatCameInItsOrder) {
+TEST(Mailbox, ReturnsMailInOrder) {
     Mailbox mailbox;
     std::vector<int> read;
     EXPECT_FALSE(mailbox.pending());
@@ -34,21 +34,21 @@ TEST(Mailbox, GivesWhatCameInItsOrder) {
     EXPECT_TRUE(mailbox.drain().empty());
 }
 
-TEST(Mailbox, RefusesWhatIsTooMuchAndKeepsTheRest) {
+TEST(Mailbox, RefusesMailBeyondItsCapacity) {
     Mailbox mailbox{2};
     std::vector<int> read;
     EXPECT_TRUE(mailbox.try_push(note(read, 0)));
     EXPECT_TRUE(mailbox.try_push(note(read, 1)));
     Mail third = note(read, 2);
     EXPECT_FALSE(mailbox.try_push(std::move(third)));
-    EXPECT_TRUE(std::get<QueryMail>(third).ask) << "nothing is taken from what is refused";
+    EXPECT_TRUE(std::get<QueryMail>(third).ask) << "refused mail is unchanged";
     read_all(mailbox.drain());
     EXPECT_TRUE(mailbox.try_push(std::move(third)));
     read_all(mailbox.drain());
     EXPECT_EQ(read, (std::vector{0, 1, 2}));
 }
 
-TEST(Mailbox, WakesWhoWaits) {
+TEST(Mailbox, WakesTheWaitingThread) {
     Mailbox mailbox;
     std::vector<int> read;
     std::thread waiting{[&] {
@@ -62,7 +62,7 @@ TEST(Mailbox, WakesWhoWaits) {
     mailbox.wake();
     waiting.join();
     EXPECT_EQ(read, (std::vector{1}));
-    mailbox.wait(Clock::time_point{}); // a time that is over
+    mailbox.wait(Clock::time_point{}); // a time that has passed
 }
 
 } // namespace

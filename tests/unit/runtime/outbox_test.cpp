@@ -5,7 +5,7 @@
 namespace evod::runtime {
 namespace {
 
-SnapshotPtr picture_of(const char* world, std::uint64_t tick, bool after_change = false) {
+SnapshotPtr snapshot_of(const char* world, std::uint64_t tick, bool after_change = false) {
     auto snapshot = std::make_shared<Snapshot>();
     snapshot->world = world;
     snapshot->moment.tick = tick;
@@ -21,16 +21,20 @@ TEST(Outbox, KeepsAnswersAndEventsInOneOrder) {
     outbox.event([&] { order.push_back(2); });
     outbox.answer([&] { order.push_back(3); });
     EXPECT_EQ(woken, 1) << "once until it is taken";
-    for (const Delivery& delivery : outbox.take().deliveries) {
-        delivery();
+    outbox.done({.mail = {}, .outcome = simulation::Applied{}, .frame = "answer"});
+    const auto taken = outbox.take().deliveries;
+    ASSERT_EQ(taken.size(), 4);
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::get<Call>(taken[i])();
     }
     EXPECT_EQ(order, (std::vector{1, 2, 3}));
+    EXPECT_EQ(std::get<CommandDone>(taken[3]).frame, "answer");
     EXPECT_TRUE(outbox.take().deliveries.empty());
     outbox.answer([] {});
     EXPECT_EQ(woken, 2);
 }
 
-TEST(Outbox, DropsEventsBeyondItsBoundAndCountsThemButNeverAnswers) {
+TEST(Outbox, DropsAndCountsExcessEventsButNoAnswers) {
     Outbox outbox{[] {}, 2};
     for (int i = 0; i < 5; ++i) {
         outbox.event([] {});
@@ -43,19 +47,19 @@ TEST(Outbox, DropsEventsBeyondItsBoundAndCountsThemButNeverAnswers) {
     EXPECT_EQ(outbox.take().dropped_events, 0);
 }
 
-TEST(Outbox, KeepsTheNewestPictureOfEachWorld) {
+TEST(Outbox, KeepsTheNewestSnapshotOfEachWorld) {
     Outbox outbox{[] {}};
-    outbox.picture(picture_of("a", 1, true));
-    outbox.picture(picture_of("b", 1));
-    outbox.picture(picture_of("a", 2));
-    outbox.picture(picture_of("a", 3));
-    const auto pictures = outbox.take().pictures;
-    ASSERT_EQ(pictures.size(), 2);
-    EXPECT_EQ(pictures[0].snapshot->moment.tick, 3);
-    EXPECT_EQ(pictures[0].replaced_count, 2);
-    EXPECT_TRUE(pictures[0].after_change) << "one that it replaced showed a change";
-    EXPECT_EQ(pictures[1].replaced_count, 0);
-    EXPECT_FALSE(pictures[1].after_change);
+    outbox.snapshot(snapshot_of("a", 1, true));
+    outbox.snapshot(snapshot_of("b", 1));
+    outbox.snapshot(snapshot_of("a", 2));
+    outbox.snapshot(snapshot_of("a", 3));
+    const auto snapshots = outbox.take().snapshots;
+    ASSERT_EQ(snapshots.size(), 2);
+    EXPECT_EQ(snapshots[0].snapshot->moment.tick, 3);
+    EXPECT_EQ(snapshots[0].replaced_count, 2);
+    EXPECT_TRUE(snapshots[0].after_change) << "a replaced snapshot showed a change";
+    EXPECT_EQ(snapshots[1].replaced_count, 0);
+    EXPECT_FALSE(snapshots[1].after_change);
 }
 
 } // namespace

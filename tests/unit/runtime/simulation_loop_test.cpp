@@ -1,6 +1,8 @@
-// The loop's sense of time, with a clock that only the test moves; and that time has no say in what happens.
+// The loop's pace with a manual clock, and proof that time does not change what happens.
 #include "server/runtime/simulation_loop.h"
 
+#include "evod/v1/session.pb.h"
+#include "proto/codec/framing.h"
 #include "server/base/inline_executor.h"
 #include "server/runtime/simulation_thread.h"
 #include "tests/support/manual_clock.h"
@@ -40,22 +42,18 @@ class Loop : public testing::Test {
                executor,
                clock,
                {.events =
-                    [this](const Laboratory&, std::vector<simulation::Event> told) {
-                        events.insert(events.end(), told.begin(), told.end());
+                    [this](const Laboratory&, std::vector<simulation::Event> reported) {
+                        events.insert(events.end(), reported.begin(), reported.end());
                     },
-                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); },
+                .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
+                .done =
+                    [this](CommandDone done) {
+                        EXPECT_TRUE(done.outcome) << to_text(done.outcome.error());
+                        answers.push_back(std::move(done));
+                    },
                 .counted = &counted}} {}
 
-    void send(simulation::Command command) {
-        mailbox.try_push(CommandMail{std::move(command),
-                                     {},
-                                     [this](const Laboratory&, const simulation::Command& applied,
-                                            const base::Result<simulation::Applied>& result) -> CommandAnswer {
-                                         EXPECT_TRUE(result) << to_text(result.error());
-                                         last_applied = applied;
-                                         return {};
-                                     }});
-    }
+    void send(simulation::Command command) { mailbox.try_push(CommandMail{std::move(command), {}, "command"}); }
     const simulation::Entry& world(std::string_view name = "") { return **loop.laboratory().find(name); }
     std::uint64_t tick(std::string_view name = "") { return world(name).world.moment().tick; }
     void watch(const char* name, double rate_hz, std::uint64_t newcomers = 1) {
@@ -75,24 +73,24 @@ class Loop : public testing::Test {
     base::InlineExecutor executor;
     support::ManualClock clock;
     std::vector<simulation::Event> events;
-    std::vector<SnapshotPtr> pictures;
-    std::optional<simulation::Command> last_applied;
+    std::vector<SnapshotPtr> snapshots;
+    std::vector<CommandDone> answers;
     metrics::Worlds counted;
     SimulationLoop loop;
 };
 
-TEST_F(Loop, SleepsUntilMailWhenNothingIsToBeDone) {
+TEST_F(Loop, SleepsUntilMailWhenIdle) {
     EXPECT_FALSE(loop.pass());
     send(create("w"));
     EXPECT_FALSE(loop.pass());
     EXPECT_EQ(tick(), 0);
 }
 
-TEST_F(Loop, APacedWorldTakesATickEveryTickLength) {
+TEST_F(Loop, APacedWorldTakesATickPerTickLength) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
-    EXPECT_EQ(tick(), 1) << "the first at once";
+    EXPECT_EQ(tick(), 1) << "the first tick comes at once";
     live_through(500ms);
     EXPECT_EQ(tick(), 51);
     const auto now = clock.now();
@@ -112,7 +110,7 @@ TEST_F(Loop, TheSpeedFactorScalesThePace) {
     EXPECT_EQ(tick("slow"), 11);
 }
 
-TEST_F(Loop, AWorldThatFellBehindIsGivenBackNoMoreThanTheBound) {
+TEST_F(Loop, ALateWorldCatchesUpNoMoreThanTheBound) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
@@ -120,14 +118,14 @@ TEST_F(Loop, AWorldThatFellBehindIsGivenBackNoMoreThanTheBound) {
     for (int i = 0; i < 100; ++i) {
         loop.pass();
     }
-    // The tick that was late, the bound's worth of ticks, and the one that is due now.
+    // The late tick, the bound's worth of ticks, and the tick that is due now.
     const auto given_back = 1 + 1 + SimulationLoop::catch_up_max / 10ms + 1;
     EXPECT_EQ(tick(), given_back);
     live_through(100ms);
     EXPECT_EQ(tick(), given_back + 10);
 }
 
-TEST_F(Loop, AWorldWhoseClockIsSlowSaysSoAndTakesEveryTick) {
+TEST_F(Loop, ASlowedWorldReportsItAndSkipsNoTick) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     watch("w", 100, 1);
@@ -140,20 +138,20 @@ TEST_F(Loop, AWorldWhoseClockIsSlowSaysSoAndTakesEveryTick) {
     };
     passes(1ms);
     EXPECT_FALSE(slowed());
-    EXPECT_FALSE(pictures.back()->slowed);
-    passes(100ms); // of which no more than 50 are given back
+    EXPECT_FALSE(snapshots.back()->slowed);
+    passes(100ms); // of which it catches up at most 50 ms
     EXPECT_TRUE(slowed());
-    EXPECT_TRUE(pictures.back()->slowed);
+    EXPECT_TRUE(snapshots.back()->slowed);
     passes(1ms);
     EXPECT_FALSE(slowed());
-    EXPECT_FALSE(pictures.back()->slowed);
+    EXPECT_FALSE(snapshots.back()->slowed);
     passes(100ms);
     send(simulation::Pause{"w"});
     loop.pass();
-    EXPECT_FALSE(slowed()) << "it is asked for nothing";
+    EXPECT_FALSE(slowed()) << "it is idle";
 }
 
-TEST_F(Loop, APauseIsNotMadeUpFor) {
+TEST_F(Loop, AWorldDoesNotCatchUpAfterAPause) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
@@ -167,17 +165,17 @@ TEST_F(Loop, APauseIsNotMadeUpFor) {
     EXPECT_EQ(tick(), 2);
 }
 
-TEST_F(Loop, FullSpeedComesInSlices) {
+TEST_F(Loop, FullSpeedRunsInSlices) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
-    clock.per_look = 100us; // a tick takes as long
+    clock.per_look = 100us; // the length of a tick
     EXPECT_TRUE(loop.pass());
     EXPECT_NEAR(static_cast<double>(tick()), SimulationLoop::slice / 100us, 3);
 }
 
-TEST_F(Loop, ASliceEndsWhenMailComes) {
-    // The clock stands still, so nothing but mail ends the slice: it is sent by the events of the first generation.
+TEST_F(Loop, ASliceEndsWhenMailArrives) {
+    // The clock does not advance, so only mail ends the slice. The events of the first generation send it.
     auto create_other = create("quick", 2);
     create_other.parameters.fitness = parameters::FitnessFunction::GeneSum;
     bool sent = false;
@@ -192,7 +190,7 @@ TEST_F(Loop, ASliceEndsWhenMailComes) {
                                   }
                                   sent = true;
                               },
-                          .picture = {}}};
+                          .snapshot = {}}};
     mailbox.drain();
     send(create_other);
     send(simulation::SetSpeed{"quick", {}});
@@ -201,7 +199,7 @@ TEST_F(Loop, ASliceEndsWhenMailComes) {
     EXPECT_EQ((*other.laboratory().find("quick"))->world.moment().tick, 1);
 }
 
-TEST_F(Loop, APacedWorldKeepsItsPaceBesideOneAtFullSpeed) {
+TEST_F(Loop, APacedWorldKeepsItsPaceBesideAFastOne) {
     send(create("paced"));
     send(create("busy", 2));
     send(simulation::SetSpeed{"busy", {}});
@@ -216,7 +214,7 @@ TEST_F(Loop, APacedWorldKeepsItsPaceBesideOneAtFullSpeed) {
     EXPECT_GT(tick("busy"), 3000);
 }
 
-/// A client that always has a query waiting, which takes `cost`.
+/// A client that always has a query waiting, each taking `cost`.
 class Asker {
   public:
     Asker(Mailbox& mailbox, support::ManualClock& clock, Clock::duration cost)
@@ -238,7 +236,7 @@ class Asker {
     const Clock::duration cost_;
 };
 
-TEST_F(Loop, QueriesHaveTheTimeThatNoWorldWants) {
+TEST_F(Loop, QueriesGetAllIdleTime) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
@@ -252,15 +250,15 @@ TEST_F(Loop, QueriesHaveTheTimeThatNoWorldWants) {
         next = loop.pass();
     }
     EXPECT_NEAR(static_cast<double>(tick()), 201, 2);
-    EXPECT_NEAR(asker.answered, 500, 10) << "nothing else was to be done";
+    EXPECT_NEAR(asker.answered, 500, 10) << "no world needed the time";
     EXPECT_FALSE(world().slowed);
 }
 
-TEST_F(Loop, QueriesCostAWorldAtFullSpeedAShareOfTheTime) {
+TEST_F(Loop, QueriesCostAFastWorldOnlyAShareOfTheTime) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
-    clock.per_look = 100us; // a tick takes as long
+    clock.per_look = 100us; // the length of a tick
     loop.pass();
     const Asker asker{mailbox, clock, 4ms};
     const auto began = clock.now();
@@ -270,7 +268,7 @@ TEST_F(Loop, QueriesCostAWorldAtFullSpeedAShareOfTheTime) {
     EXPECT_NEAR(asker.answered * 4.0, 2000.0 / QueryBudget::share, 12);
 }
 
-TEST_F(Loop, CommandsDoNotWaitForTheQueriesOfOthers) {
+TEST_F(Loop, CommandsDoNotWaitForQueries) {
     send(create("w"));
     loop.pass();
     std::vector<std::string> order;
@@ -294,31 +292,31 @@ TEST_F(Loop, FollowsAWorldThatIsCreatedBetweenQueries) {
     loop.pass();
     mailbox.push(QueryMail{[&](const Laboratory&) { send(create("late", 2)); }});
     loop.pass();
-    ASSERT_EQ(pictures.size(), 1u);
-    EXPECT_EQ(pictures[0]->world, "late");
+    ASSERT_EQ(snapshots.size(), 1u);
+    EXPECT_EQ(snapshots[0]->world, "late");
 }
 
-TEST_F(Loop, IsCalledAgainWhenItIsWokenWhileQueriesAreAnswered) {
+TEST_F(Loop, AWakeUpDuringQueriesCausesAnotherPass) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
-    pictures.clear();
+    snapshots.clear();
     clock.advance(10ms);
-    mailbox.push(QueryMail{[&](const Laboratory&) { clock.advance(40ms); }}); // more than is saved for queries
-    mailbox.push(QueryMail{[&](const Laboratory&) {                           // so it waits for the ticks that are due
+    mailbox.push(QueryMail{[&](const Laboratory&) { clock.advance(40ms); }}); // more than the saved budget
+    mailbox.push(QueryMail{[&](const Laboratory&) {                           // so the next waits for the due ticks
         EXPECT_GT(tick(), 1u);
         watch("w", 60);
         mailbox.wake();
     }});
     const auto next = loop.pass();
-    EXPECT_TRUE(pictures.empty());
+    EXPECT_TRUE(snapshots.empty());
     ASSERT_TRUE(next);
     EXPECT_LE(*next, clock.now());
     loop.pass();
-    EXPECT_EQ(pictures.size(), 1u);
+    EXPECT_EQ(snapshots.size(), 1u);
 }
 
-TEST_F(Loop, WhatWasAskedIsAnsweredAtTheEnd) {
+TEST_F(Loop, PendingQueriesAreAnsweredAtTheEnd) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
@@ -340,7 +338,7 @@ TEST_F(Loop, MeasuresTicksPerSecond) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     live_through(300ms);
-    EXPECT_NEAR(world().ticks_per_s, 100, 10) << "a first figure soon";
+    EXPECT_NEAR(world().ticks_per_s, 100, 10) << "the first figure comes early";
     live_through(2000ms);
     EXPECT_NEAR(world().ticks_per_s, 100, 2);
     send(simulation::Pause{"w"});
@@ -348,7 +346,7 @@ TEST_F(Loop, MeasuresTicksPerSecond) {
     EXPECT_EQ(world().ticks_per_s, 0);
 }
 
-TEST_F(Loop, LooksAtTheClockNowAndThenWhereTicksAreShort) {
+TEST_F(Loop, ReadsTheClockRarelyWhenTicksAreShort) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
@@ -361,7 +359,7 @@ TEST_F(Loop, LooksAtTheClockNowAndThenWhereTicksAreShort) {
     const std::uint64_t ticks = tick("w") - ticks_before;
     EXPECT_GT(static_cast<double>(ticks), 2.0 * static_cast<double>(looks));
     ASSERT_EQ(counted.list().size(), 1u);
-    EXPECT_EQ(counted.list()[0]->tick_time.count(), tick("w")) << "each is counted";
+    EXPECT_EQ(counted.list()[0]->tick_time.count(), tick("w")) << "every tick is counted";
 
     clock.per_look = 50us;
     loop.pass();
@@ -375,10 +373,10 @@ TEST_F(Loop, LooksAtTheClockNowAndThenWhereTicksAreShort) {
     const std::uint64_t end = tick("w") + 7;
     send(simulation::RunUntilTick{"w", end});
     loop.pass();
-    EXPECT_EQ(tick("w"), end) << "a goal is not passed";
+    EXPECT_EQ(tick("w"), end) << "the world stops at its goal";
 }
 
-TEST_F(Loop, CountsTheTicksOfEachWorldWhileItIsThere) {
+TEST_F(Loop, CountsTheTicksOfEachExistingWorld) {
     send(create("a"));
     send(create("b", 2));
     send(simulation::Run{"a", {}});
@@ -398,159 +396,160 @@ TEST_F(Loop, CountsTheTicksOfEachWorldWhileItIsThere) {
     EXPECT_EQ(counted.list()[0]->name, "b");
 }
 
-TEST_F(Loop, CommandsNameTheirWorldWhenTheyAreApplied) {
+TEST_F(Loop, AnAppliedCommandNamesItsWorld) {
     send(create("only"));
     send(simulation::Run{"", 1});
     loop.pass();
-    EXPECT_EQ(std::get<simulation::Run>(*last_applied).world, "only");
+    EXPECT_EQ(std::get<simulation::Run>(answers.back().mail.command).world, "only");
 }
 
-TEST_F(Loop, AnAnswerSeesTheStateInWhichItsCommandBeginsToHold) {
+TEST_F(Loop, AnAnswerShowsTheStateAfterItsCommand) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     live_through(200ms);
-    bool answered = false;
-    mailbox.try_push(CommandMail{
-        simulation::Pause{"w"},
-        {},
-        [&](const Laboratory& laboratory, const simulation::Command&, const auto& applied) -> CommandAnswer {
-            EXPECT_EQ(applied->tick, (*laboratory.find("w"))->world.moment().tick);
-            return {.frame = {}, .give = [&] { answered = true; }};
-        }});
+    answers.clear();
+    send(simulation::Pause{"w"});
     loop.pass();
-    EXPECT_TRUE(answered);
+    ASSERT_EQ(answers.size(), 1);
+    EXPECT_EQ(answers[0].outcome->tick, tick("w"));
+    codec::FrameReader reader{codec::client_limits};
+    reader.feed(std::as_bytes(std::span{answers[0].frame}));
+    const auto message = codec::parse_body<v1::ServerMessage>((**reader.next()).body);
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->response().world().state(), v1::RUN_STATE_PAUSED);
+    EXPECT_EQ(message->response().world().tick(), tick("w"));
 }
 
-TEST_F(Loop, TakesNoPictureForNobody) {
+TEST_F(Loop, TakesNoSnapshotWithoutAViewer) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     live_through(100ms);
-    EXPECT_TRUE(pictures.empty());
+    EXPECT_TRUE(snapshots.empty());
 }
 
-TEST_F(Loop, PicturesComeAtTheRateThatIsWanted) {
+TEST_F(Loop, SnapshotsComeAtTheRequestedRate) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
     watch("w", 25);
     loop.pass();
-    pictures.clear();
+    snapshots.clear();
     live_through(2000ms);
-    EXPECT_NEAR(static_cast<double>(pictures.size()), 50, 1);
-    for (std::size_t i = 1; i < pictures.size(); ++i) {
-        EXPECT_LT(pictures[i - 1]->moment.tick, pictures[i]->moment.tick);
+    EXPECT_NEAR(static_cast<double>(snapshots.size()), 50, 1);
+    for (std::size_t i = 1; i < snapshots.size(); ++i) {
+        EXPECT_LT(snapshots[i - 1]->moment.tick, snapshots[i]->moment.tick);
     }
 }
 
-TEST_F(Loop, ANewcomerAndAChangeArePicturedAtOnceAndAWorldThatStandsOnlyOnce) {
+TEST_F(Loop, NewViewersAndChangesGetASnapshotAtOnce) {
     send(create("w"));
     loop.pass();
     watch("w", 0.001);
     loop.pass();
-    ASSERT_EQ(pictures.size(), 1);
+    ASSERT_EQ(snapshots.size(), 1);
     live_through(100ms);
-    EXPECT_EQ(pictures.size(), 1) << "it stands still";
+    EXPECT_EQ(snapshots.size(), 1) << "the world is idle";
     watch("w", 0.001, 2);
     loop.pass();
-    EXPECT_EQ(pictures.size(), 2) << "somebody new";
+    EXPECT_EQ(snapshots.size(), 2) << "a new viewer";
     send(simulation::RunUntilTick{"w", 3});
     loop.pass();
-    ASSERT_EQ(pictures.size(), 3) << "it was told to run";
-    EXPECT_TRUE(pictures.back()->after_change);
+    ASSERT_EQ(snapshots.size(), 3) << "Run changed it";
+    EXPECT_TRUE(snapshots.back()->after_change);
     live_through(100ms);
-    ASSERT_EQ(pictures.size(), 4) << "it has reached its goal";
-    EXPECT_EQ(pictures.back()->moment.tick, 3);
-    EXPECT_EQ(pictures.back()->state, simulation::RunState::Paused);
-    EXPECT_EQ(pictures.back()->hash, world().world.hash());
+    ASSERT_EQ(snapshots.size(), 4) << "it reached its goal";
+    EXPECT_EQ(snapshots.back()->moment.tick, 3);
+    EXPECT_EQ(snapshots.back()->state, simulation::RunState::Paused);
+    EXPECT_EQ(snapshots.back()->hash, world().world.hash());
     send(simulation::ResetWorld{"w", {}, {9, 9}});
     loop.pass();
-    EXPECT_EQ(pictures.size(), 5);
+    EXPECT_EQ(snapshots.size(), 5);
     send(simulation::DeleteWorld{"w"});
     send(create("w", 3));
     loop.pass();
-    ASSERT_EQ(pictures.size(), 6) << "another of the same name";
-    EXPECT_EQ(pictures.back()->run_id, (simulation::RunId{3, 1}));
+    ASSERT_EQ(snapshots.size(), 6) << "a new world of the same name";
+    EXPECT_EQ(snapshots.back()->run_id, (simulation::RunId{3, 1}));
 }
 
-TEST_F(Loop, OnlyTheIslandsThatAreWatchedAreCopied) {
+TEST_F(Loop, OnlySubscribedIslandsAreCopied) {
     auto command = create("w");
     command.parameters.island_count = 5;
     send(command);
     demand.set({{"w", WorldDemand{.rate_hz = 1, .all_islands = false, .islands = {1, 3, 99}, .newcomers = 1}}});
     loop.pass();
-    ASSERT_EQ(pictures.size(), 1);
-    ASSERT_EQ(pictures[0]->islands.size(), 2);
-    EXPECT_EQ(pictures[0]->islands[1].island, 3);
-    EXPECT_EQ(pictures[0]->island_count, 5);
+    ASSERT_EQ(snapshots.size(), 1);
+    ASSERT_EQ(snapshots[0]->islands.size(), 2);
+    EXPECT_EQ(snapshots[0]->islands[1].island, 3);
+    EXPECT_EQ(snapshots[0]->island_count, 5);
 }
 
-TEST_F(Loop, APictureHasEverybodyWhoLivesAndEveryItem) {
+TEST_F(Loop, ASnapshotHasEveryLivingOrganismAndItem) {
     auto command = create("w");
     command.parameters.population_size = 200;
     command.parameters.food_count = 40;
     command.parameters.respawn_s = 10;
-    command.parameters.health_loss_per_s = 190; // of 80 to 120
+    command.parameters.health_loss_per_s = 190; // health is 80 to 120
     send(command);
     send(simulation::Run{"w", {}});
     watch("w", 1000);
     std::size_t seen_void = 0, seen_away = 0;
     for (int i = 0; i < 60; ++i) {
         live_through(10ms);
-        ASSERT_FALSE(pictures.empty());
-        const IslandSnapshot& picture = pictures.back()->islands[0];
+        ASSERT_FALSE(snapshots.empty());
+        const IslandSnapshot& snapshot = snapshots.back()->islands[0];
         const simulation::Island& island = world().world.islands()[0];
-        ASSERT_EQ(pictures.back()->hash, world().world.hash());
+        ASSERT_EQ(snapshots.back()->hash, world().world.hash());
         std::size_t alive = 0;
-        ASSERT_EQ(picture.organisms.place_of.size(), 200);
+        ASSERT_EQ(snapshot.organisms.place_of.size(), 200);
         for (std::uint32_t id = 0; id < 200; ++id) {
-            const std::uint32_t place = picture.organisms.place_of[id];
+            const std::uint32_t place = snapshot.organisms.place_of[id];
             const auto body = island.body_of(id);
             ASSERT_EQ(place != simulation::Island::no_body, body.has_value());
             if (!body) {
                 continue;
             }
-            ASSERT_LT(place, picture.organisms.x.size());
-            EXPECT_EQ(picture.organisms.x[place], island.bodies().x[*body]);
-            EXPECT_EQ(picture.organisms.y[place], island.bodies().y[*body]);
-            EXPECT_EQ(picture.organisms.radius_px[place], island.bodies().radius[*body]);
-            EXPECT_EQ(picture.organisms.health[place], island.living().health[*body]);
+            ASSERT_LT(place, snapshot.organisms.x.size());
+            EXPECT_EQ(snapshot.organisms.x[place], island.bodies().x[*body]);
+            EXPECT_EQ(snapshot.organisms.y[place], island.bodies().y[*body]);
+            EXPECT_EQ(snapshot.organisms.radius_px[place], island.bodies().radius[*body]);
+            EXPECT_EQ(snapshot.organisms.health[place], island.living().health[*body]);
             ++alive;
         }
         EXPECT_EQ(alive, island.alive_count());
-        EXPECT_EQ(picture.organisms.alive_count, alive);
-        EXPECT_EQ(picture.food.all.size(), 40);
-        EXPECT_EQ(picture.food.present_count,
-                  std::ranges::count(picture.food.all, 0u, &simulation::Items::Item::due_tick));
-        EXPECT_EQ(simulation::mean_health(picture.organisms.health, picture.organisms.alive_count),
+        EXPECT_EQ(snapshot.organisms.alive_count, alive);
+        EXPECT_EQ(snapshot.food.all.size(), 40);
+        EXPECT_EQ(snapshot.food.present_count,
+                  std::ranges::count(snapshot.food.all, 0u, &simulation::Items::Item::due_tick));
+        EXPECT_EQ(simulation::mean_health(snapshot.organisms.health, snapshot.organisms.alive_count),
                   island.live_statistics().health_mean);
-        seen_void += picture.organisms.x.size() - alive;
-        seen_away += 40 - picture.food.present_count;
+        seen_void += snapshot.organisms.x.size() - alive;
+        seen_away += 40 - snapshot.food.present_count;
     }
     EXPECT_GT(seen_void, 0);
     EXPECT_GT(seen_away, 0);
 }
 
-TEST_F(Loop, APictureStaysAsItWasAndItsMemoryComesBack) {
+TEST_F(Loop, ASnapshotIsImmutableAndItsMemoryReused) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     watch("w", 1000);
     loop.pass();
-    const SnapshotPtr kept = pictures.front();
+    const SnapshotPtr kept = snapshots.front();
     const auto place = kept->islands[0].organisms.x;
-    pictures.clear();
+    snapshots.clear();
     std::set<const void*> used;
     for (int i = 0; i < 100; ++i) {
         live_through(10ms);
-        for (const SnapshotPtr& picture : pictures) {
-            used.insert(picture.get());
+        for (const SnapshotPtr& snapshot : snapshots) {
+            used.insert(snapshot.get());
         }
-        pictures.clear();
+        snapshots.clear();
     }
     EXPECT_EQ(kept->islands[0].organisms.x, place);
     EXPECT_LE(used.size(), 2);
 }
 
-TEST_F(Loop, EventsComeAsTheyHappen) {
+TEST_F(Loop, EventsArriveInOrder) {
     auto command = create("w");
     command.parameters.generation_s = 0.05; // 5 ticks
     send(command);
@@ -565,7 +564,7 @@ TEST_F(Loop, EventsComeAsTheyHappen) {
 
 // ---- determinism -----------------------------------------------------------------------------------------------
 
-/// What the worlds below are told, at which ticks.
+/// The commands to the worlds below, with their ticks.
 parameters::Assignment change_at(std::uint64_t tick) {
     return {tick % 2 ? "food_health" : "mutation_chance", tick % 2 ? 20.0 + static_cast<double>(tick) / 10 : 0.5};
 }
@@ -594,7 +593,7 @@ base::StateHash hash_of_a_world_advanced_directly() {
     return world.hash();
 }
 
-TEST_F(Loop, TheSameCommandsAtTheSameTicksGiveTheHashOfAWorldAdvancedDirectly) {
+TEST_F(Loop, CommandsAtTheirTicksReproduceTheHash) {
     send(create_for_comparison());
     send(simulation::SetSpeed{"w", 3.0});
     watch("w", 77);
@@ -609,24 +608,21 @@ TEST_F(Loop, TheSameCommandsAtTheSameTicksGiveTheHashOfAWorldAdvancedDirectly) {
     EXPECT_EQ(world().world.hash(), hash_of_a_world_advanced_directly());
 }
 
-TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
+TEST(SimulationThread, ReproducesTheHash) {
     Mailbox mailbox;
     StreamDemand demand;
     demand.set({{"w", WorldDemand{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
     base::InlineExecutor executor;
     SteadyClock clock;
-    SimulationThread thread{
-        mailbox,
-        demand,
-        executor,
-        clock,
-        {.events = [](const Laboratory&, std::vector<simulation::Event>) {}, .picture = [](SnapshotPtr) {}}};
+    SimulationThread thread{mailbox,
+                            demand,
+                            executor,
+                            clock,
+                            {.events = [](const Laboratory&, std::vector<simulation::Event>) {},
+                             .snapshot = [](SnapshotPtr) {},
+                             .done = [](const CommandDone& done) { EXPECT_TRUE(done.outcome); }}};
     const auto send = [&](simulation::Command command) {
-        ASSERT_TRUE(mailbox.try_push(
-            CommandMail{std::move(command), {}, [](const Laboratory&, const simulation::Command&, const auto& applied) {
-                            EXPECT_TRUE(applied);
-                            return CommandAnswer{};
-                        }}));
+        ASSERT_TRUE(mailbox.try_push(CommandMail{std::move(command), {}, "command"}));
     };
     const auto look = [&] {
         std::promise<std::pair<std::uint64_t, base::StateHash>> seen;
@@ -650,7 +646,7 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
     EXPECT_EQ(look().second, hash_of_a_world_advanced_directly());
 }
 
-TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
+TEST_F(Loop, SlowTicksGetCheckpointsThatChangeNothing) {
     recording::TemporaryFolder folder;
     auto data = run_file::DataFolder::open(folder.path());
     base::StateHash hashes[2];
@@ -659,15 +655,15 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
         recording::Recorder recorder{*data, thread};
         clock.per_look = per_look;
         Mailbox letters;
-        SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
+        SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}},
                             {},      &recorder};
-        const auto tell = [&](simulation::Command command) {
-            letters.try_push(CommandMail{std::move(command), {}, [](auto&&...) -> CommandAnswer { return {}; }});
+        const auto apply = [&](simulation::Command command) {
+            letters.try_push(CommandMail{std::move(command), {}, "command"});
             kept.pass();
         };
-        tell(create("w", 3));
-        tell(simulation::SetSpeed{"w", std::nullopt});
-        tell(simulation::RunUntilTick{"w", 1000});
+        apply(create("w", 3));
+        apply(simulation::SetSpeed{"w", std::nullopt});
+        apply(simulation::RunUntilTick{"w", 1000});
         const simulation::World& run = (*kept.laboratory().find("w"))->world;
         while (run.moment().tick < 1000) {
             kept.pass();
@@ -686,57 +682,61 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
+TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
     recording::TemporaryFolder folder;
     auto data = run_file::DataFolder::open(folder.path());
     recording::StorageThread thread{{}};
     recording::Recorder recorder{*data, thread};
     Mailbox letters;
-    SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
-                        {},      &recorder};
-    std::string said;
-    const auto tell = [&](simulation::Command command) {
-        letters.try_push(CommandMail{std::move(command), {}, [&](auto&&, auto&&, const auto& applied) -> CommandAnswer {
-                                         said = applied ? "" : to_text(applied.error());
-                                         return {};
-                                     }});
+    std::string said; // of the last command; refusals come at once, on this thread
+    const auto on_done = [&](const CommandDone& done) {
+        if (!done.outcome) {
+            said = to_text(done.outcome.error());
+        }
+    };
+    SimulationLoop kept{
+        letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}, .done = on_done},
+        {},      &recorder};
+    const auto apply = [&](simulation::Command command) {
+        said.clear();
+        letters.try_push(CommandMail{std::move(command), {}, "command"});
         kept.pass();
     };
     const std::string taken = data->file_of("taken");
-    std::ofstream{taken} << "somebody else's";
-    tell(create("taken"));
+    std::ofstream{taken} << "another program's";
+    apply(create("taken"));
     EXPECT_THAT(said, testing::HasSubstr("the run would be kept in " + taken + ", which is there already"));
-    std::ofstream{run_file::DataFolder::next_file_of(data->file_of("next"))} << "somebody else's";
-    tell(create("next"));
+    std::ofstream{run_file::DataFolder::next_file_of(data->file_of("next"))} << "another program's";
+    apply(create("next"));
     EXPECT_THAT(said, testing::HasSubstr("next.evod-next, which is there already"));
     EXPECT_TRUE(kept.laboratory().entries().empty());
-    tell(create("w"));
+    apply(create("w"));
     EXPECT_EQ(said, "");
-    tell(create("w"));
+    apply(create("w"));
     EXPECT_THAT(said, testing::HasSubstr("a world with that name already exists"));
-    tell(simulation::ForkWorld{.world = "w", .name = "taken", .at_generation = {}, .run_id = {4, 4}});
+    apply(simulation::ForkWorld{.world = "w", .name = "taken", .at_generation = {}, .run_id = {4, 4}});
     EXPECT_THAT(said, testing::HasSubstr(taken));
-    // A name is free at once, though its file may not be yet.
+    // A name is free at once, although its file may still exist.
     for (int i = 0; i < 20; ++i) {
-        tell(simulation::DeleteWorld{"w"});
+        apply(simulation::DeleteWorld{"w"});
         EXPECT_EQ(said, "");
-        tell(create("w", static_cast<std::uint64_t>(i) + 10));
+        apply(create("w", static_cast<std::uint64_t>(i) + 10));
         EXPECT_EQ(said, "");
     }
     EXPECT_FALSE(recorder.trouble());
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_TRUE(run_file::RunFile::open_read_only(data->file_of("w")));
     std::filesystem::remove(taken);
-    tell(create("taken", 99));
+    apply(create("taken", 99));
     EXPECT_EQ(said, "");
 }
 
 // ---- a disk that cannot be written to --------------------------------------------------------------------------
 
-/// A loop that writes into a folder which can be taken away, so that no new file can be made there.
-class LoopWithADisk : public Loop {
+/// A loop whose data folder can be removed, so that creating a file fails.
+class LoopWithDisk : public Loop {
   protected:
-    LoopWithADisk()
+    LoopWithDisk()
         : data{*run_file::DataFolder::open(folder.path())}
         , thread{{}, 1ms}
         , recorder{data, thread}
@@ -745,27 +745,27 @@ class LoopWithADisk : public Loop {
                executor,
                clock,
                {.events = [](auto&&...) {},
-                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); },
-                .storage = [this](const simulation::Storage& storage) { told.push_back(storage.state); }},
+                .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
+                .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); }},
                {},
                &recorder} {
         thread.when_changed([this] { ++news; });
         clock.per_look = 100us; // so that slices end
     }
-    ~LoopWithADisk() override { give_back(); }
+    ~LoopWithDisk() override { give_back(); }
 
-    /// With its request, as it is read again when the past is shown.
+    /// With a serialised request, because replays parse it.
     void ask(v1::Request request) {
         request.set_client_key("test");
         request.set_request_id(++requests);
         const auto command = protocol::to_command(request, {base::Seed{7}, {requests, 1}});
         ASSERT_TRUE(command) << to_text(command.error());
         mailbox.try_push(CommandMail{*command,
-                                     {.client = "somebody",
+                                     {.client = "a client",
                                       .client_key = "test",
                                       .request_id = requests,
                                       .request = request.SerializeAsString()},
-                                     [](auto&&...) -> CommandAnswer { return {}; }});
+                                     "command"});
     }
     void ask_create(const std::string& name) {
         v1::Request request;
@@ -781,7 +781,7 @@ class LoopWithADisk : public Loop {
         ask(std::move(request));
     }
 
-    /// The name of a world that shows the past of another, which has 300 ticks and is paused.
+    /// Opens a replay of a paused world with 300 ticks. Returns its name.
     std::string look_at_the_past_of_a_run() {
         ask_create("long");
         ask_run("long");
@@ -815,7 +815,7 @@ class LoopWithADisk : public Loop {
     const simulation::Entry& entry(std::string_view name) { return **kept.laboratory().find(name); }
     std::uint64_t tick(std::string_view name) { return entry(name).world.moment().tick; }
 
-    /// A world at full speed whose ticks are generations of half a megabyte.
+    /// A fast world whose generations are half a megabyte each.
     void run_crowd() {
         make_crowd();
         send(simulation::Run{"crowd", {}});
@@ -832,7 +832,7 @@ class LoopWithADisk : public Loop {
     recording::TemporaryFolder folder;
     const std::string away = folder.path() + "_away";
     run_file::DataFolder data;
-    std::vector<simulation::StorageState> told;
+    std::vector<simulation::StorageState> reported;
     std::atomic<int> news = 0;
     std::uint64_t requests = 0;
     recording::StorageThread thread;
@@ -840,7 +840,7 @@ class LoopWithADisk : public Loop {
     SimulationLoop kept;
 };
 
-TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
+TEST_F(LoopWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     ask_create("w");
     ask_run("w");
     pass_until([&] { return tick("w") > 300; });
@@ -859,14 +859,14 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     EXPECT_EQ(entry("w").storage->state, simulation::StorageState::Stalled);
     EXPECT_EQ(entry("w").ticks_per_s, 0);
     EXPECT_FALSE(entry(look).storage);
-    EXPECT_FALSE(kept.pass()) << "nothing is to be done until the disk has news";
+    EXPECT_FALSE(kept.pass()) << "the loop is idle until the disk state changes";
 
     const std::uint64_t stands = tick("w");
-    pictures.clear();
+    snapshots.clear();
     watch("w", 25, 7);
     kept.pass();
-    ASSERT_EQ(pictures.size(), 1) << "somebody new";
-    EXPECT_EQ(pictures[0]->moment.tick, stands);
+    ASSERT_EQ(snapshots.size(), 1) << "a new viewer";
+    EXPECT_EQ(snapshots[0]->moment.tick, stands);
     send(simulation::Run{look, {}});
     pass_until([&] { return tick(look) > 100; });
     EXPECT_EQ(tick("w"), stands);
@@ -874,19 +874,18 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     const int news_before = news;
     give_back();
     pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
-    EXPECT_GE(news, news_before + 2) << "of room, and of the end of the trouble";
+    EXPECT_GE(news, news_before + 2) << "one for the free queue, one for the working disk";
     pass_until([&] { return tick("w") > stands; });
-    // While the queue has room, before it is full and when it was emptied, the disk is told to fail only;
-    // how long either lasts is the disk's affair, and it may be too short to be seen. Until it is found to fail, it
-    // may be behind.
-    std::erase(told, simulation::StorageState::Failing);
-    std::erase(told, simulation::StorageState::Behind);
-    // A state is reported again when it was Failing or Behind in between.
-    told.erase(std::unique(told.begin(), told.end()), told.end());
-    EXPECT_EQ(told, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
+    // While the queue has room, only failures are reported. A state may be too short to be seen. Before the failure is
+    // detected, the disk may be reported as behind.
+    std::erase(reported, simulation::StorageState::Failing);
+    std::erase(reported, simulation::StorageState::Behind);
+    // A state is reported again after Failing or Behind.
+    reported.erase(std::unique(reported.begin(), reported.end()), reported.end());
+    EXPECT_EQ(reported, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
 }
 
-TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
+TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
     ask_create("w");
     ask_run("w");
     pass_until([&] { return tick("w") > 300; });
@@ -908,15 +907,15 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
         open(2);
     }
     pass_until([&] { return answered == 2 + Replays::replays_max + 1; });
-    EXPECT_EQ(opened, Replays::replays_max) << "those on their way are counted";
+    EXPECT_EQ(opened, Replays::replays_max) << "replays being opened are counted";
     mailbox.push(ReplayMail{OwnerGone{2}, {}});
     kept.pass();
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
 }
 
-/// The world begins a generation every six ticks and is changed all the time, so that both happen while a seek waits for
-/// the disk.
-TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
+/// The world begins a generation every six ticks and changes constantly, so that both happen while a seek waits for the
+/// disk.
+TEST_F(LoopWithDisk, SeeksToTheEndOfARunShowItsState) {
     v1::Request create;
     create.mutable_create_world()->set_name("quick");
     const auto set = [&](v1::Request& request, const std::string& name) {
@@ -973,7 +972,7 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
     }
 }
 
-TEST_F(LoopWithADisk, SeeksEndWithTheirOwnerOrTheirPast) {
+TEST_F(LoopWithDisk, SeeksEndWithTheirOwnerOrReplay) {
     const std::string look = look_at_the_past_of_a_run();
     std::vector<base::Result<std::string>> answers;
     const auto seek = [&](std::uint64_t tick) {
@@ -985,14 +984,14 @@ TEST_F(LoopWithADisk, SeeksEndWithTheirOwnerOrTheirPast) {
     mailbox.push(ReplayMail{OwnerGone{2}, {}});
     pass_until([&] { return answers.size() == 1; });
     EXPECT_FALSE(answers[0]);
-    EXPECT_EQ(tick(look), 0u) << "the journey ended with its owner";
+    EXPECT_EQ(tick(look), 0u) << "the seek ended with its owner";
     seek(299);
     mailbox.push(ReplayMail{CloseReplay{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
     pass_until([&] { return answers.size() == 2; });
     EXPECT_FALSE(answers[1]);
 }
 
-TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
+TEST_F(LoopWithDisk, APacedWorldKeepsItsPaceDuringSeeks) {
     const std::string look = look_at_the_past_of_a_run();
     ask_create("paced");
     ask_run("paced");
@@ -1024,7 +1023,7 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     EXPECT_EQ(alone.hash(), lived.hash());
 }
 
-TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
+TEST_F(LoopWithDisk, ASeekFinishesWhateverElseRuns) {
     const std::string look = look_at_the_past_of_a_run();
     const auto run_at = [&](const std::string& name, std::optional<double> factor) {
         ask_create(name);
@@ -1050,7 +1049,7 @@ TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
     run_at("free", std::nullopt);
     const auto began = clock.now();
     const std::uint64_t first = tick("paced");
-    seek(299); // beside one that keeps its pace and one that takes what is left
+    seek(299); // beside a paced world and a fast one
     seek(0);
     const std::chrono::duration<double> passed = clock.now() - began;
     EXPECT_NEAR(static_cast<double>(tick("paced") - first), passed.count() * 1200, 10);
@@ -1058,10 +1057,10 @@ TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
 
     run_at("too_fast", 10'000.0);
     pass_until([&] { return entry("too_fast").slowed; });
-    seek(299); // beside one that cannot keep its pace
+    seek(299); // beside a world that cannot keep its pace
 }
 
-TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
+TEST_F(LoopWithDisk, ASlowDiskIsReportedAfterAWhile) {
     ask_create("w");
     kept.pass();
     std::promise<void> writes_again;
@@ -1072,8 +1071,8 @@ TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
     const std::uint64_t stands = tick("crowd");
     const auto next = kept.pass();
     ASSERT_TRUE(next);
-    EXPECT_GT(*next, clock.now()) << "there is time to sleep";
-    EXPECT_TRUE(told.empty());
+    EXPECT_GT(*next, clock.now()) << "the loop may sleep";
+    EXPECT_TRUE(reported.empty());
     clock.advance(SimulationLoop::slow_disk_patience);
     EXPECT_FALSE(kept.pass());
     EXPECT_EQ(state(), simulation::StorageState::Behind);
@@ -1081,30 +1080,30 @@ TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
     EXPECT_EQ(tick("crowd"), stands);
     writes_again.set_value();
     pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
-    EXPECT_EQ(told, (std::vector{simulation::StorageState::Behind, simulation::StorageState::KeepsUp}));
+    EXPECT_EQ(reported, (std::vector{simulation::StorageState::Behind, simulation::StorageState::KeepsUp}));
     pass_until([&] { return tick("crowd") > stands; });
 }
 
-TEST_F(LoopWithADisk, WhoAsksForThePastWhenTroubleBeginsIsShownWhatIsWritten) {
+TEST_F(LoopWithDisk, AReplayAtTheStartOfTroubleShowsWhatIsWritten) {
     take_away();
-    // In one mailbox: when the past is asked for, nobody knows yet that there is trouble.
+    // Sent in one mailbox, so that the replay is requested before the failure is detected.
     ask_create("other");
     ask_create("another");
     bool answered = false;
     mailbox.push(ReplayMail{OpenReplay{.world = "other", .at = {}, .owner = 1},
                             [&](const Laboratory&, const base::Result<std::string>& name) {
-                                EXPECT_FALSE(name) << "its file could not be made";
+                                EXPECT_FALSE(name) << "its file could not be created";
                                 answered = true;
                             }});
     pass_until([&] { return answered; });
     EXPECT_EQ(state(), simulation::StorageState::Failing);
-    // Two files cannot be made, which is one trouble, however often it is tried.
+    // Two files that cannot be created are one failure, however often the disk is retried.
     for (int pass = 0; pass < 50; ++pass) {
         kept.pass();
         std::this_thread::sleep_for(1ms);
     }
     EXPECT_EQ(news, 1);
-    EXPECT_EQ(told, std::vector{simulation::StorageState::Failing});
+    EXPECT_EQ(reported, std::vector{simulation::StorageState::Failing});
 }
 
 } // namespace

@@ -12,10 +12,10 @@
 namespace evod::runtime {
 namespace {
 
-class PoolOf : public testing::TestWithParam<std::size_t> {};
-INSTANTIATE_TEST_SUITE_P(Threads, PoolOf, testing::Values(1, 2, 3, 8));
+class PoolTest : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Threads, PoolTest, testing::Values(1, 2, 3, 8));
 
-TEST_P(PoolOf, CutsAtTheMultiplesOfTheGrain) {
+TEST_P(PoolTest, CutsAtMultiplesOfTheGrain) {
     const auto pool = make_executor(GetParam());
     EXPECT_EQ(pool->thread_count(), GetParam());
     for (const auto& [count, grain] :
@@ -33,7 +33,7 @@ TEST_P(PoolOf, CutsAtTheMultiplesOfTheGrain) {
     }
 }
 
-TEST_P(PoolOf, RunsLoopsInsidePieces) {
+TEST_P(PoolTest, RunsLoopsInsidePieces) {
     const auto pool = make_executor(GetParam());
     std::vector<int> done(64 * 64);
     pool->parallel_for(64, 1, [&](base::Range outer) {
@@ -42,7 +42,7 @@ TEST_P(PoolOf, RunsLoopsInsidePieces) {
     EXPECT_EQ(std::count(done.begin(), done.end(), 1), 64 * 64);
 }
 
-TEST(PoolOfOne, RunsEverythingOnItsCaller) {
+TEST(PoolWithOneThread, RunsEverythingOnItsCaller) {
     const auto pool = make_executor(1);
     pool->parallel_for(
         100, 1, [caller = std::this_thread::get_id()](base::Range) { EXPECT_EQ(std::this_thread::get_id(), caller); });

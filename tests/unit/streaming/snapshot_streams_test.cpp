@@ -52,7 +52,7 @@ class SnapshotStreamsTest : public testing::Test {
             snapshot->islands[i].island = i;
             snapshot->islands[i].width_px = snapshot->islands[i].height_px = 100;
         }
-        std::vector<runtime::Outbox::Picture> taken;
+        std::vector<runtime::Outbox::NewestSnapshot> taken;
         taken.push_back({.snapshot = std::move(snapshot), .after_change = after_change});
         streams.deliver(std::move(taken));
     }

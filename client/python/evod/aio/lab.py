@@ -194,7 +194,7 @@ class Lab(_Closing):
     @property
     def role(self) -> str:
         """The role of this client: "viewer", "controller" or "admin"."""
-        return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
+        return str(c.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
 
     async def request(self, **request: Any) -> c.Response:
         """Sends any request of the protocol and returns the response.

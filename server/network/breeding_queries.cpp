@@ -1,4 +1,4 @@
-#include "server/network/breedings.h"
+#include "server/network/breeding_queries.h"
 
 #include "server/base/within_memory.h"
 #include "server/protocol/breeding.h"
@@ -12,7 +12,7 @@
 namespace evod::network {
 namespace {
 
-// What an answer comes to, and some more.
+// An estimate of the bytes of an answer, with a margin.
 constexpr std::ptrdiff_t answer_bytes = 2 << 20;
 
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
@@ -35,10 +35,10 @@ base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const run
     return replay::breeding_of(**file, wanted, *executor, stop);
 }
 
-/// Whether there is more than it tells of.
+/// Whether the answer was cut.
 bool is_cut(const v1::GetBreeding& request, const v1::Breeding& answer) {
-    const auto more = [](std::uint64_t first, int told, std::uint32_t count) {
-        return first + static_cast<std::uint64_t>(told) < count;
+    const auto more = [](std::uint64_t first, int rows, std::uint32_t count) {
+        return first + static_cast<std::uint64_t>(rows) < count;
     };
     return more(request.first_contender(), answer.contenders_size(), answer.contender_count()) ||
            more(request.first_pick(), answer.picks_size(), answer.pick_count()) ||
@@ -47,12 +47,13 @@ bool is_cut(const v1::GetBreeding& request, const v1::Breeding& answer) {
 
 } // namespace
 
-void Breedings::ask(Session& session, std::uint64_t request_id, const v1::GetBreeding& request, runtime::FoundRun run) {
+void BreedingQueries::ask(Session& session, std::uint64_t request_id, const v1::GetBreeding& request,
+                          runtime::FoundRun run) {
     waiting_.push_back({session.number(), session.weak_from_this(), request_id, request, std::move(run)});
     begin_next();
 }
 
-void Breedings::begin_next() {
+void BreedingQueries::begin_next() {
     while (under_way_.size() < at_once) {
         const auto next = std::ranges::find_if(waiting_, [&](const Asked& asked) {
             return std::ranges::find(under_way_, asked.session, &Work::session) == under_way_.end();
@@ -66,7 +67,7 @@ void Breedings::begin_next() {
     }
 }
 
-void Breedings::begin(Asked asked) {
+void BreedingQueries::begin(Asked asked) {
     if (const auto asking = asked.asking.lock()) {
         asking->expect(answer_bytes);
     }
@@ -87,7 +88,7 @@ void Breedings::begin(Asked asked) {
     });
 }
 
-v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& stop) {
+v1::Response BreedingQueries::response_to(const Asked& asked, const std::stop_token& stop) {
     const auto bred = base::within_memory([&] { return breeding_of(asked.request, asked.run, stop); });
     if (!bred) {
         return protocol::refusing(asked.request_id, protocol::with_paths(bred.error(), "get_breeding"));
@@ -100,7 +101,7 @@ v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& s
     return response;
 }
 
-void Breedings::forget(const Session& session) {
+void BreedingQueries::forget(const Session& session) {
     std::erase_if(waiting_, [&](const Asked& asked) { return asked.session == session.number(); });
     for (Work& work : under_way_) {
         if (work.session == session.number()) {

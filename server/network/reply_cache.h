@@ -1,9 +1,10 @@
-// Retries: the answers to commands that were run, so that sending one again never runs it again.
+// ReplyCache: the answers to commands, which make commands idempotent: a repeated command gets the first answer and is
+// not applied again.
 //
-// A command is known by (user, client_key, request_id): what one user sends never meets the commands of another. The newest
-// `kept_per_key` answers of each key are kept, for `keys_max` keys. Where there are more, or more bytes, keys that sent a
-// single command go first, then those used longest ago. Of a key that went, its highest request_id is remembered, for
-// `evicted_max` keys, so that a command whose answer is gone is refused instead of being carried out again.
+// The key of a command is (user, client_key, request_id), so commands of different users never collide. The cache keeps
+// the newest `kept_per_key` answers of each client_key, for `keys_max` keys and `bytes_max` bytes. Beyond that it
+// evicts the keys with a single command first, then the least recently used keys. For `evicted_max` evicted keys it
+// remembers the highest request_id, so that a command whose answer is gone is refused and not applied again.
 //
 // Owner        the dispatcher, on the network thread.
 #pragma once
@@ -27,43 +28,44 @@ namespace evod::network {
 
 using codec::SharedBytes;
 
-class Retries {
+class ReplyCache {
   public:
     struct Bounds {
         std::size_t kept_per_key, keys_max, bytes_max, evicted_max;
     };
-    /// Called with the answer when it is there.
+    /// Called with the answer once it exists.
     using Waiter = std::function<void(const SharedBytes&)>;
 
-    /// key_forgotten  called for each key whose answers had to make room.
-    explicit Retries(
+    /// key_forgotten  called for each evicted key.
+    explicit ReplyCache(
         Bounds bounds, std::function<void()> key_forgotten = [] {})
         : bounds_{bounds}, key_forgotten_{std::move(key_forgotten)} {}
 
     enum class Verdict {
-        New,       // run it, then finish() or forget() it; the waiter is kept
-        Known,     // the waiter has been called, or will be
-        Different, // the same id was used for another request; the waiter is not kept
-        TooOld,    // its answer is not kept any more; the waiter is not kept
+        New,       // apply it, then call finish() or forget(); the cache keeps the waiter
+        Known,     // the cache has called the waiter, or will call it
+        Different, // the id belongs to another request; the cache drops the waiter
+        TooOld,    // its answer is no longer cached; the cache drops the waiter
     };
-    /// The client_key of a user as the other functions take it: no two users have the same.
+    /// The key that the other functions take; it differs for any two users.
     ///
     /// user  name of the session's token; empty: it has none.
     static std::string key_of(const std::string& user, const std::string& client_key);
 
-    /// Looks a command up, and begins it if it is new.
+    /// Looks a command up and marks a new one as pending.
     ///
-    /// request  the request as bytes, the same bytes for the same request.
+    /// request  the request serialised deterministically, so that equal requests have equal bytes.
     Verdict begin(const std::string& client_key, std::uint64_t request_id, std::string_view request, Waiter waiter);
 
-    /// The answer to a command that was begun: tells all who wait, and keeps it.
+    /// Stores the answer to a pending command and passes it to all waiters.
     void finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 
-    /// A command that was run before this server started, with its answer.
+    /// A command applied before this server started, with its answer.
     void restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
                  const SharedBytes& answer);
 
-    /// The command was begun and could not be run for now: tells all who wait, and may be sent again.
+    /// Drops a pending command that cannot be applied now and passes `answer` to all waiters. The client may send it
+    /// again.
     void forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 
     std::size_t key_count() const { return keys_.size(); }
@@ -72,15 +74,15 @@ class Retries {
   private:
     struct Command {
         base::StateHash request;
-        SharedBytes answer; // nullptr: still being run
+        SharedBytes answer; // nullptr: pending
         std::vector<Waiter> waiters;
     };
     struct Key {
         std::map<std::uint64_t, Command> commands;
-        std::uint64_t forgotten_up_to = 0; // ids up to here are too old unless they are in `commands`
+        std::uint64_t forgotten_up_to = 0; // these ids are too old unless they are in `commands`
         std::size_t pending_count = 0;
-        bool used_again = false;              // sent more than one command
-        std::list<std::string>::iterator use; // in used_once_ or used_again_
+        bool used_again = false;              // more than one command was sent
+        std::list<std::string>::iterator use; // position in used_once_ or used_again_
     };
     struct HashOfHash {
         std::size_t operator()(const base::StateHash& hash) const { return hash.low; }
@@ -88,7 +90,7 @@ class Retries {
     Key& touch(const std::string& client_key, std::uint64_t request_id);
     void trim(Key& key);
     void trim_keys();
-    /// Evicts the keys of a list used longest ago until the bounds hold. spared  has just been used.
+    /// Evicts the least recently used keys of a list until the bounds hold, except `spared`, which was just used.
     void trim_keys(std::list<std::string>& used, const std::string& spared);
     bool too_much() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
     void remember_evicted(const std::string& client_key, const Key& key);
@@ -96,9 +98,9 @@ class Retries {
     const Bounds bounds_;
     const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
-    std::list<std::string> used_once_, used_again_;                          // keys, the last used first
-    const std::string* last_used_ = nullptr;                                 // in one of them
-    std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of a key: its highest request_id
+    std::list<std::string> used_once_, used_again_;                          // keys, most recently used first
+    const std::string* last_used_ = nullptr;                                 // in one of the two lists
+    std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of the key → its highest request_id
     std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;
 };

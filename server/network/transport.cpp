@@ -1,4 +1,4 @@
-#include "server/network/line.h"
+#include "server/network/transport.h"
 
 #include "server/base/assert.h"
 #include "server/network/no_throw.h"
@@ -22,17 +22,17 @@ constexpr unsigned char tls_handshake = 22; // the type of TLS's first record, R
 
 } // namespace
 
-Line::Line(tcp::socket socket, asio::ssl::context* tls) : socket_{std::move(socket)} {
+Transport::Transport(tcp::socket socket, asio::ssl::context* tls) : socket_{std::move(socket)} {
     if (tls != nullptr) {
         tls_.emplace(socket_, *tls);
     }
 }
 
-boost::system::error_code Line::not_tls() {
+boost::system::error_code Transport::not_tls() {
     return make_error_code(boost::system::errc::protocol_error);
 }
 
-asio::awaitable<boost::system::error_code> Line::begin() {
+asio::awaitable<boost::system::error_code> Transport::begin() {
     if (!tls_) {
         co_return boost::system::error_code{};
     }
@@ -50,21 +50,21 @@ asio::awaitable<boost::system::error_code> Line::begin() {
     co_return error;
 }
 
-asio::awaitable<Line::Transferred> Line::read_some(asio::mutable_buffer buffer) {
+asio::awaitable<Transport::Transferred> Transport::read_some(asio::mutable_buffer buffer) {
     if (tls_) {
         co_return co_await tls_->async_read_some(buffer, no_throw);
     }
     co_return co_await socket_.async_read_some(buffer, no_throw);
 }
 
-Line::Transferred Line::write_now(std::span<const asio::const_buffer> buffers) {
+Transport::Transferred Transport::write_now(std::span<const asio::const_buffer> buffers) {
     if (tls_) {
         return {};
     }
     std::array<iovec, buffers_at_once> parts;
     EVOD_ASSERT(buffers.size() <= parts.size());
     std::transform(buffers.begin(), buffers.end(), parts.begin(), [](const asio::const_buffer& buffer) {
-        return iovec{const_cast<void*>(buffer.data()), buffer.size()}; // is not written to
+        return iovec{const_cast<void*>(buffer.data()), buffer.size()}; // sendmsg() does not modify it
     });
     msghdr message{};
     message.msg_iov = parts.data();
@@ -80,7 +80,7 @@ Line::Transferred Line::write_now(std::span<const asio::const_buffer> buffers) {
     return {boost::system::error_code{errno, boost::system::system_category()}, 0};
 }
 
-asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buffer>& buffers) {
+asio::awaitable<Transport::Transferred> Transport::write(const std::vector<asio::const_buffer>& buffers) {
     if (tls_) {
         co_return co_await asio::async_write(*tls_, buffers, no_throw);
     }
@@ -91,30 +91,51 @@ asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buf
     co_return co_await asio::async_write(socket_, buffers, count, no_throw);
 }
 
-Line::Progress Line::progress() {
+Transport::Progress Transport::progress() {
     int not_taken = 0;
     ::ioctl(socket_.native_handle(), SIOCOUTQ, &not_taken);
     return {.given = tls_ ? BIO_number_written(SSL_get_wbio(tls_->native_handle())) : given_,
             .not_taken = static_cast<std::uint64_t>(not_taken)};
 }
 
-asio::awaitable<void> Line::finish() {
-    if (tls_) { // close_notify, RFC 8446 §6.1: who reads knows that this was all
+asio::awaitable<void> Transport::finish() {
+    if (tls_) { // close_notify, RFC 8446 §6.1: marks the complete end of the stream
         co_await tls_->async_shutdown(no_throw);
     }
-    boost::system::error_code ignored; // it may be gone already
+    boost::system::error_code ignored; // the peer may have closed the connection
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
 }
 
-void Line::abort() {
-    boost::system::error_code ignored; // then it is closed as others are
+void Transport::abort() {
+    boost::system::error_code ignored; // without the option, close() sends the remaining bytes first
     socket_.set_option(asio::socket_base::linger{true, 0}, ignored);
     close();
 }
 
-void Line::close() {
-    boost::system::error_code ignored; // closed is closed
+void Transport::close() {
+    boost::system::error_code ignored; // the connection may be closed already
     socket_.close(ignored);
+}
+
+tcp::endpoint Transport::peer() const {
+    boost::system::error_code ignored; // a disconnected client has no address
+    return socket_.remote_endpoint(ignored);
+}
+
+std::string to_text(const tcp::endpoint& endpoint) {
+    return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+}
+
+std::string address_key(const asio::ip::address& address) {
+    if (!address.is_v6()) {
+        return address.to_string();
+    }
+    auto bytes = address.to_v6().to_bytes();
+    if (address.to_v6().is_v4_mapped()) {
+        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
+    }
+    std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
+    return asio::ip::address_v6{bytes}.to_string();
 }
 
 } // namespace evod::network

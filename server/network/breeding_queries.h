@@ -1,9 +1,9 @@
-// Breedings: how generations were bred, on its way to those who have asked. A job queue works them
-// out: a job reads the run's file while the server writes to it.
+// BreedingQueries: answers GetBreeding. A job queue recomputes the breeding from the run file, while the storage
+// thread may write to it.
 //
-// Owner     the dispatcher; on the network thread.
-// Full      at_once are worked out at a time, one of a session; the others wait for their turn, as many as sessions may
-//           have unanswered.
+// Owner        the dispatcher, on the network thread.
+// Full         `at_once` queries run at a time, one per session; the others wait. The unanswered requests of sessions
+//              bound them.
 #pragma once
 
 #include "server/jobs/job_queue.h"
@@ -20,22 +20,22 @@
 
 namespace evod::network {
 
-class Breedings {
+class BreedingQueries {
   public:
     static constexpr std::size_t at_once = 2;
 
-    /// Everything handed in outlives this.
-    Breedings(runtime::Outbox& outbox, LimitCounters& limit_counters)
+    /// Everything handed in outlives this object.
+    BreedingQueries(runtime::Outbox& outbox, LimitCounters& limit_counters)
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
-    /// Answers the request, sooner or later.
+    /// Answers the request later.
     void ask(Session& session, std::uint64_t request_id, const v1::GetBreeding& request, runtime::FoundRun run);
-    /// The session has ended.
+    /// Call when the session has ended.
     void forget(const Session& session);
 
   private:
     struct Asked {
-        std::uint64_t session; // number
+        std::uint64_t session; // number of the session
         std::weak_ptr<Session> asking;
         std::uint64_t request_id;
         v1::GetBreeding request;
@@ -48,7 +48,7 @@ class Breedings {
 
     void begin_next();
     void begin(Asked asked);
-    /// On a thread of the job queue.
+    /// Runs on a thread of the job queue.
     static v1::Response response_to(const Asked& asked, const std::stop_token& stop);
 
     runtime::Outbox& outbox_;

@@ -1,4 +1,4 @@
-#include "server/network/pulse.h"
+#include "server/network/heartbeat.h"
 
 #include "server/network/no_throw.h"
 
@@ -10,13 +10,13 @@ namespace evod::network {
 
 namespace asio = boost::asio;
 
-asio::awaitable<bool> Pulse::beats(std::chrono::milliseconds patience) {
+asio::awaitable<bool> Heartbeat::answers_within(std::chrono::milliseconds patience) {
     if (stopped_) {
         co_return false;
     }
     asio::steady_timer timer{co_await asio::this_coro::executor, patience};
     waiting_.insert(&timer);
-    // However full the mailbox is: this is one.
+    // push() ignores the mailbox's capacity; this is at most one entry.
     if (!std::exchange(asked_, true)) {
         mailbox_.push(runtime::CallMail{[this] { outbox_.answer([this] { answered(); }); }});
     }
@@ -25,14 +25,14 @@ asio::awaitable<bool> Pulse::beats(std::chrono::milliseconds patience) {
     co_return cancelled && !stopped_;
 }
 
-void Pulse::answered() {
+void Heartbeat::answered() {
     asked_ = false;
     for (asio::steady_timer* timer : waiting_) {
         timer->cancel();
     }
 }
 
-void Pulse::stop() {
+void Heartbeat::stop() {
     stopped_ = true;
     answered();
 }

@@ -1,4 +1,4 @@
-#include "server/network/retries.h"
+#include "server/network/reply_cache.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,7 +7,7 @@
 namespace evod::network {
 namespace {
 
-/// 128 bits of the request, so that a different one is told from the same.
+/// 128 bits of the request, to recognise a different request with the same id.
 base::StateHash fingerprint(std::string_view bytes) {
     base::EntityHash hash{0, bytes.size()};
     while (!bytes.empty()) {
@@ -22,12 +22,12 @@ base::StateHash fingerprint(std::string_view bytes) {
 
 } // namespace
 
-std::string Retries::key_of(const std::string& user, const std::string& client_key) {
-    return user + '\0' + client_key; // a token's name has no such character
+std::string ReplyCache::key_of(const std::string& user, const std::string& client_key) {
+    return user + '\0' + client_key; // a token's name contains no NUL
 }
 
-Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t request_id, std::string_view request,
-                                Waiter waiter) {
+ReplyCache::Verdict ReplyCache::begin(const std::string& client_key, std::uint64_t request_id, std::string_view request,
+                                      Waiter waiter) {
     Key& key = touch(client_key, request_id);
     const auto print = fingerprint(request);
     if (const auto found = key.commands.find(request_id); found != key.commands.end()) {
@@ -54,7 +54,7 @@ Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t req
     return Verdict::New;
 }
 
-void Retries::finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
+void ReplyCache::finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
     const auto found = keys_.find(client_key);
     if (found == keys_.end()) {
         return;
@@ -74,14 +74,14 @@ void Retries::finish(const std::string& client_key, std::uint64_t request_id, co
     trim_keys();
 }
 
-void Retries::restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
-                      const SharedBytes& answer) {
+void ReplyCache::restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
+                         const SharedBytes& answer) {
     if (begin(client_key, request_id, request, [](const SharedBytes&) {}) == Verdict::New) {
         finish(client_key, request_id, answer);
     }
 }
 
-void Retries::forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
+void ReplyCache::forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
     const auto found = keys_.find(client_key);
     if (found == keys_.end()) {
         return;
@@ -96,7 +96,7 @@ void Retries::forget(const std::string& client_key, std::uint64_t request_id, co
     }
 }
 
-Retries::Key& Retries::touch(const std::string& client_key, std::uint64_t request_id) {
+ReplyCache::Key& ReplyCache::touch(const std::string& client_key, std::uint64_t request_id) {
     const auto found = keys_.find(client_key);
     if (found != keys_.end()) {
         Key& key = found->second;
@@ -117,8 +117,8 @@ Retries::Key& Retries::touch(const std::string& client_key, std::uint64_t reques
     return key;
 }
 
-void Retries::trim(Key& key) {
-    // One that is still being run stays; there are at most as many as the mailbox holds.
+void ReplyCache::trim(Key& key) {
+    // Pending commands stay. There are at most as many as the mailbox holds.
     for (auto oldest = key.commands.begin();
          key.commands.size() > bounds_.kept_per_key && oldest != key.commands.end();) {
         if (!oldest->second.answer) {
@@ -131,12 +131,12 @@ void Retries::trim(Key& key) {
     }
 }
 
-void Retries::trim_keys() {
+void ReplyCache::trim_keys() {
     trim_keys(used_once_, *last_used_);
     trim_keys(used_again_, *last_used_);
 }
 
-void Retries::trim_keys(std::list<std::string>& used, const std::string& spared) {
+void ReplyCache::trim_keys(std::list<std::string>& used, const std::string& spared) {
     for (auto oldest = used.end(); too_much() && oldest != used.begin();) {
         const auto key = keys_.find(*--oldest);
         if (&*oldest == &spared || key->second.pending_count > 0) {
@@ -152,7 +152,7 @@ void Retries::trim_keys(std::list<std::string>& used, const std::string& spared)
     }
 }
 
-void Retries::remember_evicted(const std::string& client_key, const Key& key) {
+void ReplyCache::remember_evicted(const std::string& client_key, const Key& key) {
     const std::uint64_t highest =
         key.commands.empty() ? key.forgotten_up_to : std::max(key.forgotten_up_to, key.commands.rbegin()->first);
     const auto [entry, is_new] = evicted_.try_emplace(fingerprint(client_key), highest);

@@ -1,0 +1,29 @@
+// Messages: the frames that the network thread sends, and the log lines of refusals.
+//
+// Threads      any; no state.
+#pragma once
+
+#include "evod/v1/session.pb.h"
+#include "proto/codec/shared_bytes.h"
+#include "server/base/result.h"
+
+#include <cstdint>
+#include <string>
+
+namespace evod::network {
+
+using codec::SharedBytes;
+
+SharedBytes encode_control(const v1::ServerMessage& message);
+SharedBytes encode_response(v1::Response response);
+/// Sets the time of the event to now.
+SharedBytes encode_event(v1::Event event);
+SharedBytes encode_goodbye(const base::Refusal& why);
+
+/// Logs a refusal at Level::Debug; an accepted response logs nothing.
+///
+/// by  the client whose request is refused.
+void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response);
+void log_refusal(std::uint64_t session, const std::string& by, std::uint64_t request_id, const base::Refusal& refused);
+
+} // namespace evod::network

@@ -1,0 +1,79 @@
+// SendMemory: accounts for the memory of everything that waits to be sent to clients, so that one bound covers all
+// sessions.
+//
+// Bytes shared by several sessions exist once and count once.
+//
+// Owner        the server; its sessions use it on the network thread.
+// Full         above `bytes_max` it calls `exceeded`, which has to close sessions until the memory is released.
+#pragma once
+
+#include "proto/codec/shared_bytes.h"
+
+#include <cstddef>
+#include <functional>
+#include <unordered_map>
+
+namespace evod::network {
+
+using codec::SharedBytes;
+
+class SendMemory {
+  public:
+    /// exceeded  called once when the bound is exceeded, and again only after rearm(). It must not release memory
+    ///           itself.
+    SendMemory(std::size_t bytes_max, std::function<void()> exceeded)
+        : bytes_max_{bytes_max}, exceeded_{std::move(exceeded)} {}
+
+    /// Shared bytes, accounted for as long as this object lives.
+    class Counted {
+      public:
+        Counted() = default;
+        Counted(SendMemory& owner, SharedBytes bytes);
+        Counted(Counted&& other) noexcept;
+        Counted& operator=(Counted&& other) noexcept;
+        ~Counted() { release(); }
+
+        explicit operator bool() const { return bytes_ != nullptr; }
+        const std::string& operator*() const { return *bytes_; }
+        const std::string* operator->() const { return bytes_.get(); }
+
+        /// The bytes divided by the number of their holders.
+        std::size_t share() const;
+
+      private:
+        void release();
+        SendMemory* owner_ = nullptr;
+        SharedBytes bytes_;
+    };
+
+    /// Memory that a session uses for itself, as large as the last set().
+    class Reservation {
+      public:
+        explicit Reservation(SendMemory& owner) : owner_{owner} {}
+        Reservation(const Reservation&) = delete;
+        ~Reservation() { set(0); }
+        void set(std::size_t bytes);
+        std::size_t bytes() const { return bytes_; }
+
+      private:
+        SendMemory& owner_;
+        std::size_t bytes_ = 0;
+    };
+
+    std::size_t bytes() const { return bytes_; }
+    /// Bytes above the bound.
+    std::size_t excess() const { return bytes_ > bytes_max_ ? bytes_ - bytes_max_ : 0; }
+    /// Allows the next call of `exceeded`.
+    void rearm() { reported_ = false; }
+
+  private:
+    void add(std::size_t bytes);
+
+    const std::size_t bytes_max_;
+    const std::function<void()> exceeded_;
+    std::unordered_map<const std::string*, std::size_t> holders_;
+    std::size_t bytes_ = 0;
+    bool reported_ = false;
+};
+
+} // namespace evod::network

@@ -1,0 +1,74 @@
+// Transport: the bytes of one connection, plain or through TLS.
+//
+// Owner        a session, on the network thread. At most one read and one write are in progress.
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace evod::network {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+class Transport {
+  public:
+    using Transferred = std::tuple<boost::system::error_code, std::size_t>;
+
+    /// tls  outlives the transport; nullptr: without TLS.
+    Transport(tcp::socket socket, asio::ssl::context* tls);
+
+    /// Call first: performs the TLS handshake. Returns not_tls() for a client that sends plain bytes to a TLS server.
+    /// The connection then continues without TLS, so that the server can send its refusal.
+    asio::awaitable<boost::system::error_code> begin();
+    static boost::system::error_code not_tls();
+
+    asio::awaitable<Transferred> read_some(asio::mutable_buffer buffer);
+    /// Writes as much as the system accepts without waiting, which may be nothing. Accepts at most buffers_at_once
+    /// buffers. With TLS it writes nothing.
+    Transferred write_now(std::span<const asio::const_buffer> buffers);
+    static constexpr std::size_t buffers_at_once = 16;
+    /// Writes all buffers.
+    asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
+
+    /// Changes whenever the peer has received something.
+    struct Progress {
+        std::uint64_t given = 0;     // bytes handed to the system
+        std::uint64_t not_taken = 0; // bytes of these that the peer's system has not acknowledged
+        bool operator==(const Progress&) const = default;
+    };
+    Progress progress();
+
+    tcp::socket& socket() { return socket_; }
+    /// The peer's address; unspecified if it has disconnected.
+    tcp::endpoint peer() const;
+    /// Ends the writing side. With TLS it waits for the peer's close_notify, which a concurrent read_some() must
+    /// receive.
+    asio::awaitable<void> finish();
+    void close();
+    /// Closes the connection and discards what the peer has not received.
+    void abort();
+
+  private:
+    tcp::socket socket_;
+    std::optional<asio::ssl::stream<tcp::socket&>> tls_;
+    std::uint64_t given_ = 0;
+};
+
+/// "127.0.0.1:51234"
+std::string to_text(const tcp::endpoint& endpoint);
+
+/// The part of an address that belongs to one user: the IPv4 address, or the IPv6 /64.
+std::string address_key(const asio::ip::address& address);
+
+} // namespace evod::network

@@ -1,0 +1,37 @@
+#include "server/protocol/answers.h"
+
+#include "evod/v1/session.pb.h"
+#include "proto/codec/framing.h"
+#include "server/protocol/parameters.h"
+#include "server/protocol/refusals.h"
+#include "server/protocol/worlds.h"
+
+#include <utility>
+
+namespace evod::protocol {
+
+v1::Response answer_of(std::uint64_t request_id, const std::string& request_name,
+                       const simulation::Laboratory& laboratory, const base::Result<simulation::Applied>& applied) {
+    if (!applied) {
+        return refusing(request_id, with_paths(applied.error(), request_name));
+    }
+    v1::Response response;
+    response.set_request_id(request_id);
+    response.set_applied_tick(applied->tick);
+    if (applied->planned) {
+        *response.mutable_planned_change() = to_proto(*applied->planned);
+    } else if (applied->parameters) {
+        *response.mutable_parameters() = to_proto(*applied->parameters);
+    } else if (const auto entry = laboratory.find(applied->world)) { // a deleted world is gone
+        *response.mutable_world() = to_proto(**entry);
+    }
+    return response;
+}
+
+std::string frame_of(v1::Response response) {
+    v1::ServerMessage message;
+    *message.mutable_response() = std::move(response);
+    return codec::encode_frame(codec::Channel::Control, message);
+}
+
+} // namespace evod::protocol

@@ -1,0 +1,66 @@
+#include "server/protocol/answers.h"
+
+#include "evod/v1/session.pb.h"
+#include "proto/codec/framing.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::protocol {
+namespace {
+
+class Answers : public testing::Test {
+  protected:
+    Answers() { EXPECT_TRUE(laboratory.apply(simulation::CreateWorld{"w", {}, {}, {}})); }
+
+    v1::Response answer_to(const simulation::Command& command, const std::string& name) {
+        return answer_of(7, name, laboratory, laboratory.apply(command));
+    }
+
+    simulation::Laboratory laboratory;
+};
+
+TEST_F(Answers, ShowTheWorldAfterRunControl) {
+    const v1::Response response = answer_to(simulation::Run{"w", {}}, "run");
+    EXPECT_EQ(response.request_id(), 7);
+    EXPECT_FALSE(response.has_status());
+    EXPECT_EQ(response.world().name(), "w");
+    EXPECT_EQ(response.world().state(), v1::RUN_STATE_RUNNING);
+}
+
+TEST_F(Answers, ShowTheParametersAfterAChange) {
+    const v1::Response response =
+        answer_to(simulation::SetParameters{"w", {{"mutation_chance", parameters::ParameterValue{0.25}}}, false, {}},
+                  "set_parameters");
+    EXPECT_TRUE(response.has_parameters());
+    EXPECT_EQ(response.applied_tick(), 0);
+}
+
+TEST_F(Answers, ShowNoWorldAfterItsDeletion) {
+    const v1::Response response = answer_to(simulation::DeleteWorld{"w"}, "delete_world");
+    EXPECT_FALSE(response.has_status());
+    EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
+}
+
+TEST_F(Answers, NameTheFieldOfARefusedRequest) {
+    const v1::Response response =
+        answer_to(simulation::SetParameters{"w", {{"mutation_chance", parameters::ParameterValue{1.5}}}, false, {}},
+                  "set_parameters");
+    ASSERT_EQ(response.status().violations_size(), 1);
+    EXPECT_EQ(response.status().violations(0).field(), "set_parameters.mutation_chance");
+    EXPECT_FALSE(response.has_applied_tick());
+}
+
+TEST_F(Answers, TravelAsOneControlFrame) {
+    const v1::Response response = answer_to(simulation::Pause{"w"}, "pause");
+    codec::FrameReader reader{codec::client_limits};
+    const std::string bytes = frame_of(response);
+    reader.feed(std::as_bytes(std::span{bytes}));
+    const auto frame = reader.next();
+    ASSERT_TRUE(frame && *frame);
+    const auto message = codec::parse_body<v1::ServerMessage>((*frame)->body);
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->response().SerializeAsString(), response.SerializeAsString());
+}
+
+} // namespace
+} // namespace evod::protocol

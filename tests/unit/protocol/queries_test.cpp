@@ -1,0 +1,76 @@
+#include "server/protocol/queries.h"
+
+#include "tests/unit/protocol/messages.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace evod::protocol {
+namespace {
+
+class Queries : public Lived {
+  protected:
+    v1::Response answer(const v1::Request& request, bool users_only = false) {
+        v1::Response response;
+        put_rows(answer_query(request, laboratory, users_only, response), response);
+        return response;
+    }
+};
+
+TEST_F(Queries, AreAnsweredWithTheFieldOfTheirRules) {
+    v1::Request request;
+    request.mutable_list_worlds();
+    EXPECT_EQ(answer(request).worlds().worlds(0).name(), "w");
+    request.mutable_get_parameters();
+    EXPECT_TRUE(answer(request).has_parameters());
+    request.mutable_get_statistics();
+    EXPECT_TRUE(answer(request).has_statistics());
+    request.mutable_get_organism();
+    EXPECT_TRUE(answer(request).has_organism());
+    request.mutable_get_motion();
+    EXPECT_TRUE(answer(request).has_motion());
+}
+
+TEST_F(Queries, WithRowsAreConvertedLater) {
+    v1::Request request;
+    request.mutable_get_population()->set_first_organism(1);
+    v1::Response response;
+    const QueryRows rows = answer_query(request, laboratory, false, response);
+    EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
+    EXPECT_EQ(std::get<PopulationRows>(rows).first, 1);
+    put_rows(rows, response);
+    EXPECT_EQ(response.population().first(), 1);
+    EXPECT_GT(row_bytes_max(request), 0u);
+    request.mutable_get_history();
+    EXPECT_EQ(answer(request).history().generations_size(), 3) << "one finished generation on three islands";
+    EXPECT_GT(row_bytes_max(request), 0u);
+    request.mutable_list_worlds();
+    EXPECT_EQ(row_bytes_max(request), 0u);
+}
+
+TEST_F(Queries, ThatFailNameTheirField) {
+    v1::Request request;
+    request.mutable_get_organism()->set_island(9);
+    const v1::Response response = answer(request);
+    EXPECT_EQ(response.status().code(), v1::CODE_NOT_FOUND);
+    EXPECT_EQ(response.status().violations(0).field(), "get_organism.island");
+    EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
+}
+
+TEST_F(Queries, OfAViewerShowNoProgramsOfOthers) {
+    ASSERT_TRUE(laboratory.apply(
+        simulation::SetParameters{.world = "w",
+                                  .assignments = {{"mutation_chance", parameters::ParameterValue{0.5}}},
+                                  .dry_run = false,
+                                  .expected_revision = {},
+                                  .at = parameters::PlannedMoment{.generation = 90, .tick = {}},
+                                  .by = "anna: evoctl 127.0.0.1:5000"}));
+    v1::Request request;
+    request.mutable_get_parameters();
+    EXPECT_EQ(answer(request).parameters().planned(0).by().client(), "evoctl");
+    EXPECT_EQ(answer(request, true).parameters().planned(0).by().client(), "");
+    EXPECT_EQ(answer(request, true).parameters().planned(0).by().user(), "anna");
+}
+
+} // namespace
+} // namespace evod::protocol

@@ -1,0 +1,88 @@
+#include "server/protocol/worlds.h"
+
+#include "server/protocol/queries.h"
+#include "tests/unit/protocol/messages.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace evod::protocol {
+namespace {
+
+TEST_F(Lived, AWorldIsConvertedCompletely) {
+    entry().ticks_per_s = 60;
+    entry().slowed = true;
+    // Unset: it has not ended, is live, and is paced.
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "replay", "speed.max", "storage"));
+    entry().storage = {.state = simulation::StorageState::Failing, .reason = "it is full"};
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "replay", "speed.max"));
+    entry().replay = {.replay_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "speed.max"));
+    EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
+}
+
+TEST(WorldMessage, GenerationStatisticsAreConvertedInOrder) {
+    simulation::GenerationStatistics s;
+    double next = 1;
+    const auto number = [&] { return next++; };
+    const auto count = [&] { return static_cast<std::uint32_t>(next++); };
+    s.generation = count(), s.island = count(), s.end_tick = count(), s.organism_count = count();
+    s.fitness_best = number(), s.fitness_mean = number(), s.fitness_median = number(), s.fitness_worst = number();
+    s.fitness_deviation = number();
+    s.account.emplace();
+    for (std::size_t gene = 0; gene < s.genes.size(); ++gene) {
+        s.genes[gene] = {number(), number(), number(), number()};
+        (*s.account)[gene] = {number(), number(), number(), number()};
+    }
+    s.diversity = number(), s.alive_count = count(), s.starved_count = count(), s.poisoned_count = count();
+    s.food_eaten = count(), s.poison_eaten = count(), s.clamp_count = count(), s.too_fast_count = count();
+    s.speed_limit_count = count(), s.best_organism = count(), s.simulated_s = number();
+    const auto message = to_proto(s);
+    EXPECT_THAT(unset_in(message), testing::IsEmpty());
+    // The fields are in the order of the message, so the numbers must rise.
+    std::vector<double> numbers, expected;
+    collect_numbers(message, numbers);
+    for (double n = 1; n < next; ++n) {
+        expected.push_back(n);
+    }
+    EXPECT_EQ(numbers, expected);
+    s.account.reset();
+    EXPECT_THAT(unset_in(to_proto(s)), testing::ElementsAre("genes.account"));
+}
+
+TEST(WorldMessage, LiveStatisticsAreConvertedCompletely) {
+    const simulation::LiveStatistics s{.organism_count = 2,
+                                       .alive_count = 3,
+                                       .health_mean = 4,
+                                       .food_eaten = 5,
+                                       .poison_eaten = 6,
+                                       .starved_count = 7,
+                                       .poisoned_count = 8};
+    std::vector<double> numbers;
+    collect_numbers(to_proto(s, 1), numbers);
+    EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
+TEST_F(Lived, AnOrganismIsConvertedCompletely) {
+    std::set<std::string> never;
+    for (std::uint32_t id = 0; id < 50; ++id) {
+        const auto unset = unset_in(organism_info(entry().world, entry().world.islands()[1], id));
+        if (id == 0) {
+            never = unset;
+            continue;
+        }
+        std::set<std::string> both;
+        std::set_intersection(never.begin(), never.end(), unset.begin(), unset.end(), std::inserter(both, both.end()));
+        never = both;
+    }
+    // not every organism eats or dies in a quarter of a second
+    never.erase("poison_eaten"), never.erase("cause_of_death");
+    EXPECT_THAT(never, testing::IsEmpty());
+}
+
+} // namespace
+} // namespace evod::protocol
