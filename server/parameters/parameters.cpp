@@ -5,6 +5,7 @@
 #include "server/base/overloaded.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
