@@ -5,37 +5,37 @@
 namespace evod::viewer {
 namespace {
 
-using Action = GenerationHold::Action;
+using HoldAction = GenerationHold::Action;
 
 const GenerationHold::Run run{"default", "a"};
 
 TEST(GenerationHold, RunsOneGenerationThenTheTickThatBreedsTheNext) {
     GenerationHold hold;
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None) << "the hold is off";
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::None) << "the hold is off";
     hold.hold(run);
     for (int generation = 0; generation < 2; ++generation) {
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None) << "the command was sent";
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::RunOneTick);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, true), Action::None) << "that tick runs";
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Action::None);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::RunOneGeneration);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::None) << "the command was sent";
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), HoldAction::RunOneTick);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), HoldAction::None);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, true), HoldAction::None) << "that tick runs";
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), HoldAction::None);
     }
 }
 
 TEST(GenerationHold, APauseInBetweenDoesNotChangeThePlan) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), Action::None);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::RunOneTick);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::RunOneGeneration);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_PAUSED, false), HoldAction::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), HoldAction::RunOneTick);
 }
 
 TEST(GenerationHold, SendsNothingToAWorldThatWaitsToBegin) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), HoldAction::None);
     EXPECT_TRUE(hold.on());
 }
 
@@ -46,10 +46,10 @@ TEST(GenerationHold, EndsWhenAnotherRunIsShown) {
         SCOPED_TRACE(other.world + " " + other.id);
         GenerationHold hold;
         hold.hold(run);
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
-        EXPECT_EQ(hold.update(other, evod::v1::RUN_STATE_RUNNING, false), Action::None);
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::RunOneGeneration);
+        EXPECT_EQ(hold.update(other, evod::v1::RUN_STATE_RUNNING, false), HoldAction::None);
         EXPECT_FALSE(hold.on());
-        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::None)
+        EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::None)
             << "also when the run is shown again";
     }
 }
@@ -57,9 +57,9 @@ TEST(GenerationHold, EndsWhenAnotherRunIsShown) {
 TEST(GenerationHold, SendsNothingAfterItsRelease) {
     GenerationHold hold;
     hold.hold(run);
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), Action::RunOneGeneration);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_RUNNING, false), HoldAction::RunOneGeneration);
     hold.release();
-    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), Action::None);
+    EXPECT_EQ(hold.update(run, evod::v1::RUN_STATE_WAITING, false), HoldAction::None);
 }
 
 } // namespace
