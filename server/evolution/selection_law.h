@@ -1,4 +1,5 @@
-// Selection law: how often a selection method picks each organism on average, and how far one breeding deviates from that.
+// Selection law: how often a selection method picks each organism on average, and how much that varies between
+// breedings.
 //
 // Owner        BreedingRecord; nothing in a running world uses it.
 // Threads      none of its own.

@@ -10,8 +10,8 @@
 
 namespace evod::viewer {
 
-/// 8 bits each of red, green and blue; alpha is dropped. Throws std::runtime_error with libpng's reason, for example for
-/// an image without pixels.
+/// 8 bits each of red, green and blue; alpha is dropped. Throws std::runtime_error with libpng's reason, for example
+/// for an image without pixels.
 std::string png_of(const sf::Image& image);
 
 /// Writes a whole file and replaces an existing one. Throws std::runtime_error that names path and reason.

@@ -1,8 +1,8 @@
 // Widgets: helpers that all panels use, and the register by which a script finds widgets on the screen.
 //
 // mark() registers a widget by name; find() returns it in the next frame, as long as the widget is drawn. Names are the
-// labels that users read. "Panel/name" is unique where two panels have the same label. A choice of an open drop-down has
-// the name "drop-down: choice".
+// labels that users read. "Panel/name" is unique where two panels have the same label. A choice of an open drop-down
+// has the name "drop-down: choice".
 //
 // Owner        Spots belongs to the Gui; the rest are functions.
 // Needs        called between Gui::begin() and Gui::draw().

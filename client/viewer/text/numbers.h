@@ -28,8 +28,8 @@ std::string shown_tenths(double number); // 251.34 → "251.3"
 /// Reads a text of digits only; nullopt for any other text and for numbers beyond 64 bits.
 std::optional<std::uint64_t> whole_number(std::string_view text);
 
-/// Reads a whole number from the text of an input field. Clears `problem` if it is allowed; otherwise returns nullopt and
-/// sets `problem` to "FIELD: got "TEXT", allowed whole numbers from LEAST to MOST".
+/// Reads a whole number from the text of an input field. Clears `problem` if it is allowed; otherwise returns nullopt
+/// and sets `problem` to "FIELD: got "TEXT", allowed whole numbers from LEAST to MOST".
 std::optional<std::uint64_t> number_in(std::string_view field, std::string_view text, std::uint64_t least,
                                        std::uint64_t most, std::string& problem);
 

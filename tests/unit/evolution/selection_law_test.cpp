@@ -80,8 +80,8 @@ std::vector<LawCase> law_cases() {
 }
 
 TEST(SelectionLaw, AgreesWithManySelections) {
-    // Means of 20,000 breedings, each within 6 standard errors: of some 2,000 comparisons a correct build fails for less
-    // than one seed in 100,000.
+    // Means of 20,000 breedings, each within 6 standard errors: a correct build fails in its some 2,000 comparisons
+    // for less than one seed in 100,000.
     constexpr std::uint32_t breedings = 20'000;
     constexpr double within = 6;
     for (const LawCase& chosen : law_cases()) {

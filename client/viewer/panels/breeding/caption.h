@@ -10,7 +10,7 @@
 
 namespace evod::viewer {
 
-/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty before the first page.
+/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty at first.
 std::string breeding_summary(const BreedingRecord& record);
 
 /// "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …"

@@ -25,8 +25,8 @@ double density(double z) {
     return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
 }
 
-/// The z that a normal variable exceeds with probability `above`. Newton's method on the logarithm, which is concave, so
-/// it converges.
+/// The z that a normal variable exceeds with probability `above`. Newton's method converges, because the logarithm of
+/// the probability is concave.
 double normal_above(double above) {
     if (above > 0.5) {
         return -normal_above(1 - above);

@@ -59,7 +59,7 @@ class Drawing {
         write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
     }
 
-    /// Draws a vertical line through the numbers nearest to x = `at`, and returns them as text. Empty if there are none.
+    /// Draws a vertical line through the numbers nearest to x = `at` and returns them as text; empty if there are none.
     std::vector<std::string> draw_cursor(double at) {
         std::optional<double> found;
         for (const Series& series : plot_.series) {

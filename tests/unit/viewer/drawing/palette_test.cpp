@@ -1,5 +1,5 @@
-// Colours with a meaning differ for every kind of colour vision: simulates each kind of colour blindness and measures the
-// differences in CIE L*a*b*.
+// Colours with a meaning differ for every kind of colour vision: simulates each kind of colour blindness and measures
+// the differences in CIE L*a*b*.
 //
 // Source   Machado, Oliveira & Fernandes 2009, IEEE Trans. Vis. Comput. Graph. 15(6), doi:10.1109/TVCG.2009.113, the
 //          matrices of severity 1; CIE 1976 L*a*b* with the white of sRGB, D65.
