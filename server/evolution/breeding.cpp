@@ -1,5 +1,7 @@
 #include "server/evolution/breeding.h"
 
+#include "server/base/assert.h"
+
 namespace evod::evolution {
 namespace {
 
@@ -49,6 +51,8 @@ std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_f
 } // namespace
 
 Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameters& parameters) {
+    EVOD_ASSERT(present >= 1);
+    EVOD_ASSERT(wanted >= 1);
     const std::uint32_t common = std::min(present, wanted);
     const std::uint32_t elite = std::min(parameters.elite_count, common);
     std::uint32_t survivors = 0;

@@ -5,6 +5,7 @@
 // Determinism  every draw is keyed, so a step has the same result regardless of the caller and of the order of steps.
 #pragma once
 
+#include "server/base/assert.h"
 #include "server/evolution/crossover.h"
 #include "server/evolution/mutation.h"
 #include "server/evolution/next_generation.h"
@@ -87,6 +88,7 @@ class Descent {
     /// Makes a survivor, in its place of the next generation. Returns the number of clamped genes.
     template <class By>
     unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
+        EVOD_ASSERT(organism < static_cast<std::size_t>(present_.cols()));
         std::ranges::copy(column(present_, organism), genes.begin());
         if (!mutates) {
             return by.clamp(genes, bounds_);
@@ -105,6 +107,8 @@ class Descent {
     /// Makes one child, in its place. Returns the number of clamped genes.
     template <class By>
     unsigned make_child(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
+        EVOD_ASSERT(of.parents.first < static_cast<std::size_t>(present_.cols()));
+        EVOD_ASSERT(of.parents.second < static_cast<std::size_t>(present_.cols()));
         cross(column(present_, of.parents.first), column(present_, of.parents.second), of.from_second, child);
         base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
         by.mutate_order(order_mutation_, child, order);

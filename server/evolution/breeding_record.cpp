@@ -122,7 +122,8 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                                std::uint32_t wanted, const BreedingKey& key, const WantedRows& rows,
                                base::Executor& executor) {
     const auto present = static_cast<std::uint32_t>(fitness.size());
-    EVOD_ASSERT(present >= 1 && wanted >= 1);
+    EVOD_ASSERT(present >= 1);
+    EVOD_ASSERT(wanted >= 1);
     EVOD_ASSERT(genes.cols() == static_cast<Eigen::Index>(fitness.size()));
     Ranking ranking{fitness, executor};
     const Choice choice = choose(ranking, parameters, wanted, key, executor);

@@ -6,6 +6,7 @@
 // Source  Knuth & Yao 1976, "The complexity of nonuniform random number generation".
 #pragma once
 
+#include "server/base/assert.h"
 #include "server/base/random.h"
 
 #include <cstdint>
@@ -15,13 +16,18 @@ namespace evod::evolution {
 class Chance {
   public:
     /// p  in [0, 1]; represented exactly from 2^-11 up, and rounded to a multiple of 2^-64 below.
-    explicit Chance(double p) : digits_{p < 1 ? static_cast<std::uint64_t>(p * 0x1p64) : 0}, certain_{p >= 1} {}
+    explicit Chance(double p) : digits_{p < 1 ? static_cast<std::uint64_t>(p * 0x1p64) : 0}, certain_{p >= 1} {
+        EVOD_ASSERT(p >= 0);
+        EVOD_ASSERT(p <= 1);
+    }
 
     bool is_never() const { return digits_ == 0 && !certain_; }
 
     /// Sets each of the low `count` bits (1 … 32) with probability p, independently; the other bits are 0. Draws no
     /// word if p is 0 or 1.
     std::uint32_t draw_bits(unsigned count, base::RandomStream& random) const {
+        EVOD_ASSERT(count >= 1);
+        EVOD_ASSERT(count <= 32);
         const std::uint64_t all = (std::uint64_t{1} << count) - 1;
         if (certain_) {
             return static_cast<std::uint32_t>(all);

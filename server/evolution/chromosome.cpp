@@ -1,5 +1,7 @@
 #include "server/evolution/chromosome.h"
 
+#include "server/base/assert.h"
+
 namespace evod::evolution {
 
 GeneBounds gene_bounds(const Parameters& parameters) {
@@ -11,6 +13,7 @@ GeneBounds gene_bounds(const Parameters& parameters) {
                                     parameters.food_radius_max,  parameters.poison_radius_max};
     GeneBounds bounds;
     for (unsigned gene = 0; gene < gene_count; ++gene) {
+        EVOD_ASSERT(min[gene] <= max[gene]);
         bounds.min[gene] = static_cast<float>(min[gene]);
         bounds.max[gene] = static_cast<float>(max[gene]);
     }
@@ -31,6 +34,7 @@ unsigned clamp(Genes genes, const GeneBounds& bounds) {
 
 GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
                               std::uint32_t island) {
+    EVOD_ASSERT(parameters.initial_gene_min <= parameters.initial_gene_max);
     const base::RandomKey key{seed, base::Purpose::InitialChromosome, island, 1};
     const GeneBounds bounds = gene_bounds(parameters);
     GeneMatrix genes(gene_count, organism_count);

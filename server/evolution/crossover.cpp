@@ -23,6 +23,7 @@ int cut_count(const Parameters& parameters) {
 } // namespace
 
 GeneMask mask_of_cuts(GeneMask cuts) {
+    EVOD_ASSERT(cuts <= all_genes);
     GeneMask mask = 0, side = 0;
     for (unsigned gene = 0; gene < gene_count; ++gene) {
         side ^= cuts >> gene & 1;

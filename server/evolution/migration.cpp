@@ -87,11 +87,14 @@ std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, st
 } // namespace
 
 bool migration_due(std::uint64_t generation, const Parameters& parameters) {
+    EVOD_ASSERT(generation >= 1);
+    EVOD_ASSERT(parameters.migration_epoch >= 1);
     return parameters.migration != Topology::None && generation % parameters.migration_epoch == 0;
 }
 
 std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fitness, const Parameters& parameters,
                                      base::Seed seed, std::uint64_t generation) {
+    EVOD_ASSERT(generation >= 1);
     const auto islands = static_cast<std::uint32_t>(fitness.size());
     const auto population = [&](std::uint32_t island) { return static_cast<std::uint32_t>(fitness[island].size()); };
     const auto stream = [&](std::uint32_t island, std::uint32_t entity, Decision decision) {
@@ -148,11 +151,14 @@ void migrate(std::span<const Migrant> migrants, std::span<const IslandPopulation
     std::vector<Traveller> travellers;
     travellers.reserve(migrants.size());
     for (const Migrant& migrant : migrants) {
+        EVOD_ASSERT(migrant.from < islands.size());
         const IslandPopulation& home = islands[migrant.from];
         EVOD_ASSERT(migrant.organism < home.fitness.size());
+        EVOD_ASSERT(home.genes->cols() == static_cast<Eigen::Index>(home.fitness.size()));
         travellers.push_back({home.genes->col(migrant.organism), home.fitness[migrant.organism]});
     }
     for (std::size_t i = 0; i < migrants.size(); ++i) {
+        EVOD_ASSERT(migrants[i].to < islands.size());
         const IslandPopulation& destination = islands[migrants[i].to];
         EVOD_ASSERT(migrants[i].replaces < destination.fitness.size());
         destination.genes->col(migrants[i].replaces) = travellers[i].genes;

@@ -1,5 +1,6 @@
 #include "server/evolution/mutation.h"
 
+#include "server/base/assert.h"
 #include "server/base/elementary.h"
 
 #include <algorithm>
@@ -92,6 +93,8 @@ void for_each_gene(std::uint32_t mask, const Change& change) {
 } // namespace
 
 std::uint32_t BinaryView::to_code(float value) const {
+    EVOD_ASSERT(value >= min);
+    EVOD_ASSERT(value <= max);
     if (!(min < max)) {
         return 0;
     }
@@ -100,6 +103,7 @@ std::uint32_t BinaryView::to_code(float value) const {
 }
 
 float BinaryView::to_value(std::uint32_t code) const {
+    EVOD_ASSERT(code < 1u << bits);
     const double share = static_cast<double>(code) / ((1u << bits) - 1);
     return std::clamp(static_cast<float>(min + share * (double{max} - min)), min, max);
 }
@@ -112,6 +116,9 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , reset_chance_{parameters.reset_chance}
     , bit_flip_chance_{parameters.bit_flip_chance}
     , bits_{parameters.bit_flip_bits} {
+    EVOD_ASSERT(bits_ >= 1);
+    EVOD_ASSERT(bits_ <= 24);
+    EVOD_ASSERT(step_ >= 0);
     if (!bit_flip_chance_.is_never() && parameters.bit_flip_chance <= rare_flip_chance_max) {
         rare_flips_.emplace(gene_count * bits_, parameters.bit_flip_chance);
     }

@@ -99,7 +99,8 @@ void prefetch(const GeneMatrix& genes, std::uint32_t organism) {
 
 SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_from, const GeneMatrix& born,
                              std::span<const Parents> parents, base::Executor& executor) {
-    EVOD_ASSERT(before.cols() >= 1 && born.cols() >= 1);
+    EVOD_ASSERT(before.cols() >= 1);
+    EVOD_ASSERT(born.cols() >= 1);
     EVOD_ASSERT(bred_from.cols() == before.cols());
     EVOD_ASSERT(parents.size() == static_cast<std::size_t>(born.cols()));
     const auto organisms = static_cast<std::size_t>(before.cols());
@@ -122,6 +123,8 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
             prefetch(bred_from, parents[i + parents_prefetched].first);
             prefetch(bred_from, parents[i + parents_prefetched].second);
         }
+        EVOD_ASSERT(parents[i].first < organisms);
+        EVOD_ASSERT(parents[i].second < organisms);
         const Numbers z{column(born, i)};
         const Numbers of_parents =
             middle_of(Numbers{column(bred_from, parents[i].first)}, Numbers{column(bred_from, parents[i].second)});

@@ -1,5 +1,6 @@
 #include "server/evolution/ranking.h"
 
+#include "server/base/assert.h"
 #include "server/base/inline_executor.h"
 #include "server/evolution/distribution.h"
 
@@ -27,6 +28,8 @@ class Buckets {
   public:
     explicit Buckets(std::span<const double> fitness) {
         const auto [least, greatest] = std::minmax_element(fitness.begin(), fitness.end());
+        EVOD_ASSERT(std::isfinite(*least));
+        EVOD_ASSERT(std::isfinite(*greatest));
         half_of_greatest_ = *greatest / 2; // halves, because the full difference may overflow a double
         const auto count = std::clamp<std::size_t>(fitness.size() / organisms_per_bucket, 1, buckets_max);
         const double per_unit = static_cast<double>(count) / (half_of_greatest_ - *least / 2);
@@ -56,6 +59,7 @@ std::span<const std::uint32_t> Ranking::best_first() {
     base::InlineExecutor own_thread;
     base::Executor& executor = executor_ == nullptr ? own_thread : *executor_;
 
+    EVOD_ASSERT(population >= 1);
     const Buckets buckets{fitness_};
     std::vector<Entry> entries(population);
     const auto begins = distribute(

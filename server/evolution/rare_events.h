@@ -20,7 +20,9 @@ class RareEvents {
     /// trials  at most trials_max.
     /// chance  of each trial, in [0, 1); rounded to 2^-53.
     RareEvents(unsigned trials, double chance) : trials_{trials} {
-        EVOD_ASSERT(trials <= trials_max && chance >= 0 && chance < 1);
+        EVOD_ASSERT(trials <= trials_max);
+        EVOD_ASSERT(chance >= 0);
+        EVOD_ASSERT(chance < 1);
         double failures = 1;
         for (unsigned i = 0; i < trials; ++i) {
             failures *= 1 - chance;

@@ -1,5 +1,7 @@
 #include "server/evolution/scaling.h"
 
+#include "server/base/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +9,9 @@
 namespace evod::evolution {
 
 double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double pressure) {
+    EVOD_ASSERT(rank < population);
+    EVOD_ASSERT(pressure >= 1);
+    EVOD_ASSERT(pressure <= 2);
     if (population == 1) {
         return 1;
     }

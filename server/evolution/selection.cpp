@@ -104,7 +104,8 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
 
 std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted) {
     const auto best_first = ranking.best_first();
-    EVOD_ASSERT(pool >= 1 && pool <= best_first.size());
+    EVOD_ASSERT(pool >= 1);
+    EVOD_ASSERT(pool <= best_first.size());
     std::vector<std::uint32_t> picked(wanted);
     for (std::uint32_t i = 0; i < wanted; ++i) {
         picked[i] = best_first[i % pool];

@@ -1,13 +1,23 @@
 #include "server/evolution/selection_law.h"
 
 #include "server/base/assert.h"
+#include "server/base/elementary.h"
 #include "server/evolution/tournament.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evod::evolution {
 namespace {
+
+/// x^n for a probability x, which rounding may have made negative, and n >= 0.
+double power(double x, double n) {
+    if (x < std::numeric_limits<double>::min()) {
+        return n == 0 ? 1 : 0;
+    }
+    return base::pow(x, n);
+}
 
 /// Calls visit(x, weight) for every x in [least, greatest] that has a weight worth counting; the weights are
 /// proportional to the probabilities of x, and `mode` has weight 1.
@@ -72,7 +82,7 @@ WinsLaw wins_without_replacement(double rank, double population, double size, do
 WinsLaw wins_among(double contestants, double own_share, double winners) {
     if (contestants <= winners) { // each of them wins
         const double mean = contestants * own_share;
-        return {mean, mean * (1 - own_share) + mean * mean, std::pow(1 - own_share, contestants)};
+        return {mean, mean * (1 - own_share) + mean * mean, power(1 - own_share, contestants)};
     }
     const double losers = contestants - winners, own = contestants * own_share;
     if (losers > own + 10 * std::sqrt(own * (1 - own_share)) + 30) { // a win is less likely than 10^-20
@@ -91,7 +101,7 @@ WinsLaw wins_among(double contestants, double own_share, double winners) {
 WinsLaw wins_with_replacement(double rank, double population, double size, double winners) {
     if (winners == 1) { // ((n−r)^k − (n−r−1)^k) / n^k
         const double chance =
-            std::pow((population - rank) / population, size) - std::pow((population - rank - 1) / population, size);
+            power((population - rank) / population, size) - power((population - rank - 1) / population, size);
         return {chance, chance, 1 - chance};
     }
     WinsLaw law{.none_chance = 0};
@@ -117,7 +127,8 @@ CopiesLaw rounded_copies(double expected) {
 
 WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament) {
     EVOD_ASSERT(rank < population);
-    EVOD_ASSERT(tournament.winners >= 1 && tournament.winners <= tournament.size);
+    EVOD_ASSERT(tournament.winners >= 1);
+    EVOD_ASSERT(tournament.winners <= tournament.size);
     return (tournament.replacement ? wins_with_replacement
                                    : wins_without_replacement)(rank, population, tournament.size, tournament.winners);
 }
@@ -137,7 +148,7 @@ CopiesLaw SelectionLaw::tournament_copies(std::uint32_t rank) const {
     const WinsLaw each = whole > 0 ? wins_of(winners) : WinsLaw{};
     const WinsLaw last = rest > 0 ? wins_of(rest) : WinsLaw{}; // the last tournament drops its surplus winners
     return {whole * each.mean + last.mean, std::sqrt(whole * variance(each) + variance(last)),
-            std::pow(each.none_chance, whole) * last.none_chance};
+            power(each.none_chance, whole) * last.none_chance};
 }
 
 CopiesLaw SelectionLaw::copies(std::uint32_t rank, double share) const {
@@ -148,7 +159,7 @@ CopiesLaw SelectionLaw::copies(std::uint32_t rank, double share) const {
     }
     switch (parameters_.selection) {
     case SelectionMethod::Roulette:
-        return {wanted * share, std::sqrt(wanted * share * (1 - share)), std::pow(1 - share, wanted)};
+        return {wanted * share, std::sqrt(wanted * share * (1 - share)), power(1 - share, wanted)};
     case SelectionMethod::StochasticUniversal:
         return rounded_copies(wanted * share);
     case SelectionMethod::Tournament:

@@ -1,8 +1,13 @@
 #include "server/evolution/termination.h"
 
+#include "server/base/assert.h"
+
+#include <cmath>
+
 namespace evod::evolution {
 
 Progress advance(Progress progress, const GenerationResult& result) {
+    EVOD_ASSERT(std::isfinite(result.best_fitness));
     const bool improved = progress.generations == 0 || result.best_fitness > progress.best_fitness;
     return {.generations = progress.generations + 1,
             .stagnant = improved ? 0 : progress.stagnant + 1,

@@ -191,7 +191,9 @@ struct Rules {
 };
 
 Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted) {
-    EVOD_ASSERT(population >= 1 && tournament.size >= 1 && tournament.winners >= 1);
+    EVOD_ASSERT(population >= 1);
+    EVOD_ASSERT(tournament.size >= 1);
+    EVOD_ASSERT(tournament.winners >= 1);
     const std::uint32_t size = tournament.replacement ? tournament.size : std::min(tournament.size, population);
     const std::uint32_t winners = std::min({tournament.winners, size, wanted});
     return {population, size, winners, tournament.replacement,

@@ -56,6 +56,8 @@ Wheel::Wheel(std::vector<double> weights) : ends_{std::move(weights)} {
 }
 
 std::uint32_t Wheel::at(double turns) const {
+    EVOD_ASSERT(turns >= 0);
+    EVOD_ASSERT(turns < 1);
     const double place = turns * ends_.back();
     std::uint32_t organism = guide_[static_cast<std::size_t>(turns * static_cast<double>(guide_.size()))];
     // Rounding can put the guide one slot too far.
@@ -69,6 +71,7 @@ std::uint32_t Wheel::at(double turns) const {
 }
 
 double Wheel::share(std::uint32_t organism) const {
+    EVOD_ASSERT(organism < ends_.size());
     const double begin = organism == 0 ? 0 : ends_[organism - 1];
     return (ends_[organism] - begin) / ends_.back();
 }

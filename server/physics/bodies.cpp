@@ -31,6 +31,10 @@ void Circles::resize(std::size_t size) {
 }
 
 void Circles::put(std::size_t i, const AtRest& circle) {
+    EVOD_ASSERT(i < size_);
+    EVOD_ASSERT(circle.mass > 0);
+    EVOD_ASSERT(circle.radius >= 0);
+    EVOD_ASSERT(circle.id < 0x8000'0000);
     x[i] = circle.x;
     y[i] = circle.y;
     inverse_mass[i] = 1 / circle.mass;
@@ -44,6 +48,7 @@ void Circles::add(const AtRest& circle) {
 }
 
 void Circles::remove(std::size_t i) {
+    EVOD_ASSERT(i < size_);
     // The id stays: it identifies the circle that was here.
     x[i] = y[i] = void_position;
     velocity_x[i] = velocity_y[i] = 0;
@@ -51,6 +56,7 @@ void Circles::remove(std::size_t i) {
 }
 
 void Circles::reorder(const Reordering& reordering) {
+    EVOD_ASSERT(reordering.size() <= size_);
     for_each_column(*this, [&](auto& column, auto filling) { reordering.apply(column, filling); });
     size_ = reordering.size();
 }
@@ -60,6 +66,9 @@ void Boxes::clear() {
 }
 
 void Boxes::add(Coordinate at_x, Coordinate at_y, float new_half_width, float new_half_height, float new_inverse_mass) {
+    EVOD_ASSERT(new_half_width > 0);
+    EVOD_ASSERT(new_half_height > 0);
+    EVOD_ASSERT(new_inverse_mass >= 0);
     x.push_back(at_x);
     y.push_back(at_y);
     velocity_x.push_back(0);

@@ -5,6 +5,7 @@
 // island may be 524,288 px wide.
 #pragma once
 
+#include "server/base/assert.h"
 #include "server/base/column.h"
 #include "server/physics/reordering.h"
 #include "server/physics/units.h"
@@ -16,11 +17,16 @@
 
 namespace evod::physics {
 
-/// The nearest unit, halves to even; |px| < 2^19.
+/// Islands are smaller than this, so that every position fits into a Coordinate.
+constexpr double island_size_max_px = 1 << 19;
+
+/// The nearest unit, halves to even; |px| < island_size_max_px.
 inline Coordinate to_units(double px) {
+    EVOD_ASSERT(std::abs(px) < island_size_max_px);
     return static_cast<Coordinate>(std::lrint(px * units_per_px));
 }
 inline Coordinate to_units(float px) {
+    EVOD_ASSERT(std::abs(px) < static_cast<float>(island_size_max_px));
     return static_cast<Coordinate>(std::lrint(px * static_cast<float>(units_per_px)));
 }
 inline double to_px(Coordinate units) {

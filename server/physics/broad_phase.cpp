@@ -1,5 +1,6 @@
 #include "server/physics/broad_phase.h"
 
+#include "server/base/assert.h"
 #include "server/base/commutative.h"
 #include "server/physics/shapes.h"
 
@@ -62,6 +63,9 @@ void Strips::count_and_place(const Circles& circles, base::Executor& executor) {
 }
 
 void Strips::sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor) {
+    EVOD_ASSERT(reach_px >= 0);
+    EVOD_ASSERT(area.width >= 0);
+    EVOD_ASSERT(area.height >= 0);
     choose_cells(circles.size(), area, reach_px);
     first_.assign(std::size_t{strips_} * columns_ + 1, 0);
     if (executor.thread_count() > 1 && circles.size() > 128 * circles_per_block) {
@@ -90,6 +94,7 @@ void Strips::follow_reordering() {
 }
 
 std::uint32_t Strips::strip_of_place(std::size_t k) const {
+    EVOD_ASSERT(k < order_.size());
     std::uint32_t low = 0, high = strips_ - 1;
     while (low < high) {
         const std::uint32_t middle = low + (high - low) / 2;
@@ -148,11 +153,14 @@ void NearPairs::anchor(const Circles& circles, base::Executor& executor) {
 }
 
 void NearPairs::follow_reordering(const Circles& circles, base::Executor& executor) {
+    EVOD_ASSERT(circles.size() == strips_.order().size());
     strips_.follow_reordering();
     anchor(circles, executor);
 }
 
 void NearPairs::list(const Circles& circles, const Boxes& boxes, base::Executor& executor) {
+    EVOD_ASSERT(circles.size() == circle_count_);
+    EVOD_ASSERT(boxes.size() == box_anchor_x_.size());
     while (!list_circle_pairs(circles, executor)) {
         skin_px_ /= 2;
         skin_share_ /= 2;

@@ -13,6 +13,7 @@
 //              of its own.
 #pragma once
 
+#include "server/base/assert.h"
 #include "server/base/executor.h"
 #include "server/physics/bodies.h"
 
@@ -138,9 +139,15 @@ class NearPairs {
         skin_share_ = 1;
     }
     /// The circle has become void: its displacement no longer counts.
-    void remove(std::size_t circle) { anchor_x_[circle] = anchor_y_[circle] = void_position; }
+    void remove(std::size_t circle) {
+        EVOD_ASSERT(circle < circle_count_);
+        anchor_x_[circle] = anchor_y_[circle] = void_position;
+    }
     /// The input of the next stale(). displacement_square: of the circle furthest from its anchor, px².
-    void set_displacement_square(float displacement_square) { displacement_square_ = displacement_square; }
+    void set_displacement_square(float displacement_square) {
+        EVOD_ASSERT(displacement_square >= 0);
+        displacement_square_ = displacement_square;
+    }
 
     /// Renews the list from the present positions: sort(), then list(). To reorder circles, call the two separately and
     /// reorder between them.
@@ -157,7 +164,10 @@ class NearPairs {
     void list(const Circles& circles, const Boxes& boxes, base::Executor& executor);
 
     /// Pairs of circles. There is one part per block of circles.
-    std::span<const Pair> circle_pairs(std::size_t block) const { return pairs_of_block_[block]; }
+    std::span<const Pair> circle_pairs(std::size_t block) const {
+        EVOD_ASSERT(block < pairs_of_block_.size());
+        return pairs_of_block_[block];
+    }
     /// a is a circle, b a box.
     std::span<const Pair> circle_box_pairs() const { return circle_box_pairs_; }
     /// Pairs of boxes, of which at least one can move.

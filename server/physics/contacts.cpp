@@ -1,5 +1,6 @@
 #include "server/physics/contacts.h"
 
+#include "server/base/assert.h"
 #include "server/base/commutative.h"
 #include "server/physics/shapes.h"
 
@@ -36,6 +37,7 @@ struct Body {
 void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) {
     const float mass_a = a.bodies.inverse_mass[a.index], mass_b = b.bodies.inverse_mass[b.index];
     const float total = mass_a + mass_b;
+    EVOD_ASSERT(total > 0);
     const float nx = overlap.normal_x, ny = overlap.normal_y;
     // Immovable bodies are not written to, because several contacts with one may be resolved in parallel.
     const auto move = [&](Body body, float distance) {
@@ -92,6 +94,7 @@ void Contacts::begin(const Circles& circles, const Boxes& boxes) {
 }
 
 void Contacts::find_among_circles(const Circles& circles, const NearPairs& near, std::size_t block) {
+    EVOD_ASSERT(block < found_in_block_.size());
     std::vector<Contact>& found = found_in_block_[block];
     found.clear();
     const Coordinate *x = circles.x.data(), *y = circles.y.data();
@@ -137,6 +140,9 @@ std::size_t Contacts::size() const {
 }
 
 void Contacts::resolve(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor) {
+    EVOD_ASSERT(restitution >= 0);
+    EVOD_ASSERT(first_of_circle_.size() >= circles.size());
+    EVOD_ASSERT(first_of_box_.size() >= boxes.size());
     left_.assign(found_with_boxes_.begin(), found_with_boxes_.end());
     for (const std::vector<Contact>& found : found_in_block_) {
         left_.insert(left_.end(), found.begin(), found.end());

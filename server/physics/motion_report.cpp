@@ -1,5 +1,6 @@
 #include "server/physics/motion_report.h"
 
+#include "server/base/assert.h"
 #include "server/base/inline_executor.h"
 #include "server/physics/shapes.h"
 
@@ -107,6 +108,7 @@ MotionReport report(const Circles& circles, const Boxes& boxes, const Area& area
 
 MotionReport report_motion(const Circles& circles, const Boxes& boxes, const Area& area, double tick_s,
                            const NearPairs& near) {
+    EVOD_ASSERT(tick_s > 0);
     if (!near.stale(circles, boxes)) {
         return report(circles, boxes, area, tick_s, near);
     }

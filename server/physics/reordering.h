@@ -3,6 +3,7 @@
 // Threads      blocks of a column are copied in parallel.
 #pragma once
 
+#include "server/base/assert.h"
 #include "server/base/column.h"
 #include "server/base/executor.h"
 
@@ -33,6 +34,7 @@ class Reordering {
     template <class T>
     void apply(base::Column<T>& column, T filling) const {
         static_assert(sizeof(T) == sizeof(std::uint32_t));
+        EVOD_ASSERT(order_.size() <= column.size());
         constexpr std::size_t grain = 2048;
         spare_.resize(order_.size());
         executor_.parallel_for(order_.size(), grain, [&](base::Range range) {

@@ -1,11 +1,15 @@
 #include "server/physics/shapes.h"
 
+#include "server/base/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace evod::physics {
 
 Overlap circle_circle(float dx, float dy, float first_radius, float second_radius) {
+    EVOD_ASSERT(first_radius >= 0);
+    EVOD_ASSERT(second_radius >= 0);
     const float reach = first_radius + second_radius;
     const float square = dx * dx + dy * dy;
     if (square > reach * reach) {
@@ -31,6 +35,9 @@ Overlap box_box(float dx, float dy, BoxShape first, BoxShape second) {
 }
 
 Overlap box_circle(float dx, float dy, BoxShape box, float radius) {
+    EVOD_ASSERT(box.half_width >= 0);
+    EVOD_ASSERT(box.half_height >= 0);
+    EVOD_ASSERT(radius >= 0);
     const float nearest_x = std::clamp(dx, -box.half_width, box.half_width);
     const float nearest_y = std::clamp(dy, -box.half_height, box.half_height);
     const float out_x = dx - nearest_x, out_y = dy - nearest_y;

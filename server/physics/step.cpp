@@ -1,5 +1,6 @@
 #include "server/physics/step.h"
 
+#include "server/base/assert.h"
 #include "server/base/instructions.h"
 
 #include <algorithm>
@@ -62,6 +63,11 @@ StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const
 }
 
 void Stepper::begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters) {
+    EVOD_ASSERT(parameters.integration.tick_s > 0);
+    EVOD_ASSERT(parameters.integration.velocity_kept >= 0);
+    EVOD_ASSERT(parameters.restitution >= 0);
+    EVOD_ASSERT(parameters.max_speed_px_s > 0);
+    EVOD_ASSERT(!near_.stale(circles, boxes));
     parameters_ = parameters;
     area_ = area;
     rules_ = {.tick_s = parameters.integration.tick_s,
@@ -92,6 +98,7 @@ MotionColumns Stepper::columns(Circles& circles) {
 }
 
 void Stepper::accelerate(Circles& circles, std::size_t block, const Forces& force) {
+    EVOD_ASSERT(block < counts_of_block_.size());
     const base::Range range = circles_of_block(circles.size(), block);
     motion_kernels().accelerate(columns(circles), force, range.begin, range.end, rules_);
     contacts_.find_among_circles(circles, near_, block);
@@ -116,6 +123,7 @@ void Stepper::collide(Circles& circles, Boxes& boxes, base::Executor& executor) 
 }
 
 void Stepper::move(Circles& circles, std::size_t block) {
+    EVOD_ASSERT(block < counts_of_block_.size());
     const base::Range range = circles_of_block(circles.size(), block);
     counts_of_block_[block] = motion_kernels().move(columns(circles), range.begin, range.end, rules_);
 }

@@ -96,6 +96,10 @@ OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perce
 
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces) {
+    EVOD_ASSERT(block.begin % physics::lanes_max == 0);
+    EVOD_ASSERT(block.begin <= block.end);
+    EVOD_ASSERT(block.end - block.begin <= forces.x.size());
+    EVOD_ASSERT(rules.certain_impulse > 0);
     organism_kernels().choose(columns, block.begin, block.end, choice_rules(rules, key, tick), forces.x.data(),
                               forces.y.data());
 }
@@ -110,6 +114,8 @@ void predict_intentions(const physics::Circles& bodies, const Living& living, co
     for (std::size_t begin = 0; begin < bodies_asked.size(); begin += FewOrganisms::room) {
         const std::size_t count = std::min(bodies_asked.size() - begin, FewOrganisms::room);
         for (std::size_t k = 0; k < count; ++k) {
+            EVOD_ASSERT(bodies_asked[begin + k] < bodies.size());
+            EVOD_ASSERT(!bodies.is_void(bodies_asked[begin + k]));
             few.put(k, bodies, living, bodies_asked[begin + k]);
         }
         few.food.search(food, count);

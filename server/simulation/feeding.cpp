@@ -1,5 +1,6 @@
 #include "server/simulation/feeding.h"
 
+#include "server/base/assert.h"
 #include "server/physics/broad_phase.h"
 
 #include <bit>
@@ -15,9 +16,11 @@ void Feeding::begin(std::size_t blocks) {
 
 void Feeding::find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
                            const Items& items) {
+    EVOD_ASSERT(block < touches_of_block_.size());
     std::vector<Touch>& touches = touches_of_block_[block];
     touches.clear();
     for (const std::uint32_t i : at_items) {
+        EVOD_ASSERT(i < bodies.size());
         items.prefetch(bodies.x[i], bodies.y[i]);
     }
     for (const std::uint32_t i : at_items) {

@@ -52,6 +52,9 @@ BehaviourRules behaviour_rules(const parameters::Parameters& p) {
 
 void Island::begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                               evolution::NextGeneration bred, base::Executor& executor) {
+    EVOD_ASSERT(generation >= 1);
+    EVOD_ASSERT(bred.genes.rows() == evolution::gene_count);
+    EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
     born_ = std::move(bred);
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());

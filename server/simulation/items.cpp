@@ -106,6 +106,7 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
 }
 
 void Items::restore(std::span<const Item> items, base::Executor& executor) {
+    EVOD_ASSERT(items.size() == all_.size());
     put_all(executor, [&](std::uint32_t item) { return items[item]; });
     present_count_ = 0;
     for (std::uint32_t item = 0; item < size(); ++item) {

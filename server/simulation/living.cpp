@@ -1,5 +1,7 @@
 #include "server/simulation/living.h"
 
+#include "server/base/assert.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -44,6 +46,7 @@ void Living::resize(std::size_t size) {
 }
 
 void Living::put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& p) {
+    EVOD_ASSERT(body < health.size());
     health[body] = genes(evolution::BaseHealth);
     loss_per_tick[body] = simulation::loss_per_tick(genes, p);
     normal_speed[body] = genes(evolution::NormalSpeed);
@@ -62,6 +65,7 @@ float health_cap(const evolution::Chromosome& genes, const parameters::Parameter
 }
 
 BodyShape body_shape(float body_size_gene, const parameters::Parameters& p) {
+    EVOD_ASSERT(body_size_gene > 0);
     return {body_size_gene * static_cast<float>(p.radius_per_unit_px),
             body_size_gene * static_cast<float>(p.mass_per_unit_kg)};
 }

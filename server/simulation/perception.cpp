@@ -1,5 +1,6 @@
 #include "server/simulation/perception.h"
 
+#include "server/base/assert.h"
 #include "server/base/commutative.h"
 #include "server/base/instructions.h"
 
@@ -43,6 +44,7 @@ float safely_below(float distance) {
 } // namespace
 
 void Perception::begin(const Circles& bodies, const Living& living, const Items& food, const Items& poison) {
+    EVOD_ASSERT(living.health.size() == bodies.x.size());
     x_ = bodies.x;
     y_ = bodies.y;
     begin(food_, bodies, living.food_radius, food);
@@ -215,6 +217,7 @@ void Perception::reorder(const physics::Reordering& reordering) {
 }
 
 void Perception::remove(std::size_t body) {
+    EVOD_ASSERT(body < x_.size());
     // As if it had always had void_position.
     x_[body] = y_[body] = physics::void_position;
     for (View* view : {&food_, &poison_}) {
