@@ -143,7 +143,7 @@ class Play {
         } else {
             server_.accept(ends[1]);
         }
-        constexpr const char* tokens[] = {"admin", "controller", "viewer", "admin", "nobody"};
+        constexpr const char* tokens[] = {"admin", "controller", "viewer", "admin", "unknown"};
         if (how / 16 < std::size(tokens)) {
             v1::ClientMessage message;
             message.mutable_hello()->set_protocol_version(1);
