@@ -1,19 +1,22 @@
-#include "server/commands/check.h"
-
+// `evod check`: validates an experiment file without running it.
 #include "proto/command_line/command.h"
+#include "server/commands/commands.h"
+#include "server/commands/common_options.h"
 #include "server/experiments/experiment_file.h"
 
 #include <iostream>
+#include <string>
 
 namespace evod::commands {
+namespace {
 
+/// Prints which parameters the file changes, or what is wrong with it. Returns the exit status.
 int check(const std::string& path) {
     const base::Result<parameters::Experiment> experiment = experiments::load_experiment(path);
     if (!experiment) {
-        std::cerr << "evod check: " << base::to_text(experiment.error()) << '\n';
-        return 1;
+        return fail("evod check", experiment.error());
     }
-    std::cout << path << ": good";
+    std::cout << path << ": valid";
     if (!experiment->description.empty()) {
         std::cout << "\n" << experiment->description;
     }
@@ -27,8 +30,10 @@ int check(const std::string& path) {
     return 0;
 }
 
+} // namespace
+
 void add_check_command(command_line::Command& app) {
-    auto& command = app.add_command("check", "Say what an experiment file changes, or what is wrong with it");
+    auto& command = app.add_command("check", "Print what an experiment file changes, or what is wrong with it");
     auto& path = command.keep(std::string{});
     command.add_option("experiment", &path, "JSON file").required();
     command.action([&] { return check(path); });

@@ -1,15 +1,30 @@
 #include "server/commands/common_options.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <thread>
 
 namespace evod::commands {
+
+int fail(std::string_view command, const std::string& error) {
+    std::cerr << command << ": " << error << '\n';
+    return exit_error;
+}
+
+int fail(std::string_view command, const base::Refusal& error) {
+    return fail(command, base::to_text(error));
+}
+
+std::size_t default_thread_count() {
+    return std::max(1u, std::thread::hardware_concurrency());
+}
 
 std::string data_folder_or_default(const std::string& given) {
     if (!given.empty()) {
         return given;
     }
-    // The specification says that a path which is not absolute is to be ignored.
+    // The specification demands that a relative path is ignored.
     if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/') {
         return std::string{state} + "/evod";
     }
@@ -19,10 +34,10 @@ std::string data_folder_or_default(const std::string& given) {
     return {};
 }
 
-bool find_data_folder(std::string& folder) {
+bool find_data_folder(std::string_view command, std::string& folder) {
     folder = data_folder_or_default(folder);
     if (folder.empty()) {
-        std::cerr << "evod: " << no_data_folder << '\n';
+        fail(command, no_data_folder);
     }
     return !folder.empty();
 }

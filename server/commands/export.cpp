@@ -1,6 +1,7 @@
 #include "server/commands/export.h"
 
 #include "proto/command_line/command.h"
+#include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/experiments/bundle.h"
 #include "server/replay/run_tables.h"
@@ -45,11 +46,11 @@ std::optional<replay::OrganismName> organism_named(const std::string& text) {
         at = done.ptr;
         return done.ec == std::errc{};
     };
-    const bool good = read(name.generation, 0) && read(name.island, ':') && read(name.organism, ':') && at == end;
-    return good ? std::optional{name} : std::nullopt;
+    const bool valid = read(name.generation, 0) && read(name.island, ':') && read(name.organism, ':') && at == end;
+    return valid ? std::optional{name} : std::nullopt;
 }
 
-/// What the options together ask for, as far as they alone tell; nothing for a bundle.
+/// The table that the options select; nullopt for a bundle. Refuses options that contradict each other.
 Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
     using replay::RunTable;
     static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
@@ -59,7 +60,7 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
                                                         {"events", RunTable::Events}};
     const auto table = tables.find(options.what);
     if (table == tables.end() && options.bundle.empty()) {
-        return wrong_option("--what", "one of its words, or --bundle FOLDER instead", "nothing");
+        return wrong_option("--what", "one of the tables in the help, or --bundle FOLDER instead", "nothing");
     }
     if (!options.of.empty() && options.what != "lineage") {
         return wrong_option("--of", "only with --what lineage", options.of);
@@ -71,7 +72,8 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
     if (options.generation && options.what != "population") {
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
     }
-    if (!options.bundle.empty() && options.format != "csv") { // its tables are compared with those of evod run --csv
+    // REPEAT.md of a bundle compares generations.csv with the output of evod run --csv.
+    if (!options.bundle.empty() && options.format != "csv") {
         return wrong_option("--format", "only csv with --bundle", options.format);
     }
     if (table == tables.end()) {
@@ -84,16 +86,17 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
                                .of = of};
 }
 
-void tell_what_is_left_out(RunFile& file) {
+void report_omitted_generations(RunFile& file) {
     if (const auto count = replay::generations_out_of_reach(file)) {
-        std::cerr << "evod export: " << count
-                  << " generations are left out: they are not held any more, and "
-                     "follow another version of the model than this evod, which cannot simulate them again\n";
+        std::cerr
+            << "evod export: " << count
+            << " generations are left out: the file no longer contains their organisms, and this evod cannot simulate "
+               "them again, because they follow another version of the model\n";
     }
 }
 
-/// The options are known by their names on the command line.
-Refusal with_options(Refusal refused) {
+/// Fields are named as the options on the command line.
+Refusal with_option_names(Refusal refused) {
     for (base::Violation& violation : refused.violations) {
         violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
     }
@@ -124,7 +127,7 @@ Result<void> export_to(const ExportOptions& options) {
     const replay::RunSource run{**file, *executor};
     using replay::RunTable;
     if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage) {
-        tell_what_is_left_out(**file);
+        report_omitted_generations(**file);
     }
     if (!*wanted) {
         return experiments::write_bundle(run, options.bundle);
@@ -139,52 +142,55 @@ Result<void> export_to(const ExportOptions& options) {
     std::ios::sync_with_stdio(false);
     std::ostream& out = options.output.empty() ? std::cout : output;
     if (Result<void> written = replay::write_table(run, **wanted, out); !written) {
-        return with_options(written.error());
+        return with_option_names(written.error());
     }
     if (!out.flush()) {
         return cannot_write(options.output.empty()
                                 ? "standard output cannot be written, the disk may be full"
                                 : "--output: cannot write " + options.output + ", the disk may be full");
     }
-    return sound; // what is not damaged is written
+    return sound; // after the intact part of the file is written
 }
 
 } // namespace
 
 int export_run(const ExportOptions& options) {
     if (const Result<void> done = export_to(options); !done) {
-        std::cerr << "evod export: " << base::to_text(done.error()) << '\n';
-        return 1;
+        return fail("evod export", done.error());
     }
     return 0;
 }
 
-void add_export_command(command_line::Command& app, std::size_t threads) {
-    auto& command = app.add_command("export", "Write what a run file holds as rows for other programs");
+void add_export_command(command_line::Command& app) {
+    auto& command = app.add_command("export", "Write the contents of a run file as rows for other programs");
     auto& options = command.keep(ExportOptions{});
-    options.threads = threads;
-    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    options.threads = default_thread_count();
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();
     const auto what =
         command
             .add_option(
                 "--what", &options.what,
-                "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
-                "whom; population: the genes of one generation, for --population; events: the commands")
+                "generations: statistics; organisms: parents, genes and fate of each; lineage: the parents of each; "
+                "population: the genes of one generation, for --population; events: the commands")
             .choices({"generations", "organisms", "lineage", "population", "events"});
     command.add_option("--of", &options.of,
-                       "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
-    command.add_option("--generation", &options.generation, "Of the population; otherwise the last that has begun")
+                       "GENERATION:ISLAND:ORGANISM: only the ancestors of this organism, back to generation 1");
+    command
+        .add_option("--generation", &options.generation,
+                    "Generation of the population; without it, the last that has begun")
         .check(generation_number);
-    command.add_option("--format", &options.format, "csv, or jsonl: an object of JSON a line")
+    command.add_option("--format", &options.format, "csv, or jsonl: one JSON object per line")
         .choices({"csv", "jsonl"})
         .show_default();
     const auto output = command.add_option("--output", &options.output, "File; without it, standard output");
-    command.add_option("--threads", &options.threads, "Threads that simulate again what is not held any more")
+    command
+        .add_option("--threads", &options.threads,
+                    "Threads that simulate the generations that the file no longer contains in full")
         .check(thread_count)
         .show_default();
     command
         .add_option("--bundle", &options.bundle,
-                    "Folder to make, with a copy of the run file, all tables, checksums and how to repeat the run")
+                    "New folder for a copy of the run file, all tables, checksums and instructions to repeat the run")
         .excludes(what)
         .excludes(output);
     command.action([&] { return export_run(options); });

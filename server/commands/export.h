@@ -1,4 +1,6 @@
-// `evod export`: what a run file holds, as rows for other programs.
+// `evod export`: writes the contents of a run file as rows for other programs, or the run as a bundle.
+//
+// Threads  one; `threads` workers simulate the generations that the file does not contain in full.
 #pragma once
 
 #include <cstddef>
@@ -6,27 +8,20 @@
 #include <optional>
 #include <string>
 
-namespace evod::command_line {
-class Command;
-}
-
 namespace evod::commands {
 
 struct ExportOptions {
     std::string run;                         // path of a run file
-    std::string bundle;                      // folder to make instead; empty: none
-    std::string what;                        // as run_tables.h names them
-    std::string of;                          // "GENERATION:ISLAND:ORGANISM", of the lineage; empty: everyone
-    std::optional<std::uint64_t> generation; // of the population; otherwise the last that has begun
+    std::string bundle;                      // folder to make instead of a table; empty: none
+    std::string what;                        // which table, as --what spells it; empty with a bundle
+    std::string of;                          // "GENERATION:ISLAND:ORGANISM": its lineage alone; empty: all organisms
+    std::optional<std::uint64_t> generation; // of the population; nullopt: the last that has begun
     std::string format = "csv";              // or "jsonl"
     std::string output;                      // path; empty: stdout
-    std::size_t threads = 1;                 // that simulate again what is not held
+    std::size_t threads = 1;
 };
 
-/// Returns the exit status: 0, or 1 with a sentence on stderr if the file cannot be read or is damaged, or the output
-/// cannot be written; what was written until then stays.
+/// Returns the exit status: 0, or 1 after an error on stderr. What was written before the error stays.
 int export_run(const ExportOptions& options);
-
-void add_export_command(command_line::Command& app, std::size_t threads);
 
 } // namespace evod::commands

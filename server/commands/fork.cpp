@@ -1,72 +1,88 @@
-#include "server/commands/fork.h"
-
+// `evod fork`: makes a second world from a generation of a run file.
+#include "server/replay/fork.h"
 #include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
+#include "server/commands/commands.h"
 #include "server/commands/common_options.h"
-#include "server/replay/fork.h"
+#include "server/network/random_ids.h"
 #include "server/run_file/data_folder.h"
 #include "server/simulation/world_name.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <string>
 
 namespace evod::commands {
+namespace {
 
-int fork(const ForkOptions& options) {
-    const auto fail = [](const std::string& why) {
-        std::cerr << "evod fork: " << why << '\n';
-        return 1;
-    };
-    if (!simulation::is_world_name(options.name)) {
-        return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
+struct ForkOptions {
+    std::string run_file;
+    std::optional<std::uint64_t> at_generation; // nullopt: the last tick of the file
+    std::string name;                           // of the new world
+    std::string data_folder;                    // of the new run file
+};
+
+/// The storage names fields as requests do; the user typed options.
+base::Refusal with_fork_options(base::Refusal refused) {
+    for (base::Violation& violation : refused.violations) {
+        if (violation.field == "generation") {
+            violation.field = "--at-generation";
+        }
     }
-    // Only read, so a server may be writing it.
+    return refused;
+}
+
+/// Prints what it made, or the error. Returns the exit status.
+int fork(const ForkOptions& options) {
+    if (!simulation::is_world_name(options.name)) {
+        return fail("evod fork",
+                    "--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
+    }
+    // fork() only reads the origin, so a server may be writing to it.
     const auto origin = run_file::RunFile::open_checked(options.run_file);
     if (!origin) {
-        return fail(to_text(origin.error()));
+        return fail("evod fork", origin.error());
     }
-    if (const auto held = (*origin)->pin_snapshot(); !held) { // what is thinned meanwhile is still there
-        return fail(to_text(held.error()));
+    // A snapshot of the file, so that a server can purge no generation that fork() is reading.
+    if (const auto held = (*origin)->pin_snapshot(); !held) {
+        return fail("evod fork", held.error());
     }
     const auto folder = run_file::DataFolder::open(options.data_folder);
     if (!folder) {
-        return fail(to_text(folder.error()));
+        return fail("evod fork", folder.error());
     }
-    const std::string path = folder->file_of(options.name);
     base::InlineExecutor executor;
-    const auto moment = replay::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
+    const auto moment = replay::fork(**origin, options.at_generation, folder->file_of(options.name), options.name,
+                                     network::draw_run_id(), executor);
     if (!moment) {
-        base::Refusal refused = moment.error();
-        for (base::Violation& violation : refused.violations) {
-            if (violation.field == "generation") {
-                violation.field = "--at-generation";
-            }
-        }
-        return fail(to_text(refused));
+        return fail("evod fork", with_fork_options(moment.error()));
     }
     std::cout << "world \"" << options.name << "\" begins with "
               << (options.at_generation ? "" : "tick " + std::to_string(moment->generation_tick) + " of ")
               << "generation " << moment->generation << " of " << options.run_file << "; a server with --data "
-              << options.data_folder << " finds it, and lets it wait\n";
+              << options.data_folder << " restores it, paused\n";
     return 0;
 }
 
-void add_fork_command(command_line::Command& app, std::function<simulation::RunId()> draw_run_id) {
-    auto& command =
-        app.add_command("fork", "Make a second world from a past generation of a run file, or from where it ends");
+} // namespace
+
+void add_fork_command(command_line::Command& app) {
+    auto& command = app.add_command("fork", "Make a second world from a generation of a run file, or from its end");
     auto& options = command.keep(ForkOptions{});
-    command.add_option("run", &options.run_file, "Run file, of a server that runs or not").required();
+    command.add_option("run", &options.run_file, "Run file, NAME.evod; the run may still be in progress").required();
     command
         .add_option("--at-generation", &options.at_generation,
-                    "Begins with its first tick; otherwise with the last moment of the file")
+                    "Generation whose first tick the fork begins with; without it, the last tick of the file")
         .check(generation_number);
-    command.add_option("--name", &options.name, "Of the new world").required();
+    command.add_option("--name", &options.name, "Name of the new world").required();
     command.add_option("--data", &options.data_folder,
-                       "Folder to make it in, which no server may be using; otherwise that of the run file");
+                       "Folder for the new run file, in use by no server; without it, the folder of the run file");
     command.footer(
-        "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
-    command.action([&options, draw_run_id = std::move(draw_run_id)] {
-        options.run_id = draw_run_id();
+        "The fork has the seed, the organisms and the parameters of the run at that tick. It is paused until "
+        "a client runs it.");
+    command.action([&options] {
         if (options.data_folder.empty()) {
             const std::string folder = std::filesystem::path{options.run_file}.parent_path().string();
             options.data_folder = folder.empty() ? "." : folder;

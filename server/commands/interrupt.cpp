@@ -6,21 +6,21 @@
 namespace evod::commands {
 namespace {
 
-std::atomic<bool> came = false;
-static_assert(std::atomic<bool>::is_always_lock_free); // a handler may touch no other
-extern "C" void note_interrupt(int) {
-    came.store(true, std::memory_order_relaxed);
+std::atomic<bool> flag = false;
+static_assert(std::atomic<bool>::is_always_lock_free); // a signal handler may only write such objects
+extern "C" void set_flag(int) {
+    flag.store(true, std::memory_order_relaxed);
 }
 
 } // namespace
 
-void mind_interrupts() {
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+void catch_interrupts() {
+    std::signal(SIGINT, set_flag);
+    std::signal(SIGTERM, set_flag);
 }
 
 bool interrupted() {
-    return came.load(std::memory_order_relaxed);
+    return flag.load(std::memory_order_relaxed);
 }
 
 } // namespace evod::commands

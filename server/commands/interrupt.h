@@ -1,13 +1,13 @@
-// Interrupt: SIGINT and SIGTERM as a wish that is asked about, so that what is under way ends in order.
+// Interrupt: SIGINT and SIGTERM set a flag that long-running commands poll, so that they can end in order.
 //
-// Threads  asked about by any.
+// Threads  any thread may poll the flag.
 #pragma once
 
 namespace evod::commands {
 
-/// From now on they end the program no more.
-void mind_interrupts();
-/// Whether one has come.
+/// From now on the two signals set the flag instead of ending the program.
+void catch_interrupts();
+/// Whether one of them has arrived.
 bool interrupted();
 
 } // namespace evod::commands

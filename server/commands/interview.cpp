@@ -11,7 +11,7 @@ using parameters::Parameters;
 
 struct Question {
     const char* name;
-    bool (*matters)(const Parameters&); // asked only where the answers so far make it matter
+    bool (*matters)(const Parameters&); // with the answers so far; the question is asked only if true
 };
 
 constexpr auto always = [](const Parameters&) { return true; };
@@ -59,7 +59,7 @@ constexpr Question questions[] = {
 } // namespace
 
 base::Result<Parameters> interview(const Parameters& proposed, std::istream& in, std::ostream& out) {
-    out << "Enter takes the value in brackets.\n";
+    out << "Enter accepts the value in brackets.\n";
     Parameters answers = proposed;
     for (const Question& question : questions) {
         if (!question.matters(answers)) {
@@ -75,7 +75,7 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
                 out << '\n';
                 return refusal(base::RefusalCode::FailedPrecondition,
                                "--ask: the input ended before the answer to " + std::string{description.name} +
-                                   "; give an empty line for each value in brackets");
+                                   "; an empty line accepts the value in brackets");
             }
             if (line.empty()) {
                 break;

@@ -1,4 +1,4 @@
-// Interview: asks on a terminal for population, food, poison, time and every choice of the algorithm (`--ask`).
+// Interview: the questions of `evod run --ask`, about population, food, poison, time and every choice of the algorithm.
 #pragma once
 
 #include "server/base/result.h"
@@ -8,11 +8,11 @@
 
 namespace evod::commands {
 
-/// Asks one question a parameter; an empty answer takes what is proposed. An answer that cannot be is explained and
-/// asked for again.
+/// Asks one question per parameter. An empty answer accepts the proposed value. After an invalid answer, it prints what
+/// is allowed and asks again.
 ///
-/// proposed  what each question proposes; valid.
-/// returns   a valid set; refused if the input ends before the last answer.
+/// proposed  the proposed values; valid.
+/// returns   valid parameters; refused if the input ends before the last answer.
 base::Result<parameters::Parameters> interview(const parameters::Parameters& proposed, std::istream& in,
                                                std::ostream& out);
 

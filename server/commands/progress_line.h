@@ -1,4 +1,7 @@
-// Progress line: one line on a terminal's stderr that is overwritten, at most ten times a second; elsewhere nothing.
+// Progress line: one line on stderr that each update overwrites, at most ten times a second. Where stderr is not a
+// terminal, it prints nothing.
+//
+// Threads  one at a time; callers on several threads hold a lock.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +14,7 @@ namespace evod::commands {
 
 class ProgressLine {
   public:
-    /// text  called for what to say if it is time to say something.
+    /// text  returns the line; show() calls it only if 100 ms have passed since the last update.
     template <class Text>
     void show(Text&& text) {
         if (!on_terminal_ || Clock::now() - shown_ < std::chrono::milliseconds{100}) {
@@ -33,7 +36,8 @@ class ProgressLine {
 };
 
 /// "90 s left", "37 min left", "2 h 05 min left".
-/// share  in (0, 1]: how much of the work the seconds that are gone have been enough for
+/// share         part of the work that is done, in (0, 1].
+/// seconds_gone  time that this part took.
 std::string time_left(double share, double seconds_gone);
 
 } // namespace evod::commands

@@ -1,4 +1,4 @@
-// Report: the statistics of generations for people on a terminal.
+// Report: statistics of generations as a table for the terminal.
 #pragma once
 
 #include "server/simulation/statistics.h"
@@ -7,7 +7,7 @@
 
 namespace evod::commands {
 
-/// The table's heading, and one row; columns of fixed width, no line end.
+/// The heading of the table, and one row. The columns have fixed widths; the text has no line end.
 std::string table_heading(bool with_island);
 std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
 

@@ -1,6 +1,6 @@
-#include "server/commands/run.h"
-
+// `evod run`: runs one experiment from beginning to end, without a network.
 #include "proto/command_line/command.h"
+#include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
 #include "server/commands/interview.h"
@@ -8,30 +8,53 @@
 #include "server/commands/report.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
+#include "server/network/random_ids.h"
 #include "server/replay/columns.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
 
 #include <cerrno>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace evod::commands {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+struct RunOptions {
+    std::string experiment; // path; empty: the default world
+    std::string population; // path; empty: the first generation is random
+    std::optional<std::uint64_t> seed;
+    std::optional<std::uint32_t> generations; // replaces generation_limit
+    std::size_t threads = default_thread_count();
+    std::vector<std::string> changes; // "name=value"
+    std::string csv;                  // path; empty: none
+    bool ask = false;
+};
+
+/// Exit statuses of `evod run` besides 0, for a limit or a target that was reached, exit_error and exit_interrupted.
+constexpr int exit_value_not_allowed = 2, exit_stagnated = 3, exit_extinct = 4;
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What the ticks of a run have cost.
+/// The time that a run has taken.
 struct Cost {
     double start_s = 0, tick_s = 0, turnover_s = 0;
-    std::uint64_t organism_ticks = 0; // organisms alive at the start of each tick, summed
+    std::uint64_t organism_ticks = 0; // sum over ticks of the organisms alive at the start
 };
 
 base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
@@ -49,7 +72,7 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
     }
     experiment = *std::move(changed);
     if (options.ask) {
-        // What is answered takes the place of what is scheduled; Enter leaves it.
+        // An answer replaces the schedule of its parameter; Enter keeps the schedule.
         const parameters::Parameters proposed = experiment.parameters;
         const auto answers = interview(proposed, std::cin, std::cout);
         if (!answers) {
@@ -72,7 +95,7 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
         experiment.seed = base::Seed{*options.seed};
     }
     if (!experiment.seed) {
-        experiment.seed = options.drawn_seed;
+        experiment.seed = network::draw_seed();
     }
     return experiment;
 }
@@ -103,35 +126,33 @@ int status_of(evolution::Outcome outcome) {
     switch (outcome) {
     case evolution::Outcome::TargetFitness:
         std::puts("ended: target_fitness was reached");
-        return LimitOrTargetReached;
+        return 0;
     case evolution::Outcome::GenerationLimit:
         std::puts("ended: generation_limit was reached");
-        return LimitOrTargetReached;
+        return 0;
     case evolution::Outcome::Stagnation:
-        std::puts("ended: the best fitness was not beaten for stagnation_limit generations");
-        return Stagnated;
+        std::puts("ended: the best fitness did not improve for stagnation_limit generations");
+        return exit_stagnated;
     case evolution::Outcome::Extinction:
-        std::puts("ended: everyone died");
-        return Extinct;
+        std::puts("ended: all organisms died");
+        return exit_extinct;
     case evolution::Outcome::Running:
         break;
     }
     std::puts("ended: interrupted");
-    return Interrupted;
+    return exit_interrupted;
 }
 
-} // namespace
-
+/// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
 int run(const RunOptions& options) {
     const auto experiment = experiment_of(options);
     if (!experiment) {
-        std::cerr << "evod run: " << base::to_text(experiment.error()) << '\n';
-        return experiment.error().code == base::RefusalCode::InvalidArgument ? WrongArguments : RunError;
+        const int status = fail("evod run", experiment.error());
+        return experiment.error().code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
     }
     auto first_population = experiments::load_population(options.population, experiment->parameters);
     if (!first_population) {
-        std::cerr << "evod run: --population: " << base::to_text(first_population.error()) << '\n';
-        return RunError;
+        return fail("evod run", "--population: " + base::to_text(first_population.error()));
     }
     std::ofstream csv;
     std::optional<replay::Table> table;
@@ -140,11 +161,10 @@ int run(const RunOptions& options) {
         csv.open(options.csv);
         table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns());
         if (!csv.flush()) {
-            std::cerr << "evod run: --csv: cannot write " << options.csv << ": " << std::strerror(errno) << '\n';
-            return RunError;
+            return fail("evod run", "--csv: cannot write " + options.csv + ": " + std::strerror(errno));
         }
     }
-    mind_interrupts();
+    catch_interrupts();
 
     Cost cost;
     const auto start = Clock::now();
@@ -181,8 +201,7 @@ int run(const RunOptions& options) {
         }
         std::fflush(stdout);
         if (table && !csv.flush()) {
-            std::cerr << "evod run: --csv: cannot write " << options.csv << ", the disk may be full\n";
-            return RunError;
+            return fail("evod run", "--csv: cannot write " + options.csv + ", the disk may be full");
         }
     }
     progress.clear();
@@ -191,25 +210,28 @@ int run(const RunOptions& options) {
     return status;
 }
 
-void add_run_command(command_line::Command& app, std::size_t threads, base::Seed drawn_seed) {
+} // namespace
+
+void add_run_command(command_line::Command& app) {
     auto& command = app.add_command("run", "Run an experiment without a network");
     auto& options = command.keep(RunOptions{});
-    options.drawn_seed = drawn_seed;
-    options.threads = threads;
-    command.add_option("experiment", &options.experiment, "JSON file; without one, the default world");
-    command.add_option("--seed", &options.seed, "Otherwise the file's, or one drawn by chance").check(any_number);
+    command.add_option("experiment", &options.experiment, "JSON file; without it, the default world");
+    command.add_option("--seed", &options.seed, "Seed; without it, the seed of the file or a random one")
+        .check(any_number);
     command.add_option("--population", &options.population,
-                       "CSV file of `evod export --what population`: begin with these organisms instead of drawn ones");
+                       "CSV file of `evod export --what population`: begin with these organisms instead of random "
+                       "ones");
     command
         .add_option("--generations", &options.generations,
-                    "How many; takes the place of generation_limit, 0 is no limit")
+                    "Number of generations; replaces generation_limit, 0: no limit")
         .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
     command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
-    command.add_option("--set", &options.changes, "name=value of a parameter; see evod parameters");
-    command.add_option("--csv", &options.csv, "File for the statistics of every generation");
-    command.add_flag("--ask", &options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
+    command.add_option("--set", &options.changes, "Parameters as NAME=VALUE; evod parameters lists them");
+    command.add_option("--csv", &options.csv, "CSV file to write with the statistics of every generation");
+    command.add_flag("--ask", &options.ask,
+                     "Ask on the terminal for population, food, poison, time and every choice of the algorithm");
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
-                   "2 a value that is not allowed.");
+                   "2 a value is not allowed.");
     command.action([&] { return run(options); });
 }
 

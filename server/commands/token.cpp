@@ -1,11 +1,12 @@
-#include "server/commands/token.h"
-
+// `evod token`: makes, lists and revokes tokens. A running server reads the changed token file within a second.
 #include "proto/command_line/command.h"
 #include "server/access/token_file.h"
+#include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 
 #include <cstdio>
 #include <iostream>
+#include <string>
 
 namespace evod::commands {
 namespace {
@@ -14,31 +15,28 @@ struct TokenOptions {
     std::string folder, name, role;
 };
 
-int fail(const base::Refusal& refusal) {
-    std::cerr << "evod token: " << base::to_text(refusal) << '\n';
-    return 1;
-}
-
-} // namespace
-
-int add_token(const std::string& folder, const std::string& name, access::Role role) {
-    const auto secret = access::add_token(folder, name, role);
+/// Prints the secret alone to stdout, so that a script can store it, and how to use it to stderr.
+int add_token(const TokenOptions& options) {
+    const access::Role role = *access::role_named(options.role);
+    const auto secret = access::add_token(options.folder, options.name, role);
     if (!secret) {
-        return fail(secret.error());
+        return fail("evod token", secret.error());
     }
-    std::cerr << "token of " << name << ", " << access::name_of(role)
-              << ", told only now; for evoctl and evoview: the environment's EVOD_TOKEN, or --token-file\n";
+    std::cerr
+        << "token of " << options.name << ", " << access::name_of(role)
+        << ", printed only this once; evoctl and evoview read it from the environment variable EVOD_TOKEN or from "
+           "the file of --token-file\n";
     std::cout << *secret << std::endl;
     return 0;
 }
 
-int list_tokens(const std::string& folder) {
-    const auto tokens = access::read_tokens(folder);
+int list_tokens(const TokenOptions& options) {
+    const auto tokens = access::read_tokens(options.folder);
     if (!tokens) {
-        return fail(tokens.error());
+        return fail("evod token", tokens.error());
     }
     if (tokens->empty()) {
-        std::cerr << "evod token: there are no tokens in " << folder << ": make one with evod token add\n";
+        std::cerr << "evod token: there are no tokens in " << options.folder << ": make one with evod token add\n";
     }
     std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "MADE ON");
     for (const access::Token& token : *tokens) {
@@ -47,44 +45,40 @@ int list_tokens(const std::string& folder) {
     return 0;
 }
 
-int revoke_token(const std::string& folder, const std::string& name) {
-    if (const auto revoked = access::revoke_token(folder, name); !revoked) {
-        return fail(revoked.error());
+int revoke_token(const TokenOptions& options) {
+    if (const auto revoked = access::revoke_token(options.folder, options.name); !revoked) {
+        return fail("evod token", revoked.error());
     }
     return 0;
 }
 
+} // namespace
+
 void add_token_command(command_line::Command& app) {
-    auto& token = app.add_command("token", "Who may come in from other machines, and as what");
+    auto& token = app.add_command("token", "Make, list and revoke the tokens of clients on other machines");
     auto& options = token.keep(TokenOptions{});
-    const auto add_folder = [&](command_line::Command& command) {
+    const auto set_up = [&options](command_line::Command& command, int (*act)(const TokenOptions&)) {
         command.add_option("--data", &options.folder,
-                           "Folder of the server's runs; otherwise where it keeps them by itself");
+                           "Folder of the server's run files; without it, the server's default folder");
+        command.action(
+            [&options, act] { return find_data_folder("evod token", options.folder) ? act(options) : exit_error; });
     };
 
-    auto& add = token.add_command("add", "Make a token; it is told once, on standard output");
-    add.add_option("name", &options.name, "Whose, 1 to 64 of a-z A-Z 0-9 _ - .").required();
+    auto& add = token.add_command("add", "Make a token and print it; it cannot be printed again");
+    add.add_option("name", &options.name, "Name of its owner, 1 to 64 of a-z A-Z 0-9 _ - .").required();
     add.add_option("--role", &options.role,
-                   "viewer: looks; controller: and runs worlds and sets parameters; admin: and makes and deletes "
-                   "worlds, and shuts the server down")
+                   "viewer: reads and watches. controller: also runs worlds and sets parameters. admin: also makes and "
+                   "deletes worlds, and shuts the server down")
         .required()
         .choices({"viewer", "controller", "admin"});
-    add_folder(add);
-    add.action([&] {
-        return find_data_folder(options.folder)
-                   ? commands::add_token(options.folder, options.name, *access::role_named(options.role))
-                   : 1;
-    });
+    set_up(add, add_token);
 
-    auto& list = token.add_command("list", "Names and roles of all tokens");
-    add_folder(list);
-    list.action([&] { return find_data_folder(options.folder) ? list_tokens(options.folder) : 1; });
+    auto& list = token.add_command("list", "Print the names and roles of all tokens");
+    set_up(list, list_tokens);
 
-    auto& revoke = token.add_command("revoke", "Make a token useless; whoever is in with it is put out");
-    revoke.add_option("name", &options.name, "Whose").required();
-    add_folder(revoke);
-    revoke.action(
-        [&] { return find_data_folder(options.folder) ? commands::revoke_token(options.folder, options.name) : 1; });
+    auto& revoke = token.add_command("revoke", "Revoke a token; the server ends the sessions that use it");
+    revoke.add_option("name", &options.name, "Name of its owner").required();
+    set_up(revoke, revoke_token);
 }
 
 } // namespace evod::commands

@@ -1,16 +1,18 @@
-#include "server/commands/verify.h"
-
+// `evod verify`: simulates the run of a run file again and compares the two.
+#include "server/replay/verify.h"
 #include "proto/command_line/command.h"
+#include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/progress_line.h"
-#include "server/replay/verify.h"
 #include "server/runtime/worker_pool.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <iostream>
 #include <mutex>
 #include <optional>
+#include <string>
 
 namespace evod::commands {
 namespace {
@@ -20,19 +22,24 @@ using replay::StoredMoment;
 using replay::VerifyProgress;
 using Clock = std::chrono::steady_clock;
 
+struct VerifyOptions {
+    std::string run; // path of a run file
+    std::size_t threads = default_thread_count();
+};
+
 std::string text_of(const StoredMoment& moment) {
     return "generation " + std::to_string(moment.generation) + ", tick " + std::to_string(moment.tick);
 }
 
 void print_difference(const std::string& path, const Difference& difference) {
-    std::cerr << "evod verify: " << path << " tells of another run than the one that begins as it does\n"
-              << "last moment that agrees: "
+    std::cerr << "evod verify: " << path << " differs from the run that its parameters and seed produce\n"
+              << "last tick that agrees: "
               << (difference.agrees ? text_of(*difference.agrees) + ": " + difference.agreeing_part : "none") << '\n'
-              << "first that does not: " << text_of(difference.differs) << ": " << difference.part << ": stored "
+              << "first that differs: " << text_of(difference.differs) << ": " << difference.part << ": stored "
               << difference.stored << ", simulated again " << difference.simulated << '\n';
 }
 
-/// simulated_for  how long it has been since the first tick.
+/// simulated_for  the time since the first tick.
 std::string text_of(const VerifyProgress& now, std::chrono::duration<double> simulated_for) {
     if (now.ticks == 0) {
         return "reading: " + std::to_string(now.generations) + " of " + std::to_string(now.generations_in_all) +
@@ -41,27 +48,22 @@ std::string text_of(const VerifyProgress& now, std::chrono::duration<double> sim
     const double share = static_cast<double>(now.ticks) / static_cast<double>(now.ticks_in_all);
     std::string text = std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) +
                        " ticks simulated again, " + std::to_string(static_cast<int>(100 * share)) + " %";
-    if (simulated_for > std::chrono::seconds{2}) { // else it is a guess
-        text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s to go";
+    if (simulated_for > std::chrono::seconds{2}) { // earlier estimates are unreliable
+        text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s left";
     }
     return text;
 }
 
-} // namespace
-
+/// Prints what it compared to stdout, or the first difference to stderr. Returns the exit status.
 int verify(const VerifyOptions& options) {
     const auto start = Clock::now();
-    const auto fail = [](const base::Refusal& why) {
-        std::cerr << "evod verify: " << base::to_text(why) << '\n';
-        return 1;
-    };
     const auto file = run_file::RunFile::open_checked(options.run);
     if (!file) {
-        return fail(file.error());
+        return fail("evod verify", file.error());
     }
 
     ProgressLine progress;
-    std::mutex progress_mutex; // guards the line, which any thread may write, and what follows
+    std::mutex progress_mutex; // guards `progress`, which any thread may write, and simulating_since
     std::optional<Clock::time_point> simulating_since;
     const auto executor = runtime::make_executor(options.threads);
     const auto verified = replay::verify(**file, *executor, [&](const VerifyProgress& now) {
@@ -76,29 +78,32 @@ int verify(const VerifyOptions& options) {
     });
     progress.clear();
     if (!verified) {
-        return fail(verified.error());
+        return fail("evod verify", verified.error());
     }
     if (verified->difference) {
         print_difference(options.run, *verified->difference);
-        return 1;
+        return exit_error;
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double factor = verified->simulated_s / seconds;
-    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes, %llu checkpoints compared in %.2f s, "
-                "%.*f × real time\n",
-                options.run.c_str(), static_cast<unsigned long long>(verified->generations),
-                static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
-                static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
+    std::printf(
+        "%s: everything agrees: %llu generations, %llu ticks, %llu state hashes, %llu checkpoints compared in %.2f s, "
+        "%.*f × real time\n",
+        options.run.c_str(), static_cast<unsigned long long>(verified->generations),
+        static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
+        static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
     return 0;
 }
 
-void add_verify_command(command_line::Command& app, std::size_t threads) {
-    auto& command = app.add_command("verify", "Simulate the run of a run file again and compare everything");
+} // namespace
+
+void add_verify_command(command_line::Command& app) {
+    auto& command =
+        app.add_command("verify", "Simulate the run of a run file again and compare all that the file contains");
     auto& options = command.keep(VerifyOptions{});
-    options.threads = threads;
-    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();
     command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
-    command.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
+    command.footer("Exit status: 0 everything agrees, 1 the file differs, is damaged or cannot be simulated again.");
     command.action([&] { return verify(options); });
 }
 

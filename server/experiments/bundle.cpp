@@ -34,9 +34,10 @@ Result<void> write_file(const fs::path& path, Write&& write) {
     return {};
 }
 
-/// With the seed, as experiment files have it.
+/// An experiment file with all parameters and the seed.
 std::string experiment_text(const run_file::RunIdentity& identity) {
-    // A fork's own parameters are those of the generation that it begins with, not of its schedule's first.
+    // The parameters of a fork are those of the generation it begins with, so its schedule cannot begin in generation
+    // 1.
     const std::string parameters =
         to_experiment_text(identity.parameters, parameters::Written::Everything,
                            identity.forked_from ? parameters::Schedule{} : identity.schedule);
@@ -56,7 +57,7 @@ Result<std::string> sha256_of(const fs::path& path) {
     unsigned char digest[EVP_MAX_MD_SIZE];
     unsigned int bytes = 0;
     if (!good || EVP_DigestFinal_ex(context.get(), digest, &bytes) != 1) {
-        return refusal(RefusalCode::Unavailable, path.string() + ": its checksum cannot be made");
+        return refusal(RefusalCode::Unavailable, path.string() + ": cannot be read to compute its checksum");
     }
     std::string text;
     for (unsigned int i = 0; i < bytes; ++i) {
@@ -85,7 +86,7 @@ Result<void> write_checksums(const fs::path& folder) {
     });
 }
 
-/// How `evod run` gives the same numbers; or why it does not.
+/// How to repeat the run with `evod run`, or why that is impossible.
 Result<std::string> rerun_text(run_file::RunFile& file) {
     const run_file::RunIdentity& identity = file.identity();
     const auto changes = replay::parameter_changes(file);
@@ -110,7 +111,7 @@ Result<std::string> rerun_text(run_file::RunFile& file) {
            std::string{identity.first_population ? "--population population.csv " : ""} + "--generations " +
            std::to_string(generations) +
            " --csv again.csv\n    cmp again.csv generations.csv\n\nThe first simulates the run from its parameters and "
-           "seed alone; the second says nothing if every number is the same.\n";
+           "seed alone; the second prints nothing if all numbers are equal.\n";
 }
 
 Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file_name) {
@@ -131,13 +132,13 @@ Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file
            " |\n\nAny evod of model version " + model +
            " gives the same bits, on any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
            "    evod verify " + file_name +
-           "\n\nThe first finds files that were changed; the second simulates the run again and compares all that the "
-           "run file holds: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
+           "\n\nThe first finds changed files. The second simulates the run again and compares everything in the run "
+           "file: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
            *rerun +
            (left_out == 0 ? ""
-                          : "\nOf " + std::to_string(left_out) +
-                                " generations nothing is in organisms.csv and lineage.csv: the run file does not hold "
-                                "them any more, and the evod that made this folder cannot simulate them again.\n");
+                          : "\norganisms.csv and lineage.csv lack " + std::to_string(left_out) +
+                                " generations: the run file no longer contains their organisms, and the evod that made "
+                                "this folder cannot simulate them again.\n");
 }
 
 Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
@@ -193,7 +194,7 @@ Result<void> write_bundle(const replay::RunSource& run, const std::string& folde
     std::error_code error;
     if (!fs::create_directory(folder, error)) {
         return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot make " + folder + ": " + error.message())
-                     : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " is there already");
+                     : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " exists already");
     }
     Result<void> filled = fill(run, folder);
     if (!filled) {

@@ -1,11 +1,11 @@
-// Bundle: a run as a folder that can be given away: everything that is known of it, and how to repeat it.
+// Bundle: a folder with everything about a run that another person needs to check and repeat it.
 //
-//   NAME.evod        a copy of the run file, at one moment though a server writes to it
-//   experiment.json  the parameters that the run began with, and its seed
-//   population.csv   the organisms that it began with, if they were given
+//   NAME.evod        a copy of the run file, consistent even if a server writes to it
+//   experiment.json  the initial parameters and the seed of the run
+//   population.csv   the initial organisms, if they were given
 //   generations.csv, organisms.csv, lineage.csv, events.csv
-//   REPEAT.md        how to repeat the run, and with what
-//   SHA256SUMS       of all these, for `sha256sum --check`
+//   REPEAT.md        how to repeat the run, and which evod can
+//   SHA256SUMS       checksums of all files, for `sha256sum --check`
 #pragma once
 
 #include "server/replay/run_tables.h"
@@ -14,7 +14,7 @@
 
 namespace evod::experiments {
 
-/// folder  is made; refused if there is something of that name. Nothing of it is left if anything else is refused.
+/// folder  is made; refused if it exists. After another refusal it does not exist.
 base::Result<void> write_bundle(const replay::RunSource& run, const std::string& folder);
 
 } // namespace evod::experiments

@@ -45,7 +45,7 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
     for_each_trial(
         trials, wanted.jobs,
         [&](std::size_t trial) {
-            // Replicate by replicate, so that what is done at any time is about as much of each arm.
+            // Replicate by replicate, so that the arms progress equally.
             const std::size_t arm = trial % arms.size(), replicate = trial / arms.size();
             Course& course = courses[arm][replicate];
             simulation::World world{arms[arm].parameters,
@@ -99,7 +99,7 @@ Judgement judge(const Finding& finding, std::size_t tests) {
     if (finding.adjusted_p < significance) {
         return finding.mean > 0 ? Judgement::Above : Judgement::Below;
     }
-    // Were all of them as small as they can be, Holm's greatest factor would be the number of tests.
+    // The largest factor of Holm's adjustment is the number of tests.
     return least_sign_flip_p(finding.differences.size()) * static_cast<double>(tests) >= significance
                ? Judgement::CannotBeShown
                : Judgement::NotShown;

@@ -1,11 +1,11 @@
-// Comparison: a world beside others that were run with the same seeds, and what can be told of the difference.
+// Comparison: runs several worlds with the same seeds and tests the differences of their rises.
 //
-// What is compared is the rise: by how much the mean fitness of all organisms of a run rose from its first generation
-// to its last. A replicate is a seed; the first generation of a seed has the same organisms in every arm that does not
-// change how they are made, so differences are taken seed by seed.
+// The rise of a run is the mean fitness of its organisms in the last generation minus that in the first. A replicate is
+// a seed. The first generation of a seed has the same organisms in every arm that does not change how organisms are
+// made, so the test pairs the runs by seed.
 //
-// Threads      runs go to a pool, one a thread (trials.h).
-// Determinism  the same arms, seed and counts give the same numbers to the last bit, whatever `jobs` is.
+// Threads      runs are distributed to `jobs` threads, one run per thread at a time (trials.h).
+// Determinism  the same arms, seed and counts give the same numbers to the last bit, for any `jobs`.
 #pragma once
 
 #include "server/base/random.h"
@@ -22,20 +22,20 @@
 
 namespace evod::experiments {
 
-/// One of the worlds that are compared.
+/// A world to compare.
 struct Arm {
     std::string name;
-    parameters::Parameters parameters;  // valid; generation_limit is the only end they have
+    parameters::Parameters parameters;  // valid; generation_limit is their only termination criterion
     parameters::Schedule schedule = {}; // in which faults_of() finds nothing
 };
 
-/// A generation of a run, all its islands together.
+/// A generation of a run, over all islands.
 struct GenerationFitness {
     double mean = 0, best = 0;
     std::uint64_t organism_count = 0, alive_count = 0;
     friend bool operator==(const GenerationFitness&, const GenerationFitness&) = default;
 };
-using Course = std::vector<GenerationFitness>; // of one run, from generation 1 on
+using Course = std::vector<GenerationFitness>; // of one run, by generation from 1
 
 double rise_of(const Course& course);
 
@@ -49,31 +49,31 @@ struct RunsWanted {
 
 /// Runs every arm with every seed.
 ///
-/// returns  shape (arms, replicates), each as many generations long as the arms' generation_limit; nothing if stopped()
-///          came true.
+/// returns  shape (arms, replicates), each with generation_limit generations; nullopt after stopped() returned true.
 std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> arms, const RunsWanted& wanted);
 
-/// What the world has over another arm.
+/// The difference between the first arm and another.
 struct Finding {
-    std::vector<double> differences; // its rise less the other's, by replicate
+    std::vector<double> differences; // rise of the first arm minus rise of the other, by replicate
     double mean = 0;
-    Interval interval;                 // 95 %, of that mean
+    Interval interval;                 // 95 %, of the mean difference
     std::optional<double> effect_size; // hedges_g()
     double p = 1;                      // sign_flip_p()
-    double adjusted_p = 1;             // for all that the world is compared with
+    double adjusted_p = 1;             // for the number of tests (Holm)
 };
 
-/// The first arm against each of the others.
+/// Compares the first arm with each other.
 ///
 /// courses  shape (arms >= 2, replicates >= 2), of at least one generation.
 /// returns  shape (arms − 1).
 std::vector<Finding> find_differences(std::span<const std::vector<Course>> courses, base::Seed seed);
 
-/// A p-value below this is taken for a difference.
+/// The significance level of the tests.
 constexpr double significance = 0.05;
 
 enum class Judgement { Above, Below, NotShown, CannotBeShown };
-/// CannotBeShown: so few replicates, among `tests` tests, that no difference whatever could come below `significance`.
+/// CannotBeShown: there are too few replicates for `tests` tests: no difference could have an adjusted p below
+/// `significance`.
 Judgement judge(const Finding& finding, std::size_t tests);
 
 } // namespace evod::experiments

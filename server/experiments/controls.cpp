@@ -11,12 +11,12 @@ namespace {
 using namespace evolution; // the enumerations of its parameters
 using parameters::Parameters;
 
-/// Leaves nothing to be decided by the fitness.
+/// Lets nothing depend on fitness.
 Parameters with_random_selection(Parameters p) {
     p.selection = SelectionMethod::Random;
     p.elite_count = 0;
     if (p.population_model == PopulationModel::SteadyState) {
-        // It would keep the best. As many stay, but whoever they are.
+        // Steady state keeps the fittest. A hybrid model keeps as many organisms, drawn at random.
         p.population_model =
             p.replaced_count < p.population_size ? PopulationModel::Hybrid : PopulationModel::Generational;
         if (p.population_model == PopulationModel::Hybrid) {
@@ -43,18 +43,18 @@ Parameters without_mutation(Parameters p) {
     return p;
 }
 
-std::string why_poison_does_nothing(const Parameters& p) {
+std::string why_poison_has_no_effect(const Parameters& p) {
     if (p.fitness != parameters::FitnessFunction::Life) {
-        return "the fitness is a function of the chromosome: nobody eats";
+        return "the fitness is a function of the chromosome, and organisms do not eat";
     }
     if (parameters::island_plan(p).poison_count == 0) {
         return "there is no poison";
     }
-    return p.poison_harm == 0 ? "poison_harm is 0 already" : "";
+    return p.poison_harm == 0 ? "poison_harm is already 0" : "";
 }
 
 std::string why_nothing_is_selected(const Parameters& p) {
-    return with_random_selection(p) == p ? "whoever breeds is drawn by chance already" : "";
+    return with_random_selection(p) == p ? "parents are already drawn at random" : "";
 }
 
 using Names = std::span<const std::string_view>;
@@ -64,21 +64,21 @@ constexpr std::string_view random_selection[] = {"selection",      "elite_count"
 constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "bit_flip_chance", "rearranging"};
 constexpr std::string_view harmless_poison[] = {"poison_harm"};
 constexpr std::string_view shuffled_fitness[] = {"shuffle_fitness"};
-constexpr std::string_view whether_it_mutates[] = {"mutation_step", "rearrange_chance"};
-constexpr std::string_view whether_there_is_poison[] = {"poison_count", "population_size", "scale_with_population"};
+constexpr std::string_view mutation_conditions[] = {"mutation_step", "rearrange_chance"};
+constexpr std::string_view poison_conditions[] = {"poison_count", "population_size", "scale_with_population"};
 
 struct NamesOfControl {
-    Names made_by;    // those that make the control
-    Names depends_on; // others that it can fail to differ for
+    Names made_by;    // parameters that the control sets
+    Names depends_on; // other parameters that decide whether it can differ
 };
 NamesOfControl names_of(ControlKind kind) {
     switch (kind) {
     case ControlKind::RandomSelection:
         return {random_selection, {}};
     case ControlKind::MutationOff:
-        return {mutation_off, whether_it_mutates};
+        return {mutation_off, mutation_conditions};
     case ControlKind::HarmlessPoison:
-        return {harmless_poison, whether_there_is_poison};
+        return {harmless_poison, poison_conditions};
     case ControlKind::ShuffledFitness:
         break;
     }
@@ -94,7 +94,7 @@ parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind) {
     return world;
 }
 
-bool matters(const parameters::Schedule& world, ControlKind kind) {
+bool schedule_affects(const parameters::Schedule& world, ControlKind kind) {
     const auto is_scheduled = [&](std::string_view name) { return world.holds(name); };
     const auto [made_by, depends_on] = names_of(kind);
     return std::ranges::any_of(made_by, is_scheduled) || std::ranges::any_of(depends_on, is_scheduled);
@@ -111,18 +111,18 @@ Control control_of(const Parameters& world, ControlKind kind) {
     case ControlKind::MutationOff:
         control.name = "mutation_off";
         control.parameters = without_mutation(world);
-        control.cannot_differ = mutates(world) ? "" : "nothing mutates already";
+        control.cannot_differ = mutates(world) ? "" : "there is no mutation";
         break;
     case ControlKind::HarmlessPoison:
         control.name = "harmless_poison";
         control.parameters.poison_harm = 0;
-        control.cannot_differ = why_poison_does_nothing(world);
+        control.cannot_differ = why_poison_has_no_effect(world);
         break;
     case ControlKind::ShuffledFitness:
         control.name = "shuffled_fitness";
         control.parameters.shuffle_fitness = true;
         control.cannot_differ =
-            world.shuffle_fitness ? "shuffle_fitness is true already" : why_nothing_is_selected(world);
+            world.shuffle_fitness ? "shuffle_fitness is already true" : why_nothing_is_selected(world);
         break;
     }
     return control;

@@ -1,6 +1,8 @@
-// Controls: the worlds that an experiment is to be seen beside, to tell whether evolution did what it came to.
+// Controls: variants of a world that each lack one possible cause of its rise in fitness.
 //
-// Each is a plain set of parameters, so that a control can be run, recorded, replayed and verified like any world.
+// A control is a plain set of parameters, so it can be run, recorded, replayed and verified like any world.
+//
+// Threads  none.
 #pragma once
 
 #include "server/parameters/parameters.h"
@@ -12,10 +14,10 @@
 namespace evod::experiments {
 
 enum class ControlKind {
-    RandomSelection, // whoever breeds, stays and migrates is drawn by chance
-    MutationOff,     // no gene gets a new value: what the selection makes of the first generation alone
-    HarmlessPoison,  // poison takes no health
-    ShuffledFitness, // selection as strong as it was, by another organism's fitness
+    RandomSelection, // parents, survivors and migrants are drawn at random
+    MutationOff,     // no gene gets a new value: selection among the genes of the first generation only
+    HarmlessPoison,  // poison does not reduce health
+    ShuffledFitness, // as much selection pressure, by the fitness of another organism
 };
 constexpr ControlKind all_controls[] = {ControlKind::RandomSelection, ControlKind::MutationOff,
                                         ControlKind::HarmlessPoison, ControlKind::ShuffledFitness};
@@ -24,25 +26,25 @@ struct Control {
     ControlKind kind;
     std::string name; // "random_selection"
     parameters::Parameters parameters;
-    std::string cannot_differ; // why the world is this control already; empty: it is not
+    std::string cannot_differ; // why the control equals the world; empty: it can differ
 };
 
 /// world  valid.
 Control control_of(const parameters::Parameters& world, ControlKind kind);
 
-/// What is scheduled for the world, but for the parameters that make the control, which it has all along.
+/// The schedule of the control: that of the world without the parameters that the control sets for all generations.
 parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind);
-/// Whether what is scheduled has a say in whether the control can differ from the world.
-bool matters(const parameters::Schedule& world, ControlKind kind);
+/// Whether the schedule changes a parameter that decides whether the control can differ from the world.
+bool schedule_affects(const parameters::Schedule& world, ControlKind kind);
 
-/// The world with no end but that of `generations`: an end that depends on what happens would give the worlds that are
-/// compared different lengths. Who has died out breeds by the fitness it came to, as always.
+/// The world with a generation_limit as its only termination criterion. Any other criterion would end the compared
+/// worlds after different numbers of generations. An extinct population breeds by the fitness it reached, as always.
 parameters::Parameters of_fixed_length(parameters::Parameters world, std::uint32_t generations);
 
-/// The same of what is scheduled for it.
+/// The schedule without the termination criteria.
 parameters::Schedule of_fixed_length(parameters::Schedule world);
 
-/// "selection=random elite_count=0": what is to be set to make `other` of `world`; empty if they are the same.
+/// "selection=random elite_count=0": the parameters that differ, with the values of `other`; empty if none does.
 std::string changes_between(const parameters::Parameters& world, const parameters::Parameters& other);
 
 } // namespace evod::experiments

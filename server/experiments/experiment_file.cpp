@@ -44,7 +44,7 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
         const std::string name = change.substr(0, equals), text = change.substr(equals + 1);
         const parameters::ParameterDescription* description = parameters::find_parameter(name);
         if (description == nullptr) {
-            assignments.push_back({name, text}); // assign() knows what to say of an unknown name
+            assignments.push_back({name, text}); // assign() refuses the unknown name
             continue;
         }
         base::Result<parameters::ParameterValue> value = parameters::parse_value(*description, text);
@@ -78,7 +78,7 @@ base::Result<void> fit_schedule(parameters::Experiment& experiment) {
         return {};
     }
     base::Refusal refused{.code = base::RefusalCode::InvalidArgument,
-                          .message = "what is scheduled cannot hold with the parameters that were set",
+                          .message = "the schedule does not fit the parameters that were set",
                           .violations = {}};
     for (const parameters::ScheduleFault& fault : faults) {
         refused.violations.push_back({fault.violation.field + " at generation " + std::to_string(fault.generation),

@@ -1,4 +1,4 @@
-// Experiment files on disk, and changes to them from the command line.
+// Experiment files: reads them, and makes the changes of `--set`.
 #pragma once
 
 #include "server/parameters/experiment.h"
@@ -8,24 +8,25 @@
 
 namespace evod::experiments {
 
-/// A file that people write, at most 1 MiB. kind  what it is to be: "an experiment file".
+/// The text of a file, at most 1 MiB.
+///
+/// kind  what the file should be, for errors: "an experiment file".
 base::Result<std::string> load_text(const std::string& path, const std::string& kind);
 
-/// Reads and validates a file; the refusal's message begins with the path.
+/// Reads and validates a file. The refusal's message begins with the path.
 base::Result<parameters::Experiment> load_experiment(const std::string& path);
 
-/// The experiment with each "name=value" of `changes` made, which then is so in all generations; violations are named
-/// by
-/// "--set name".
+/// Makes each change "name=value", for all generations: it removes the parameter from the schedule. Violations are
+/// named "--set name".
 base::Result<parameters::Experiment> with_changes(parameters::Experiment experiment,
                                                   const std::vector<std::string>& changes);
 
-/// Whether what is scheduled goes together with parameters that were changed, with which it then begins; violations
+/// Makes the schedule begin with the parameters of the experiment, and validates each of its generations. Violations
 /// name the generation.
 base::Result<void> fit_schedule(parameters::Experiment& experiment);
 
-/// A world's name for an experiment: the file's name without folder and ending, other characters than a-z A-Z 0-9 _ -
-/// replaced by "_", at most 64.
+/// The name of the world of an experiment: the name of the file without folder and extension, at most 64 characters;
+/// those other than a-z A-Z 0-9 _ - become "_".
 std::string world_name(const std::string& path);
 
 } // namespace evod::experiments

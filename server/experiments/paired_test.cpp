@@ -47,13 +47,13 @@ std::optional<double> hedges_g(std::span<const double> differences) {
 
 double sign_flip_p(std::span<const double> differences, base::Seed seed) {
     EVOD_ASSERT(!differences.empty());
-    double found = 0, size = 0;
+    double observed = 0, magnitude = 0;
     for (const double difference : differences) {
-        found += difference;
-        size += std::abs(difference);
+        observed += difference;
+        magnitude += std::abs(difference);
     }
-    // Equal sums may differ in their last digits, by the order in which they were rounded.
-    const double least = std::abs(found) - 1e-12 * size;
+    // Equal sums may differ in the last digits, because rounding depends on the signs.
+    const double least = std::abs(observed) - 1e-12 * magnitude;
     const std::size_t count = differences.size();
     const auto is_as_far = [&](const auto& is_negative) {
         double sum = 0;
@@ -63,7 +63,7 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
         return std::abs(sum) >= least;
     };
     if (count <= exact_sign_flips_max) {
-        // With all signs the other way round the sum is as far from 0, so the last sign may stay.
+        // Inverting all signs only inverts the sum, so the last sign can stay fixed.
         const std::uint32_t patterns = 1u << (count - 1);
         std::uint32_t as_far = 0;
         for (std::uint32_t signs = 0; signs < patterns; ++signs) {
@@ -74,7 +74,7 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
     constexpr std::uint32_t drawn = (1u << exact_sign_flips_max) - 1;
     base::RandomStream random{{seed, base::Purpose::SignFlip, 0, 0}, 0};
     std::vector<std::uint32_t> words((count + 31) / 32);
-    std::uint32_t as_far = 1; // the one found
+    std::uint32_t as_far = 1; // the observed pattern
     for (std::uint32_t i = 0; i < drawn; ++i) {
         for (std::uint32_t& word : words) {
             word = random.word();

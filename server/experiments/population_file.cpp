@@ -42,7 +42,7 @@ base::Result<simulation::FirstPopulation> load_population(const std::string& pat
         std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(matrices));
     if (auto faults = simulation::faults_of(population, parameters, "population"); !faults.empty()) {
         return base::Refusal{.code = RefusalCode::InvalidArgument,
-                             .message = path + ": a world with these parameters cannot begin so",
+                             .message = path + ": does not match the parameters of the world",
                              .violations = std::move(faults)};
     }
     return population;

@@ -1,4 +1,4 @@
-// Population files: the chromosomes of a generation (proto/codec/population_csv.h), for another world to begin with.
+// Population files: the chromosomes that a world begins with, as CSV (proto/codec/population_csv.h).
 #pragma once
 
 #include "server/base/result.h"
@@ -8,7 +8,7 @@
 
 namespace evod::experiments {
 
-/// Reads a file for a world with these parameters; nullptr for an empty path. The refusal's message names the file.
+/// Reads a file for a world with these parameters. Returns nullptr for an empty path. The refusal names the file.
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
                                                           const parameters::Parameters& parameters);
 

@@ -1,18 +1,18 @@
 #include "server/experiments/run_writer.h"
 
-#include "server/experiments/new_file.h"
+#include "server/experiments/atomic_file.h"
 
 #include <filesystem>
 #include <utility>
 
 namespace evod::experiments {
 
-// What survives the program is enough until the file is whole: it is put on the disk before it gets its name.
+// Relaxed durability is enough, because finish() syncs the file before it gets its name.
 RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId& run_id,
                      const simulation::World& world)
     : path_{std::move(path)}
-    , unfinished_{NewFile::unfinished_name(path_)}
-    , file_{run_file::RunFile::begin_new(unfinished_, recording::identity_of(std::move(name), run_id, world),
+    , temporary_path_{AtomicFile::temporary_name(path_)}
+    , file_{run_file::RunFile::begin_new(temporary_path_, recording::identity_of(std::move(name), run_id, world),
                                          {.durability = run_file::Durability::Relaxed})} {}
 
 RunWriter::~RunWriter() {
@@ -20,7 +20,7 @@ RunWriter::~RunWriter() {
         return;
     }
     file_->reset();
-    (void)run_file::remove_run_file(unfinished_); // at worst it is left there, under a name that nobody reads
+    (void)run_file::remove_run_file(temporary_path_); // if it stays, no program reads a file of that name
 }
 
 base::Result<void> RunWriter::follow(const simulation::World& world) {
@@ -55,13 +55,13 @@ base::Result<void> RunWriter::finish() {
         return settled;
     }
     file_->reset();
-    if (auto kept = NewFile::keep(unfinished_); !kept) {
-        return kept;
+    if (auto synced = AtomicFile::sync(temporary_path_); !synced) {
+        return synced;
     }
-    if (auto named = run_file::rename_run_file(unfinished_, path_); !named) {
-        return named;
+    if (auto renamed = run_file::rename_run_file(temporary_path_, path_); !renamed) {
+        return renamed;
     }
-    return NewFile::keep(std::filesystem::path{path_}.parent_path().string());
+    return AtomicFile::sync(std::filesystem::path{path_}.parent_path().string());
 }
 
 } // namespace evod::experiments

@@ -1,6 +1,6 @@
 #include "server/experiments/sweep_folder.h"
 
-#include "server/experiments/new_file.h"
+#include "server/experiments/atomic_file.h"
 #include "server/files/regular_file.h"
 #include "server/replay/columns.h"
 #include "server/run_file/build.h"
@@ -23,7 +23,8 @@ using base::Result;
 using evolution::Outcome;
 
 constexpr std::string_view end_mark = "# ended by ";
-constexpr std::size_t provenance_bytes_max = 8 << 20; // a sweep file of 1 MiB, each line as a comment, and the rest
+constexpr std::size_t provenance_bytes_max =
+    8 << 20; // a sweep file of 1 MiB with each line as a comment, and the other facts
 constexpr std::array<std::pair<Outcome, std::string_view>, 4> outcome_names{
     {{Outcome::TargetFitness, "target_fitness"},
      {Outcome::Extinction, "extinction"},
@@ -34,7 +35,7 @@ struct Fact {
     std::string name, text;
 };
 
-/// All that decides what the runs come to, and nothing that does not.
+/// Everything that the results depend on, and nothing else.
 std::vector<Fact> facts_of(const Sweep& sweep) {
     std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
     std::erase(parameters, '\n');
@@ -57,7 +58,7 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
             {"sweep file", "\n" + text}};
 }
 
-/// As a comment, a fact a line, or several.
+/// As a comment of one or more lines.
 std::string to_text(const Fact& fact) {
     std::string text = "# " + fact.name + ": ";
     for (const char c : fact.text) {
@@ -67,17 +68,19 @@ std::string to_text(const Fact& fact) {
 }
 
 std::string provenance_of(const Sweep& sweep) {
-    std::string text = "# evod sweep: a row per run, generation and island; where they come from:\n";
+    std::string text = "# evod sweep: a row per run, generation and island, made from:\n";
     for (const Fact& fact : facts_of(sweep)) {
         text += to_text(fact);
     }
     return text;
 }
 
-/// What a folder says of itself that is not so for this sweep.
+/// The refusal of a folder with other results: which facts differ.
+///
+/// there  the text of its sweep.txt.
 base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
-                                    path + " has the results of another sweep; give another folder with --out. Its");
+                                    path + " contains the results of another sweep; name another folder with --out");
     for (const Fact& fact : facts_of(sweep)) {
         if (there.find("\n" + to_text(fact)) != std::string::npos) {
             continue;
@@ -85,13 +88,13 @@ base::Refusal other_sweep(const std::string& path, const std::string& there, con
         const std::string name = "\n# " + fact.name + ": ";
         const std::size_t begin = there.find(name);
         std::string got = begin == std::string::npos ? "nothing" : there.substr(begin + name.size());
-        got = got.substr(0, got.find("\n# ")); // a line that goes on begins with more room
+        got = got.substr(0, got.find("\n# ")); // continuation lines begin with more spaces
         const bool long_text = fact.text.find('\n') != std::string::npos;
-        refused.violations.push_back({fact.name, long_text ? "the same as before" : fact.text,
-                                      long_text ? "one that has been changed" : got.substr(0, got.find('\n'))});
+        refused.violations.push_back({fact.name, long_text ? "no change since the sweep began" : fact.text,
+                                      long_text ? "a changed text" : got.substr(0, got.find('\n'))});
     }
     if (refused.violations.empty()) {
-        refused.message += " sweep.txt is not as it was written";
+        refused.message = path + "/sweep.txt was changed; name another folder with --out";
     }
     return refused;
 }
@@ -108,10 +111,10 @@ Result<void> make_folder(const std::string& path) {
         return {};
     }
     return refusal(RefusalCode::Unavailable,
-                   path + " cannot be made: " + (error ? error.message() : "there is a file of that name"));
+                   path + " cannot be made: " + (error ? error.message() : "a file of that name exists"));
 }
 
-/// The last line of a part that is whole.
+/// The last line of a file; nullopt if the file is missing or ends within a line.
 std::optional<std::string> last_line(const std::string& part) {
     std::error_code error;
     if (!fs::is_regular_file(part, error)) {
@@ -185,7 +188,7 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
 Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep) {
     const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
     std::error_code error;
-    std::string result; // looked for first: another task may be making all of it now, and makes sweep.txt before it
+    std::string result; // checked before sweep.txt: another task may be making both now, sweep.txt first
     for (const char* name : {"/runs.csv", "/parts", "/run-files"}) {
         if (fs::exists(path + name, error)) {
             result = path + name;
@@ -194,19 +197,18 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
     if (!fs::exists(of_sweep, error)) {
         if (!result.empty()) {
             return refusal(RefusalCode::FailedPrecondition,
-                           result + " is there, and no sweep.txt that says whose it is; give another folder with "
-                                    "--out");
+                           result + " exists without the sweep.txt of its sweep; name another folder with --out");
         }
         if (auto made = make_folder(path); !made) {
             return made.error();
         }
-        NewFile file{of_sweep};
+        AtomicFile file{of_sweep};
         file.write(provenance);
         if (auto written = file.finish(); !written) {
             return written.error();
         }
     }
-    const auto there = files::read_file(of_sweep, "what evod sweep wrote", provenance_bytes_max);
+    const auto there = files::read_file(of_sweep, "the sweep.txt of a sweep", provenance_bytes_max);
     if (!there) {
         return there.error();
     }
@@ -224,7 +226,7 @@ std::string SweepFolder::name_of(std::size_t run) const {
            padded(run % sweep_->replicates, sweep_->replicates);
 }
 
-Result<void> SweepFolder::make_place_for_run_files() const {
+Result<void> SweepFolder::make_run_file_folder() const {
     return make_folder(path_ + "/run-files");
 }
 
@@ -237,11 +239,11 @@ std::optional<RunEnd> SweepFolder::end_of(std::size_t run, Wanted wanted) const 
     return line ? end_from(*line) : std::nullopt;
 }
 
-Result<void> SweepFolder::add_part(std::size_t run, NewFile& table, Gathered& gathered) const {
+Result<void> SweepFolder::add_part(std::size_t run, AtomicFile& table, Gathered& gathered) const {
     const std::string path = part_of(run);
     const auto damaged = [&] {
-        return refusal(RefusalCode::DataLoss, path + " is not as it was written; delete it, and the same sweep makes "
-                                                     "that run again");
+        return refusal(RefusalCode::DataLoss,
+                       path + " was changed; delete it, and the same command makes that run again");
     };
     const auto line = last_line(path);
     if (!line) {
@@ -278,13 +280,13 @@ Result<void> SweepFolder::add_part(std::size_t run, NewFile& table, Gathered& ga
 }
 
 Result<SweepFolder::Gathered> SweepFolder::gather() const {
-    NewFile table{this->table()};
+    AtomicFile table{this->table()};
     table.write(provenance_of(*sweep_));
     std::ostringstream heading;
     const replay::Table columns{heading, replay::Table::Format::Csv, sweep_columns(*sweep_)};
     table.write(heading.str());
     Gathered gathered;
-    for (std::size_t run = 0; run < sweep_->run_count() && table.trouble().empty(); ++run) {
+    for (std::size_t run = 0; run < sweep_->run_count() && table.error().empty(); ++run) {
         if (auto added = add_part(run, table, gathered); !added) {
             return added.error();
         }
@@ -292,17 +294,17 @@ Result<SweepFolder::Gathered> SweepFolder::gather() const {
     if (auto written = table.finish(); !written) {
         return written.error();
     }
-    tidy();
+    remove_temporary_files();
     return gathered;
 }
 
-/// Takes away what was left by those who were killed: once all is there, nobody needs it.
-void SweepFolder::tidy() const {
+/// Removes the temporary files of processes that were killed. After gather() no process needs them.
+void SweepFolder::remove_temporary_files() const {
     std::error_code error;
     std::vector<fs::path> left;
     for (const char* folder : {"", "/parts", "/run-files"}) {
         for (fs::directory_iterator file{path_ + folder, error}, end; !error && file != end; file.increment(error)) {
-            if (NewFile::is_unfinished(file->path().filename().string())) {
+            if (AtomicFile::is_temporary(file->path().filename().string())) {
                 left.push_back(file->path());
             }
         }

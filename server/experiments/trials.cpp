@@ -13,7 +13,7 @@ void for_each_trial(std::size_t count, std::size_t jobs, const std::function<voi
                     const std::function<bool()>& stopped) {
     EVOD_ASSERT(jobs >= 1);
     std::atomic<std::size_t> next = 0;
-    const auto take_turns = [&] {
+    const auto take_trials = [&] {
         while (!stopped()) {
             const std::size_t index = next.fetch_add(1, std::memory_order_relaxed);
             if (index >= count) {
@@ -24,7 +24,7 @@ void for_each_trial(std::size_t count, std::size_t jobs, const std::function<voi
     };
     std::vector<std::thread> threads(std::min(jobs, count));
     for (std::thread& thread : threads) {
-        thread = std::thread{take_turns};
+        thread = std::thread{take_trials};
     }
     for (std::thread& thread : threads) {
         thread.join();

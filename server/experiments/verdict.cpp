@@ -16,14 +16,14 @@ std::string p_text(const Finding& finding) {
 
 class Sentences {
   public:
-    Sentences(const std::vector<Weighed>& weighed, int decimals) : weighed_{weighed}, decimals_{decimals} {
+    Sentences(const std::vector<ControlResult>& results, int decimals) : results_{results}, decimals_{decimals} {
         tests_ = static_cast<std::size_t>(
-            std::ranges::count_if(weighed, [](const Weighed& w) { return w.finding.has_value(); }));
+            std::ranges::count_if(results, [](const ControlResult& result) { return result.finding.has_value(); }));
     }
 
     std::string text(double value) const { return signed_text(value, decimals_); }
-    const Weighed& of(ControlKind kind) const {
-        return *std::ranges::find(weighed_, kind, [](const Weighed& w) { return w.control.kind; });
+    const ControlResult& of(ControlKind kind) const {
+        return *std::ranges::find(results_, kind, [](const ControlResult& result) { return result.control.kind; });
     }
     Judgement judgement(ControlKind kind) const { return judge(*of(kind).finding, tests_); }
 
@@ -32,13 +32,13 @@ class Sentences {
     std::string of_poison(double rise) const;
 
   private:
-    /// "+121.3 above random selection (adjusted p = 7.6e-06)"
+    /// "+121.3 against random selection (adjusted p = 7.6e-06)"
     std::string difference(ControlKind kind, const char* name) const {
         const Finding& finding = *of(kind).finding;
         return text(finding.mean) + " against " + name + " (" + p_text(finding) + ")";
     }
 
-    const std::vector<Weighed>& weighed_;
+    const std::vector<ControlResult>& results_;
     int decimals_;
     std::size_t tests_ = 0;
 };
@@ -47,7 +47,7 @@ std::string Sentences::answer(double rise, const Interval& interval) const {
     const std::string question = "Did evolution do it? ";
     for (const ControlKind kind : {ControlKind::RandomSelection, ControlKind::ShuffledFitness}) {
         if (const std::string& why = of(kind).control.cannot_differ; !why.empty()) {
-            return question + "No: " + why + ", so nothing is selected for what it does.";
+            return question + "No: " + why + ", so no organism is selected for its fitness.";
         }
     }
     const Judgement judgements[] = {judgement(ControlKind::RandomSelection), judgement(ControlKind::ShuffledFitness)};
@@ -55,61 +55,62 @@ std::string Sentences::answer(double rise, const Interval& interval) const {
                                     difference(ControlKind::ShuffledFitness, "shuffled fitness");
     const auto any = [&](Judgement judgement) { return std::ranges::count(judgements, judgement) > 0; };
     if (any(Judgement::Below)) {
-        return question + "No: selection keeps the fitness below what it would be: " + differences + ".";
+        return question + "No: selection for fitness makes the fitness lower: " + differences + ".";
     }
     if (any(Judgement::CannotBeShown)) {
         return question +
-               "That cannot be told with so few replicates: no difference, however large, has a p-value below " +
-               "0.05 after the adjustment. Give more.";
+               "There are too few replicates to answer: no difference, however large, can have an adjusted p below "
+               "0.05. " +
+               "Use more replicates.";
     }
     if (any(Judgement::NotShown)) {
-        return question + "That is not shown: " + differences + "; it takes both below 0.05.";
+        return question + "That is not shown: " + differences + "; both p must be below 0.05.";
     }
-    // The pressure might only have kept it from falling.
+    // Selection may only have prevented a fall.
     const std::string how = interval.low > 0 ? "Yes: the mean fitness rose by " + text(rise).substr(1) +
-                                                   ", and selection for fitness is why: "
+                                                   ", and selection for fitness is the cause: "
                                              : "Yes, but the mean fitness is not shown to have risen (" + text(rise) +
-                                                   "): selection for fitness made the difference, ";
+                                                   "): selection for fitness only kept it above the controls, ";
     return question + how + differences + ".";
 }
 
 std::string Sentences::of_mutation(double rise) const {
-    const Weighed& weighed = of(ControlKind::MutationOff);
-    if (!weighed.finding) {
-        return "Mutation: " + weighed.control.cannot_differ +
-               "; what is selected is the variety of the first generation.";
+    const ControlResult& result = of(ControlKind::MutationOff);
+    if (!result.finding) {
+        return "Mutation: " + result.control.cannot_differ +
+               "; selection acts on the variety of the first generation only.";
     }
     const std::string without =
-        "with mutation off the rise is " + text(rise - weighed.finding->mean) + " (" + p_text(*weighed.finding) + "): ";
+        "without mutation the rise is " + text(rise - result.finding->mean) + " (" + p_text(*result.finding) + "): ";
     switch (judgement(ControlKind::MutationOff)) {
     case Judgement::Above:
-        return "Mutation: " + without + "new variety adds to what the first generation brought.";
+        return "Mutation: " + without + "new variety adds to the variety of the first generation.";
     case Judgement::Below:
-        return "Mutation: " + without + "it costs more than it brings in so many generations.";
+        return "Mutation: " + without + "it costs more than it gains in this number of generations.";
     case Judgement::NotShown:
     case Judgement::CannotBeShown:
         break;
     }
-    return "Mutation: " + without + "that new variety matters is not shown.";
+    return "Mutation: " + without + "an effect of new variety is not shown.";
 }
 
 std::string Sentences::of_poison(double rise) const {
-    const Weighed& weighed = of(ControlKind::HarmlessPoison);
-    if (!weighed.finding) {
-        return "Poison: " + weighed.control.cannot_differ + ".";
+    const ControlResult& result = of(ControlKind::HarmlessPoison);
+    if (!result.finding) {
+        return "Poison: " + result.control.cannot_differ + ".";
     }
-    const std::string without = "were it harmless, the rise would be " + text(rise - weighed.finding->mean) + " (" +
-                                p_text(*weighed.finding) + "): ";
+    const std::string without = "with harmless poison the rise is " + text(rise - result.finding->mean) + " (" +
+                                p_text(*result.finding) + "): ";
     switch (judgement(ControlKind::HarmlessPoison)) {
     case Judgement::Above:
-        return "Poison: " + without + "a part of the rise is getting on with it.";
+        return "Poison: " + without + "adaptation to poison is a part of the rise.";
     case Judgement::Below:
-        return "Poison: " + without + "it keeps the fitness from rising further.";
+        return "Poison: " + without + "poison limits the rise.";
     case Judgement::NotShown:
     case Judgement::CannotBeShown:
         break;
     }
-    return "Poison: " + without + "that the rise depends on it is not shown.";
+    return "Poison: " + without + "an effect of poison on the rise is not shown.";
 }
 
 } // namespace
@@ -121,10 +122,10 @@ std::string signed_text(double value, int decimals) {
     return shown.find_first_of("123456789") == std::string::npos ? shown.substr(1) : shown;
 }
 
-std::vector<std::string> verdict(double rise, const Interval& rise_interval, const std::vector<Weighed>& weighed,
+std::vector<std::string> verdict(double rise, const Interval& rise_interval, const std::vector<ControlResult>& results,
                                  int decimals) {
-    EVOD_ASSERT(weighed.size() == std::size(all_controls));
-    const Sentences sentences{weighed, decimals};
+    EVOD_ASSERT(results.size() == std::size(all_controls));
+    const Sentences sentences{results, decimals};
     return {sentences.answer(rise, rise_interval), sentences.of_mutation(rise), sentences.of_poison(rise)};
 }
 

@@ -1,4 +1,6 @@
-// Verdict: what the comparison of a world with its controls comes to, in sentences.
+// Verdict: the conclusions from the comparison of a world with its controls, as sentences.
+//
+// Threads  none.
 #pragma once
 
 #include "server/experiments/comparison.h"
@@ -10,24 +12,24 @@
 
 namespace evod::experiments {
 
-/// A control and what the world has over it; no finding: it cannot differ, and was not run.
-struct Weighed {
+/// A control, and how the world differs from it; without a finding: the control cannot differ and was not run.
+struct ControlResult {
     Control control;
     std::optional<Finding> finding;
 };
 
-/// With so many decimals, and its sign; a zero has none.
+/// A number with its sign; zero has none.
 std::string signed_text(double value, int decimals);
 
-/// Did evolution do it? A line each for the answer and for what the other controls tell.
+/// Did evolution do it? One line for the answer, one for mutation, one for poison.
 ///
-/// rise     of the world, mean over its replicates, and its 95 % interval.
-/// weighed  the four controls, in the order of all_controls.
+/// rise     of the world: mean over its replicates, and its 95 % interval.
+/// results  of the four controls, in the order of all_controls.
 ///
-/// The answer rests on two of them. Random selection shows what comes without any pressure; but it also keeps more of
-/// the variety, for nobody has many children. Shuffled fitness has all of the pressure and none of its aim. Evolution
-/// by selection did it if the world rises above both.
-std::vector<std::string> verdict(double rise, const Interval& rise_interval, const std::vector<Weighed>& weighed,
+/// The answer needs two controls. Random selection has no selection pressure, but also keeps more genetic variety,
+/// because no organism has many children. Shuffled fitness has the same pressure without a relation to fitness. The
+/// answer is yes if the world rises more than both.
+std::vector<std::string> verdict(double rise, const Interval& rise_interval, const std::vector<ControlResult>& results,
                                  int decimals);
 
 } // namespace evod::experiments

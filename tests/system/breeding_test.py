@@ -136,7 +136,7 @@ class Breeding(export_test.Runs):
         server.end()
         for name in "wf":
             done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
-            self.assertIn("all agrees", done.stdout, done.stderr)
+            self.assertIn("everything agrees", done.stdout, done.stderr)
 
     def test_every_selection_method_reports_its_picks(self):
         _, client = self.serve()

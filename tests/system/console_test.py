@@ -243,7 +243,7 @@ class Population(Folder):
 class Check(Folder):
     def test_a_good_file_is_good(self):
         done = evod("check", self.file('{"food_count": 3, "seed": 18446744073709551615, "description": "Few meals."}'))
-        self.assertIn("good\nFew meals.", done.stdout)
+        self.assertIn("valid\nFew meals.", done.stdout)
         self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
 
     def test_what_is_wrong_is_named_with_its_line(self):

@@ -132,7 +132,7 @@ class Verify(Case):
         for run, words in (changed, "4 generations, 421 ticks, 7 "), (plain, "4 generations, 480 ticks, 8 "):
             for threads in 1, 2, 7:
                 said = evod("verify", run, "--threads", threads)
-                self.assertIn("all agrees: " + words, said)
+                self.assertIn("everything agrees: " + words, said)
                 self.assertRegex(said, r" state hashes, 0 checkpoints compared in \d+\.\d\d s, \d+(\.\d)? × real time\n$")
 
     def test_a_run_agrees_while_it_is_written_and_after_a_kill(self):
@@ -141,11 +141,11 @@ class Verify(Case):
             server.evoctl("run")
             server.evoctl("set", "mutation_chance=0.3")
             for _ in range(3):
-                self.assertIn("all agrees", evod("verify", server.run))
+                self.assertIn("everything agrees", evod("verify", server.run))
                 server.evoctl("set", "food_health=20")
         finally:
             server.end(signal.SIGKILL, -signal.SIGKILL)
-        self.assertIn("all agrees", evod("verify", server.run))
+        self.assertIn("everything agrees", evod("verify", server.run))
 
     def test_a_reset_run_and_the_next_one_agree(self):
         with Server(self.folder, 5) as server:
@@ -195,8 +195,8 @@ class Verify(Case):
                 path = self.copy(plain, f"DELETE FROM {table} WHERE {where}",
                                  f"INSERT INTO {table} SELECT * FROM other.{table} WHERE {where}")
                 said = evod("verify", path, status=1)
-                self.assertIn(f"last moment that agrees: {agrees}\n", said)
-                self.assertIn(f"first that does not: {moment}: {part}", said)
+                self.assertIn(f"last tick that agrees: {agrees}\n", said)
+                self.assertIn(f"first that differs: {moment}: {part}", said)
                 self.assertIn(", simulated again ", said)
 
     def test_what_cannot_be_verified_is_refused(self):
@@ -368,7 +368,7 @@ class Export(Case):
             server.evoctl("reset")
             server.evoctl("until", "130", "--wait")
         for run in pathlib.Path(self.folder).glob("*.evod"):
-            self.assertIn("all agrees", evod("verify", run))
+            self.assertIn("everything agrees", evod("verify", run))
             self.assertEqual(evod("export", run, "--what", "population", "--generation", 1), pathlib.Path(path).read_text())
             again = self.folder + "/again.csv"
             evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv", again)
@@ -402,7 +402,7 @@ class Export(Case):
         for what in "generations", "organisms", "lineage", "events":
             self.assertEqual((folder / f"{what}.csv").read_text(),
                              evod("export", folder / "small.evod", "--what", what))
-        self.assertIn("all agrees", evod("verify", folder / "small.evod"))
+        self.assertIn("everything agrees", evod("verify", folder / "small.evod"))
         return folder
 
     def repeat(self, folder):
@@ -440,13 +440,13 @@ class Export(Case):
             with sqlite3.connect(f"file:{data}/f.evod?mode=ro", uri=True) as run:
                 (first,) = run.execute("SELECT value FROM run WHERE key = 'first_tick'").fetchone()
             self.assertEqual(first, str(last))
-            self.assertIn("all agrees", evod("verify", f"{data}/f.evod"))
+            self.assertIn("everything agrees", evod("verify", f"{data}/f.evod"))
 
     def test_a_fork_is_created_beside_its_file(self):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(plain, folder)
             evod("fork", f"{folder}/{os.path.basename(plain)}", "--name", "beside")
-            self.assertIn("all agrees", evod("verify", f"{folder}/beside.evod"))
+            self.assertIn("everything agrees", evod("verify", f"{folder}/beside.evod"))
 
     def test_a_bundle_is_of_one_moment_while_a_server_writes(self):
         plate = self.folder + "/plate.csv"

@@ -49,19 +49,19 @@ class Folder(unittest.TestCase):
         return path
 
     def swept(self, sweep, *options):
-        """runs.csv of a sweep that nobody disturbed."""
+        """runs.csv of a sweep that was not interrupted."""
         out = self.folder / f"undisturbed-{len(list(self.folder.iterdir()))}"
         evod("sweep", sweep, "--out", out, *options)
         return (out / "runs.csv").read_bytes()
 
 
 class Sweep(Folder):
-    def test_the_table_is_tidy_and_says_where_it_comes_from(self):
+    def test_the_table_is_tidy_and_states_its_origin(self):
         sweep = self.file(SMALL)
         done = evod("sweep", sweep, "--jobs", 2, cwd=self.folder)
         self.assertIn("4 cells of 3 replicates, 12 runs, seed 7; into small\n", done.stdout)
-        self.assertRegex(done.stdout, r"12 runs in [\d.]+ s, [\d.e+]+ a second; 2 at a time, each [\d.]+ % busy")
-        self.assertIn("small/runs.csv: 48 rows; runs by what ended them: generation_limit 12", done.stdout)
+        self.assertRegex(done.stdout, r"12 runs in [\d.]+ s, [\d.e+]+ per second; 2 at a time, each [\d.]+ % busy")
+        self.assertIn("small/runs.csv: 48 rows; runs by outcome: generation_limit 12", done.stdout)
         comment, rows = rows_of(self.folder / "small/runs.csv")
         self.assertEqual((self.folder / "small/sweep.txt").read_text().splitlines(), comment)
         for words in ("# seed: 7", "# runs: 12: 4 cells of 3 replicates", "# model: ",
@@ -92,7 +92,7 @@ class Sweep(Folder):
         for row, other in zip(mine, expected, strict=True):
             self.assertEqual({name: row[name] for name in other}, other)
 
-    def test_any_number_of_jobs_and_an_array_give_the_same_bytes(self):
+    def test_jobs_and_arrays_do_not_change_the_table(self):
         # Runs of very different lengths, islands, and runs that end by themselves.
         sweep = self.file({"experiment": {"generation_s": 2, "population_size": 10}, "replicates": 2, "list": [
             {"generation_limit": 6}, {"population_size": 60, "generation_limit": 3},
@@ -105,21 +105,21 @@ class Sweep(Folder):
         out = self.folder / "array"
         for cell in (4, 0, 3, 1):  # in any order
             done = evod("sweep", sweep, "--out", out, "--array-index", cell, "--jobs", 2)
-            self.assertIn(f"cell {cell} alone", done.stdout)
+            self.assertIn(f"only cell {cell}", done.stdout)
             self.assertFalse((out / "runs.csv").exists())
         done = evod("sweep", sweep, "--out", out, "--gather", status=1)
-        self.assertIn("2 of 10 runs are not there yet: cell-2-replicate-0, cell-2-replicate-1", done.stderr)
+        self.assertIn("2 of 10 runs are missing: cell-2-replicate-0, cell-2-replicate-1", done.stderr)
         self.assertFalse((out / "runs.csv").exists())
         evod("sweep", sweep, "--out", out, "--array-index", 2)
         done = evod("sweep", sweep, "--out", out, "--gather")
-        self.assertIn("runs by what ended them: extinction 2, stagnation_limit 2, generation_limit 6", done.stdout)
+        self.assertIn("runs by outcome: extinction 2, stagnation_limit 2, generation_limit 6", done.stdout)
         self.assertEqual(one, (out / "runs.csv").read_bytes())
         again = evod("sweep", sweep, "--out", out)  # all is there: nothing is run
-        self.assertIn("10 there already", again.stdout)
+        self.assertIn("10 finished before", again.stdout)
         self.assertNotIn("busy", again.stdout)
         self.assertEqual(one, (out / "runs.csv").read_bytes())
 
-    def test_tasks_of_an_array_may_begin_at_once(self):
+    def test_tasks_of_an_array_may_run_at_once(self):
         sweep, out = self.file(SMALL), self.folder / "array"
         tasks = [subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--array-index", str(cell % 4)],
                                   stdout=subprocess.DEVNULL) for cell in range(8)]  # each of them twice
@@ -141,7 +141,7 @@ class Sweep(Folder):
         self.assertEqual([line.split("\t")[1:] for line in printed[1:]],
                          [[cell[name] for name in printed[0].split("\t")] for cell in cells])
 
-    def test_the_example_is_what_would_be_run(self):
+    def test_a_dry_run_lists_the_cells_of_the_example(self):
         done = evod("sweep", ROOT / "experiments/sweeps/mutation.json", "--dry-run", cwd=self.folder)
         self.assertIn("16 cells of 4 replicates, 64 runs, seed 1", done.stdout)
         self.assertIn("\ncell\tselection\tmutation_chance\tmutation_step\n0\troulette\t0.01\t5\n", done.stdout)
@@ -152,7 +152,7 @@ class Interrupted(Folder):
     LONG = {**SMALL, "experiment": {"population_size": 40, "generation_s": 20}, "replicates": 10, "generations": 30}
 
     def killed_once(self, parts, out, sweep, how, *options):
-        """Ends a sweep once so many of its runs are there, and others are under way; returns how many there are then."""
+        """Ends a sweep after `parts` runs, while others run; returns the number of finished runs."""
         process = subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--jobs", "2", *options], stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True)
 
@@ -168,30 +168,30 @@ class Interrupted(Folder):
         self.assertLess(len(there), 40)
         return len(there), said
 
-    def test_killed_and_gone_on_with_it_gives_the_same_bytes(self):
+    def test_a_killed_and_resumed_sweep_gives_the_same_bytes(self):
         sweep, out = self.file(self.LONG), self.folder / "killed"
         there = 0
         for _ in range(3):
             there, _ = self.killed_once(there + 5, out, sweep, signal.SIGKILL)
         unfinished = list((out / "parts").glob("*unfinished*"))
         done = evod("sweep", sweep, "--out", out, "--jobs", 1)
-        self.assertIn(f", {there} there already", done.stdout)
+        self.assertIn(f", {there} finished before", done.stdout)
         self.assertIn(f"\n{40 - there} run", done.stdout)
         self.assertTrue(unfinished)  # a kill does leave them
         self.assertEqual(list((out / "parts").glob("*unfinished*")), [])
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
 
-    def test_a_signal_stops_it_and_the_same_command_goes_on(self):
+    def test_the_same_command_resumes_after_a_signal(self):
         sweep, out = self.file(self.LONG), self.folder / "stopped"
         there = 0
         for how in (signal.SIGINT, signal.SIGTERM):
             there, said = self.killed_once(there + 3, out, sweep, how)
-            self.assertIn(f"stopped: {40 - there} runs to go; the same command goes on with them", said)
+            self.assertIn(f"interrupted: {40 - there} runs left; the same command resumes the sweep", said)
             self.assertEqual(list((out / "parts").glob("*unfinished*")), [])
         evod("sweep", sweep, "--out", out)
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
 
-    def test_a_torn_part_is_made_again_and_a_changed_one_is_told(self):
+    def test_a_torn_part_is_made_again_a_changed_one_is_named(self):
         sweep = self.file(SMALL)
         whole, out = self.swept(sweep), self.folder / "torn"
         evod("sweep", sweep, "--out", out)
@@ -199,14 +199,14 @@ class Interrupted(Folder):
         text = part.read_text()
         for torn in ("", text[:-1], text[:100]):
             part.write_text(torn)
-            self.assertIn("11 there already", evod("sweep", sweep, "--out", out).stdout)
+            self.assertIn("11 finished before", evod("sweep", sweep, "--out", out).stdout)
             self.assertEqual(part.read_text(), text)
             self.assertEqual((out / "runs.csv").read_bytes(), whole)
         part.write_text(text.split("\n", 1)[1])  # a row less
         done = evod("sweep", sweep, "--out", out, status=1)
-        self.assertIn("cell-1-replicate-2.csv is not as it was written; delete it", done.stderr)
+        self.assertIn("cell-1-replicate-2.csv was changed; delete it", done.stderr)
 
-    def test_run_files_are_whole_and_agree_also_after_a_kill(self):
+    def test_run_files_agree_also_after_a_kill(self):
         sweep, out = self.file(self.LONG), self.folder / "kept"
         self.killed_once(4, out, sweep, signal.SIGKILL, "--run-files")
         evod("sweep", sweep, "--out", out, "--run-files")
@@ -216,16 +216,16 @@ class Interrupted(Folder):
         _, rows = rows_of(out / "runs.csv")
         names = set()
         for file in files[::7]:
-            self.assertIn("all agrees: 30 generations", evod("verify", file).stdout)
+            self.assertIn("everything agrees: 30 generations", evod("verify", file).stdout)
             _, cell, _, replicate = file.stem.split("-")
             mine = [row for row in rows if (row["cell"], row["replicate"]) == (cell, replicate)]
             exported = io.StringIO(evod("export", file, "--what", "generations").stdout)
             for row, other in zip(mine, csv.DictReader(exported), strict=True):
                 self.assertEqual({name: row[name] for name in other}, other)
             with sqlite3.connect(f"file:{file}?immutable=1", uri=True) as database:
-                told = dict(database.execute("SELECT key, value FROM run"))
-            self.assertEqual((told["name"], told["seed"]), (file.stem, mine[0]["seed"]))
-            names.add(told["run_id"])
+                values = dict(database.execute("SELECT key, value FROM run"))
+            self.assertEqual((values["name"], values["seed"]), (file.stem, mine[0]["seed"]))
+            names.add(values["run_id"])
         self.assertEqual(len(names), len(files[::7]))
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
 
@@ -237,11 +237,11 @@ class Interrupted(Folder):
         evod("sweep", sweep, "--out", out, "--run-files")
         (out / "run-files/cell-2-replicate-0.evod").unlink()
         done = evod("sweep", sweep, "--out", out, "--run-files")
-        self.assertIn("11 there already", done.stdout)
-        self.assertIn("all agrees", evod("verify", out / "run-files/cell-2-replicate-0.evod").stdout)
+        self.assertIn("11 finished before", done.stdout)
+        self.assertIn("everything agrees", evod("verify", out / "run-files/cell-2-replicate-0.evod").stdout)
         self.assertEqual((out / "runs.csv").read_bytes(), table)
 
-    def test_what_cannot_be_written_stops_it_with_the_reason(self):
+    def test_a_write_error_stops_it_with_the_reason(self):
         sweep, out = self.file(SMALL), self.folder / "shut"
         evod("sweep", sweep, "--out", out, "--array-index", 0)
         shutil.rmtree(out / "parts")
@@ -256,7 +256,7 @@ class Interrupted(Folder):
 
 
 class Refused(Folder):
-    def test_what_is_wrong_with_a_file_is_named_before_anything_runs(self):
+    def test_an_invalid_file_is_refused_before_anything_runs(self):
         for text, words in {
             '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
                 "small.json: the sweep has fields that cannot be used\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
@@ -304,7 +304,7 @@ class Refused(Folder):
         said = evod("sweep", sweep, "--array-index", 4, status=1, cwd=self.folder).stderr
         self.assertIn("--array-index: got 4, allowed 0 to 3", said)
         said = evod("sweep", sweep, "--gather", status=1, cwd=self.folder).stderr
-        self.assertIn("small: there is no such folder, so nothing to gather", said)
+        self.assertIn("small: no such folder, so there are no results to gather", said)
         self.assertFalse((self.folder / "small").exists())
         self.assertTrue(re.search(r"--array-index.*--gather.*docs/CLUSTER\.md", evod("sweep", "--help").stdout, re.S))
 

@@ -1,4 +1,4 @@
-// Exports and bundles of files that another model made.
+// Exports and bundles of files of another version of the model.
 #include "server/commands/export.h"
 #include "tests/unit/recording/recorded_run.h"
 #include "tests/unit/replay/other_model.h"
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Bundle, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
+TEST(Bundle, OfAnotherModelReportsWhatIsLeftOut) {
     const recording::TemporaryFolder folder;
     const std::string run = folder.path() + "/w.evod", bundle = folder.path() + "/bundle";
     replay::record_other_model(run, recording::small_world()).reset();
@@ -27,14 +27,14 @@ TEST(Bundle, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
         std::ifstream file{bundle + "/" + name};
         return std::string{std::istreambuf_iterator<char>{file}, {}};
     };
-    EXPECT_THAT(text_of("REPEAT.md"), HasSubstr("Of 4 generations nothing is in organisms.csv and lineage.csv"));
+    EXPECT_THAT(text_of("REPEAT.md"), HasSubstr("organisms.csv and lineage.csv lack 4 generations"));
     for (const char* table : {"organisms.csv", "lineage.csv"}) {
         EXPECT_THAT(text_of(table), HasSubstr("\n7,1,11,")) << table;
         EXPECT_THAT(text_of(table), Not(HasSubstr("\n6,1,11,"))) << table;
     }
 }
 
-TEST(Lineage, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
+TEST(Lineage, OfAnotherModelReportsWhatIsLeftOut) {
     const recording::TemporaryFolder folder;
     const std::string run = folder.path() + "/w.evod";
     replay::record_other_model(run, recording::small_world()).reset();

@@ -5,12 +5,12 @@
 namespace evod::commands {
 namespace {
 
-TEST(TimeLeft, GoesOnAsItWent) {
+TEST(TimeLeft, AssumesAConstantRate) {
     EXPECT_EQ(time_left(0.25, 30), "90 s left");
     EXPECT_EQ(time_left(1, 1000), "0 s left");
 }
 
-TEST(TimeLeft, IsToldAsExactlyAsAnybodyWants) {
+TEST(TimeLeft, HasSecondsMinutesOrHours) {
     EXPECT_EQ(time_left(0.5, 119), "119 s left");
     EXPECT_EQ(time_left(0.5, 120), "2 min left");
     EXPECT_EQ(time_left(0.5, 119 * 60), "119 min left");

@@ -70,7 +70,7 @@ TEST(Comparison, RunsEachArmWithTheSeedsOfTheReplicates) {
                 EXPECT_EQ(course[i].alive_count, islands[0].alive_count + islands[1].alive_count);
                 EXPECT_EQ(course[i].organism_count, 24u);
             }
-            // Until something is bred, and but for the poison, all arms are one.
+            // The first generation is the same in all arms, except with harmless poison.
             if (arm != 3) {
                 EXPECT_EQ(course[0], (*courses)[0][replicate][0]);
             }
@@ -78,7 +78,7 @@ TEST(Comparison, RunsEachArmWithTheSeedsOfTheReplicates) {
     }
 }
 
-TEST(Comparison, IsGivenUpWhenItIsStopped) {
+TEST(Comparison, ReturnsNothingAfterItIsStopped) {
     std::atomic<int> shares = 0;
     double last = 0;
     RunsWanted wanted{.seed = base::Seed{294}, .replicates = 3, .jobs = 2};
@@ -103,7 +103,7 @@ Course course_of(double first, double last) {
             {.mean = last, .best = 0, .organism_count = 1, .alive_count = 1}};
 }
 
-TEST(Findings, AreOfTheRisesPairedBySeed) {
+TEST(Findings, PairTheRisesBySeed) {
     // Rises of the world 10, 20, 30, 40; of the first other 9, 18, 27, 36 (less by 1, 2, 3, 4), of the second 20 each.
     std::vector<std::vector<Course>> courses(3);
     for (int i = 1; i <= 4; ++i) {

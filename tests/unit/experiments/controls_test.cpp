@@ -26,23 +26,23 @@ TEST(Controls, OfTheDefaultWorldChangeOneParameterEach) {
     EXPECT_EQ(changes({}, ControlKind::ShuffledFitness), "shuffle_fitness=true");
 }
 
-TEST(Controls, RandomSelectionLeavesNothingToTheFitness) {
+TEST(Controls, RandomSelectionIgnoresFitness) {
     Parameters world;
     world.elite_count = 3;
     world.migration = evolution::Topology::Ring;
     EXPECT_EQ(changes(world, ControlKind::RandomSelection), "elite_count=0 selection=random");
-    world.island_count = 2; // now somebody migrates
+    world.island_count = 2; // with one island there is no migration
     EXPECT_EQ(changes(world, ControlKind::RandomSelection),
               "elite_count=0 selection=random emigrants=random immigrants_replace=random");
     world = {};
-    world.population_model = evolution::PopulationModel::SteadyState; // the best would stay
+    world.population_model = evolution::PopulationModel::SteadyState; // keeps the fittest
     world.replaced_count = 20;
     EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=hybrid survivors=0.6 selection=random");
     world.replaced_count = 50;
     EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=generational selection=random");
 }
 
-TEST(Controls, HaveTheWorldsScheduleButForWhatMakesThem) {
+TEST(Controls, KeepTheScheduleOfOtherParameters) {
     parameters::Schedule schedule;
     schedule.add(30, {"mutation_chance", 0.05});
     schedule.add(40, {"food_count", 5u});
@@ -50,15 +50,15 @@ TEST(Controls, HaveTheWorldsScheduleButForWhatMakesThem) {
     EXPECT_EQ(schedule_of(schedule, ControlKind::ShuffledFitness), schedule);
     EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 30), 0u);
     EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 40), 1u);
-    EXPECT_TRUE(matters(schedule, ControlKind::MutationOff)) << "it may begin without mutation";
-    EXPECT_FALSE(matters(schedule, ControlKind::HarmlessPoison));
+    EXPECT_TRUE(schedule_affects(schedule, ControlKind::MutationOff)) << "it may begin without mutation";
+    EXPECT_FALSE(schedule_affects(schedule, ControlKind::HarmlessPoison));
     schedule.add(5, {"generation_limit", 7u});
     EXPECT_FALSE(of_fixed_length(schedule).holds("generation_limit"));
     EXPECT_TRUE(of_fixed_length(schedule).holds("food_count"));
 }
 
-TEST(Controls, EveryParameterThatMakesOneIsKnown) {
-    // Whatever a control changes has to be taken out of schedules, too.
+TEST(Controls, RemoveTheirParametersFromTheSchedule) {
+    // A control must remove what it changes from the schedule.
     Parameters world;
     world.population_model = evolution::PopulationModel::SteadyState;
     world.replaced_count = 20;
@@ -75,14 +75,14 @@ TEST(Controls, EveryParameterThatMakesOneIsKnown) {
             }
             parameters::Schedule schedule;
             schedule.add(2, {std::string{description.name}, description.get(world)});
-            EXPECT_TRUE(matters(schedule, kind)) << control.name << " changes " << description.name;
+            EXPECT_TRUE(schedule_affects(schedule, kind)) << control.name << " changes " << description.name;
             EXPECT_FALSE(schedule_of(schedule, kind).holds(description.name));
         }
     }
 }
 
-TEST(Controls, RandomSelectionBreedsTheSameWhateverTheFitness) {
-    // For every model: the fitness shuffled or not, the same parents have the same children.
+TEST(Controls, RandomSelectionBreedsTheSameForAnyFitness) {
+    // In every population model, shuffling the fitness does not change the children.
     base::InlineExecutor executor;
     for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
                              evolution::PopulationModel::SteadyState}) {
@@ -111,7 +111,7 @@ TEST(Controls, RandomSelectionBreedsTheSameWhateverTheFitness) {
     }
 }
 
-TEST(Controls, MutationOffTurnsOffEveryWayToANewValueOrPlace) {
+TEST(Controls, MutationOffTurnsOffAllMutationOperators) {
     Parameters world;
     world.reset_chance = 0.1;
     world.bit_flip_chance = 0.1;
@@ -120,36 +120,37 @@ TEST(Controls, MutationOffTurnsOffEveryWayToANewValueOrPlace) {
               "rearranging=none mutation_chance=0 reset_chance=0 bit_flip_chance=0");
 }
 
-TEST(Controls, SayWhereTheWorldIsTheControlAlready) {
+TEST(Controls, SayWhyTheyCannotDiffer) {
     const auto why = [](const Parameters& world, ControlKind kind) { return control_of(world, kind).cannot_differ; };
     Parameters world;
     world.selection = evolution::SelectionMethod::Random;
-    EXPECT_EQ(why(world, ControlKind::RandomSelection), "whoever breeds is drawn by chance already");
-    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "whoever breeds is drawn by chance already");
+    EXPECT_EQ(why(world, ControlKind::RandomSelection), "parents are already drawn at random");
+    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "parents are already drawn at random");
     world.elite_count = 1; // chosen by fitness
     EXPECT_EQ(why(world, ControlKind::RandomSelection), "");
     EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "");
     world.shuffle_fitness = true;
-    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "shuffle_fitness is true already");
+    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "shuffle_fitness is already true");
 
     world = {};
     world.mutation_step = 0;
     world.rearrange_chance = 0;
     world.rearranging = evolution::OrderMutationMethod::Swap;
-    EXPECT_EQ(why(world, ControlKind::MutationOff), "nothing mutates already");
+    EXPECT_EQ(why(world, ControlKind::MutationOff), "there is no mutation");
     world.bit_flip_chance = 0.01;
     EXPECT_EQ(why(world, ControlKind::MutationOff), "");
 
     world = {};
     world.poison_harm = 0;
-    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "poison_harm is 0 already");
+    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "poison_harm is already 0");
     world.poison_count = 0;
     EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "there is no poison");
     world.fitness = parameters::FitnessFunction::Rastrigin;
-    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "the fitness is a function of the chromosome: nobody eats");
+    EXPECT_EQ(why(world, ControlKind::HarmlessPoison),
+              "the fitness is a function of the chromosome, and organisms do not eat");
 }
 
-TEST(Controls, AWorldOfFixedLengthHasNoOtherEnd) {
+TEST(Controls, AWorldOfFixedLengthHasNoOtherCriterion) {
     Parameters world;
     world.stop_at_extinction = true;
     world.stop_at_target_fitness = true;

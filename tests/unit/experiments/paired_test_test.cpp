@@ -20,7 +20,7 @@ constexpr std::array gained{1.2, 2.4, 1.3, 1.3, 0.0, 1.0, 1.8, 0.8, 4.6, 1.4};
 // least as far from 0 as theirs, 314: p = 0.05267 (there, 21).
 constexpr std::array maize{49.0, -67.0, 8.0, 16.0, 6.0, 23.0, 28.0, 41.0, 14.0, 29.0, 56.0, 24.0, 75.0, 60.0, -48.0};
 
-TEST(PairedTest, StudentsIntervalIsThatOfHisOwnData) {
+TEST(PairedTest, StudentsIntervalMatchesHisData) {
     EXPECT_NEAR(mean_of(gained), 1.58, 1e-12);
     EXPECT_NEAR(deviation_of(gained), 1.2299, 1e-3);
     const Interval interval = student_interval(gained);
@@ -30,7 +30,7 @@ TEST(PairedTest, StudentsIntervalIsThatOfHisOwnData) {
     EXPECT_FALSE(interval.contains(0));
 }
 
-TEST(PairedTest, StudentsIntervalOfTwoIsByTheQuantileOfOneDegreeOfFreedom) {
+TEST(PairedTest, StudentsIntervalOfTwoHasOneDegreeOfFreedom) {
     // t(0.975, 1) = tan(0.475 π) = 12.7062; the standard error of 1 and 3 is 1.
     const Interval interval = student_interval(std::array{1.0, 3.0});
     EXPECT_NEAR(interval.low, 2 - 12.7062, 1e-4);
@@ -50,7 +50,7 @@ TEST(PairedTest, HedgesCorrectsCohen) {
     EXPECT_FALSE(hedges_g(std::array{2.5, 2.5, 2.5}));
 }
 
-TEST(PairedTest, SignFlipsOfAFewAreCountedByHand) {
+TEST(PairedTest, SignFlipsOfFewDifferencesMatchAHandCount) {
     // All of one sign: only they and their mirror image are as far out, 2 of 2^n.
     EXPECT_EQ(sign_flip_p(std::array{3.0}, {}), 1);
     EXPECT_EQ(sign_flip_p(std::array{3.0, 1.0}, {}), 0.5);
@@ -66,11 +66,11 @@ TEST(PairedTest, SignFlipsOfAFewAreCountedByHand) {
     EXPECT_EQ(sign_flip_p(std::array{0.1, 0.2, 0.3, -0.3}, {}), sign_flip_p(std::array{1.0, 2.0, 3.0, -3.0}, {}));
 }
 
-TEST(PairedTest, SignFlipsOfDarwinsMaizeAreFishers) {
+TEST(PairedTest, SignFlipsOfDarwinsMaizeMatchFisher) {
     EXPECT_EQ(sign_flip_p(maize, {}), 1726.0 / 32768);
 }
 
-TEST(PairedTest, OfManyTheSignFlipsAreDrawnAndComeNearTheTruth) {
+TEST(PairedTest, DrawnSignFlipsApproximateTheExactP) {
     // Twenty-one differences with the exact p-value of the first twenty and one of 0, which changes nothing. The share
     // found among 2^20 has a standard error of sqrt(p (1 − p))/1024 < 0.0005; six of them is met but in 2e-9 of seeds.
     std::vector<double> twenty;
@@ -90,7 +90,7 @@ TEST(PairedTest, OfManyTheSignFlipsAreDrawnAndComeNearTheTruth) {
     EXPECT_EQ(sign_flip_p(std::vector<double>(70, 1.0), base::Seed{283}), least_sign_flip_p(70));
 }
 
-TEST(PairedTest, TheSmallestPIsThatOfDifferencesOfOneSign) {
+TEST(PairedTest, TheSmallestPIsThatOfEqualSigns) {
     for (const std::size_t count : {1, 2, 3, 8, 12, 20}) {
         std::vector<double> differences;
         for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +110,7 @@ TEST(PairedTest, HolmAdjustsStepByStep) {
     EXPECT_TRUE(holm({}).empty());
 }
 
-TEST(PairedTest, KeepsItsPromiseWhereNothingDiffers) {
+TEST(PairedTest, RejectsAtItsLevelWhereNothingDiffers) {
     // Law: of 2000 tests of eight symmetric differences, p <= 1/16 with chance 1/16 exactly; a normal 6 standard
     // deviations away has chance 2e-9.
     int alarms = 0;

@@ -1,6 +1,6 @@
 #include "server/experiments/sweep_folder.h"
 
-#include "server/experiments/new_file.h"
+#include "server/experiments/atomic_file.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -33,16 +33,16 @@ std::string text_of(const std::string& path) {
     return {std::istreambuf_iterator<char>{file}, {}};
 }
 
-TEST(NewFile, IsThereWholeOrNotAtAll) {
+TEST(AtomicFile, IsCompleteOrAbsent) {
     const recording::TemporaryFolder folder;
     const std::string path = folder.path() + "/file";
     {
-        NewFile file{path};
+        AtomicFile file{path};
         file.write(std::string(1 << 20, 'x'));
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
     write(path, "before");
-    NewFile file{path};
+    AtomicFile file{path};
     file.write("new");
     EXPECT_EQ(text_of(path), "before");
     ASSERT_TRUE(file.finish());
@@ -50,18 +50,18 @@ TEST(NewFile, IsThereWholeOrNotAtAll) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator{folder.path()}, {}), 1);
 }
 
-TEST(NewFile, SaysWhereItCannotBe) {
-    NewFile file{"/nowhere/file"};
-    EXPECT_FALSE(file.trouble().empty());
+TEST(AtomicFile, ReportsWhyItCannotBeWritten) {
+    AtomicFile file{"/nowhere/file"};
+    EXPECT_FALSE(file.error().empty());
     file.write("x");
     const auto finished = file.finish();
     ASSERT_FALSE(finished);
     EXPECT_EQ(finished.error().message, "/nowhere/file cannot be written: No such file or directory");
-    NewFile full{"/dev/full/file"};
+    AtomicFile full{"/dev/full/file"};
     EXPECT_FALSE(full.finish());
 }
 
-TEST(SweepFolder, OfAnotherSweepIsRefusedWithWhatDiffers) {
+TEST(SweepFolder, OfAnotherSweepIsRefusedWithTheDifferences) {
     const recording::TemporaryFolder folder;
     const Sweep sweep = two_cells();
     ASSERT_TRUE(SweepFolder::open(folder.path() + "/a/b", sweep));
@@ -96,7 +96,7 @@ TEST(SweepFolder, OfAnotherSweepIsRefusedWithWhatDiffers) {
     EXPECT_THAT(refused(sweep), HasSubstr("sweep.txt"));
 }
 
-TEST(SweepFolder, WithResultsOfNobodyKnowsWhomIsRefused) {
+TEST(SweepFolder, WithResultsOfAnUnknownSweepIsRefused) {
     const recording::TemporaryFolder folder;
     write(folder.path() + "/runs.csv", "mine");
     const Sweep sweep = two_cells();
@@ -107,7 +107,7 @@ TEST(SweepFolder, WithResultsOfNobodyKnowsWhomIsRefused) {
     EXPECT_FALSE(SweepFolder::open(folder.path() + "/runs.csv", sweep)); // a file
 }
 
-TEST(SweepFolder, ARunIsOverWhenItsPartIsWhole) {
+TEST(SweepFolder, ARunIsFinishedWhenItsPartIsComplete) {
     const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
@@ -129,12 +129,12 @@ TEST(SweepFolder, ARunIsOverWhenItsPartIsWhole) {
         EXPECT_EQ(folder->end_of(3, Wanted::Rows)->rows, 1u);
     }
     EXPECT_FALSE(folder->end_of(3, Wanted::RowsAndRunFile));
-    ASSERT_TRUE(folder->make_place_for_run_files());
+    ASSERT_TRUE(folder->make_run_file_folder());
     write(folder->run_file_of(3), "");
     EXPECT_TRUE(folder->end_of(3, Wanted::RowsAndRunFile));
 }
 
-TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
+TEST(SweepFolder, GathersPartsInOrderAfterTheProvenance) {
     const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
@@ -143,7 +143,7 @@ TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
         write(folder->part_of(run), std::string(run == 2 ? 0 : 1 << 17, 'x') + std::to_string(run) + "\n" +
                                         to_text(RunEnd{run == 2 ? Outcome::Extinction : Outcome::GenerationLimit, 1}));
     }
-    const std::string stray = NewFile::unfinished_name(folder->part_of(1));
+    const std::string stray = AtomicFile::temporary_name(folder->part_of(1));
     write(stray, "of somebody who was killed");
     const auto gathered = folder->gather();
     ASSERT_TRUE(gathered) << to_text(gathered.error());
@@ -163,7 +163,7 @@ TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
     EXPECT_EQ(text_of(folder->table()), table);
 }
 
-TEST(SweepFolder, APartThatWasChangedIsNamed) {
+TEST(SweepFolder, NamesAPartThatWasChanged) {
     const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
@@ -177,7 +177,7 @@ TEST(SweepFolder, APartThatWasChangedIsNamed) {
     EXPECT_FALSE(std::filesystem::exists(folder->table()));
 }
 
-TEST(SweepFolder, LineEndsOfOtherSystemsDoNotEndTheComment) {
+TEST(SweepFolder, LineEndsOfOtherSystemsStayInTheComment) {
     const recording::TemporaryFolder place;
     const Sweep sweep = two_cells(",\r\n\"description\":\r\"x\"\r\n");
     ASSERT_TRUE(SweepFolder::open(place.path(), sweep));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto never = [] { return false; };
 
-TEST(Trials, EachIsDoneOnceAndByNoMoreThanSoManyAtATime) {
+TEST(Trials, EachIsDoneOnceByAtMostSoManyThreads) {
     for (const std::size_t jobs : {1u, 2u, 3u, 8u}) {
         std::vector<std::atomic<int>> done(100);
         std::atomic<int> at_a_time = 0, most = 0;
@@ -35,9 +35,9 @@ TEST(Trials, EachIsDoneOnceAndByNoMoreThanSoManyAtATime) {
     }
 }
 
-TEST(Trials, SoManyReallyRunAtATime) {
+TEST(Trials, AsManyRunAtATimeAsAskedFor) {
     constexpr std::size_t jobs = 3;
-    std::barrier together{jobs}; // with fewer threads nobody would come past it
+    std::barrier together{jobs}; // fewer threads than `jobs` would wait for ever
     for_each_trial(
         2 * jobs, jobs, [&](std::size_t) { together.arrive_and_wait(); }, never);
 }
@@ -56,7 +56,7 @@ TEST(Trials, OneJobTakesThemInOrder) {
     EXPECT_EQ(threads.size(), 1u);
 }
 
-TEST(Trials, NoneIsBegunOnceTheyAreStopped) {
+TEST(Trials, NoneBeginsAfterTheStop) {
     std::atomic<bool> stopped = false;
     std::atomic<int> begun = 0;
     for_each_trial(
@@ -75,7 +75,7 @@ TEST(Trials, NoneIsBegunOnceTheyAreStopped) {
         0, 2, [&](std::size_t) { ADD_FAILURE(); }, never);
 }
 
-TEST(Trials, SeedsOfReplicatesDifferAndAreTheSameForEver) {
+TEST(Trials, SeedsOfReplicatesDifferAndNeverChange) {
     std::set<std::uint64_t> seeds;
     for (std::uint32_t replicate = 0; replicate < 1000; ++replicate) {
         seeds.insert(replicate_seed({7}, replicate).value);

@@ -9,12 +9,13 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// As of twenty replicates.
-std::vector<Weighed> weighed(double random, double random_p, double mutation, double mutation_p, double poison,
-                             double poison_p, double shuffled, double shuffled_p, std::size_t replicates = 20) {
+/// Results of the four controls.
+std::vector<ControlResult> results_of(double random, double random_p, double mutation, double mutation_p, double poison,
+                                      double poison_p, double shuffled, double shuffled_p,
+                                      std::size_t replicates = 20) {
     const std::pair<double, double> found[] = {
         {random, random_p}, {mutation, mutation_p}, {poison, poison_p}, {shuffled, shuffled_p}};
-    std::vector<Weighed> all;
+    std::vector<ControlResult> all;
     for (const ControlKind kind : all_controls) {
         const auto& [mean, p] = found[all.size()];
         all.push_back({control_of({}, kind), Finding{.differences = std::vector<double>(replicates),
@@ -27,77 +28,78 @@ std::vector<Weighed> weighed(double random, double random_p, double mutation, do
     return all;
 }
 
-std::string answer(double rise, const Interval& interval, const std::vector<Weighed>& all) {
+std::string answer(double rise, const Interval& interval, const std::vector<ControlResult>& all) {
     return verdict(rise, interval, all, 1)[0];
 }
 
-TEST(Verdict, IsYesIfTheWorldRisesAboveBothThatSelectForNothing) {
-    EXPECT_EQ(
-        answer(120, {110, 130}, weighed(125, 1e-5, 1, 0.9, 2, 0.9, 118.04, 0.049)),
-        "Did evolution do it? Yes: the mean fitness rose by 120.0, and selection for fitness is why: +125.0 against "
-        "random selection (adjusted p = 1e-05), +118.0 against shuffled fitness (adjusted p = 0.049).");
+TEST(Verdict, IsYesIfTheWorldRisesMoreThanBothControls) {
+    EXPECT_EQ(answer(120, {110, 130}, results_of(125, 1e-5, 1, 0.9, 2, 0.9, 118.04, 0.049)),
+              "Did evolution do it? Yes: the mean fitness rose by 120.0, and selection for fitness is the cause: "
+              "+125.0 against "
+              "random selection (adjusted p = 1e-05), +118.0 against shuffled fitness (adjusted p = 0.049).");
 }
 
-TEST(Verdict, IsYesWithAReservationIfItOnlyKeptTheFitnessFromFalling) {
-    EXPECT_THAT(answer(-2, {-8, 4}, weighed(30, 1e-5, 1, 0.9, 2, 0.9, 30, 1e-5)),
+TEST(Verdict, IsQualifiedIfSelectionOnlyPreventedAFall) {
+    EXPECT_THAT(answer(-2, {-8, 4}, results_of(30, 1e-5, 1, 0.9, 2, 0.9, 30, 1e-5)),
                 StartsWith("Did evolution do it? Yes, but the mean fitness is not shown to have risen (-2.0)"));
 }
 
-TEST(Verdict, TakesBoth) {
+TEST(Verdict, NeedsBothControls) {
     for (const auto& all :
-         {weighed(125, 1e-5, 9, 1e-5, 9, 1e-5, 5, 0.05), weighed(5, 0.3, 9, 1e-5, 9, 1e-5, 99, 1e-5)}) {
+         {results_of(125, 1e-5, 9, 1e-5, 9, 1e-5, 5, 0.05), results_of(5, 0.3, 9, 1e-5, 9, 1e-5, 99, 1e-5)}) {
         EXPECT_THAT(answer(120, {110, 130}, all), StartsWith("Did evolution do it? That is not shown: "));
     }
-    EXPECT_THAT(answer(-9, {-12, -6}, weighed(125, 1e-5, 9, 1, 9, 1, -5, 1e-3)),
-                StartsWith("Did evolution do it? No: selection keeps the fitness below what it would be: "));
+    EXPECT_THAT(answer(-9, {-12, -6}, results_of(125, 1e-5, 9, 1, 9, 1, -5, 1e-3)),
+                StartsWith("Did evolution do it? No: selection for fitness makes the fitness lower: "));
 }
 
-TEST(Verdict, SaysIfNoDifferenceCouldBeShown) {
+TEST(Verdict, ReportsTooFewReplicates) {
     // Seven replicates: 4 · 2/2^7 is above 0.05; eight: it is not.
-    EXPECT_THAT(answer(120, {110, 130}, weighed(99, 0.0625, 99, 0.0625, 99, 0.0625, 99, 0.0625, 7)),
-                HasSubstr("cannot be told with so few replicates"));
-    EXPECT_THAT(answer(120, {110, 130}, weighed(99, 0.0625, 99, 0.0625, 99, 0.0625, 99, 0.0625, 8)),
+    EXPECT_THAT(answer(120, {110, 130}, results_of(99, 0.0625, 99, 0.0625, 99, 0.0625, 99, 0.0625, 7)),
+                HasSubstr("There are too few replicates to answer"));
+    EXPECT_THAT(answer(120, {110, 130}, results_of(99, 0.0625, 99, 0.0625, 99, 0.0625, 99, 0.0625, 8)),
                 HasSubstr("That is not shown"));
 }
 
 TEST(Verdict, IsNoIfNothingIsSelected) {
-    std::vector<Weighed> all = weighed(0, 1, 9, 1, 9, 1, 0, 1);
+    std::vector<ControlResult> all = results_of(0, 1, 9, 1, 9, 1, 0, 1);
     parameters::Parameters world;
     world.selection = evolution::SelectionMethod::Random;
     for (const std::size_t i : {0, 3}) {
         all[i] = {control_of(world, all_controls[i]), {}};
     }
     EXPECT_EQ(answer(1, {-1, 3}, all),
-              "Did evolution do it? No: whoever breeds is drawn by chance already, so nothing is "
-              "selected for what it does.");
+              "Did evolution do it? No: parents are already drawn at random, so no organism is selected for its "
+              "fitness.");
 }
 
-TEST(Verdict, TellsWhatMutationAndPoisonAreWorth) {
+TEST(Verdict, ReportsTheEffectsOfMutationAndPoison) {
     const auto sentences = [](double mean, double p) {
-        return verdict(100, {90, 110}, weighed(99, 1e-5, mean, p, mean, p, 99, 1e-5), 1);
+        return verdict(100, {90, 110}, results_of(99, 1e-5, mean, p, mean, p, 99, 1e-5), 1);
     };
-    EXPECT_EQ(sentences(40, 0.001)[1],
-              "Mutation: with mutation off the rise is +60.0 (adjusted p = 0.001): new variety adds "
-              "to what the first generation brought.");
+    EXPECT_EQ(
+        sentences(40, 0.001)[1],
+        "Mutation: without mutation the rise is +60.0 (adjusted p = 0.001): new variety adds to the variety of the "
+        "first generation.");
     EXPECT_EQ(sentences(-40, 0.001)[1],
-              "Mutation: with mutation off the rise is +140.0 (adjusted p = 0.001): it costs more "
-              "than it brings in so many generations.");
+              "Mutation: without mutation the rise is +140.0 (adjusted p = 0.001): it costs more than it gains in this "
+              "number of generations.");
     EXPECT_THAT(sentences(40, 0.06)[1], HasSubstr("is not shown"));
     EXPECT_EQ(
         sentences(40, 0.001)[2],
-        "Poison: were it harmless, the rise would be +60.0 (adjusted p = 0.001): a part of the rise is getting on with "
-        "it.");
-    EXPECT_THAT(sentences(-40, 0.001)[2], HasSubstr("it keeps the fitness from rising further"));
+        "Poison: with harmless poison the rise is +60.0 (adjusted p = 0.001): adaptation to poison is a part of the "
+        "rise.");
+    EXPECT_THAT(sentences(-40, 0.001)[2], HasSubstr("poison limits the rise"));
     EXPECT_THAT(sentences(-40, 0.06)[2], HasSubstr("is not shown"));
 
-    std::vector<Weighed> all = weighed(99, 1e-5, 0, 1, 0, 1, 99, 1e-5);
+    std::vector<ControlResult> all = results_of(99, 1e-5, 0, 1, 0, 1, 99, 1e-5);
     parameters::Parameters still;
     still.mutation_chance = 0;
     still.poison_count = 0;
     for (const std::size_t i : {1, 2}) {
         all[i] = {control_of(still, all_controls[i]), {}};
     }
-    EXPECT_THAT(verdict(100, {90, 110}, all, 1)[1], StartsWith("Mutation: nothing mutates already; "));
+    EXPECT_THAT(verdict(100, {90, 110}, all, 1)[1], StartsWith("Mutation: there is no mutation; "));
     EXPECT_EQ(verdict(100, {90, 110}, all, 1)[2], "Poison: there is no poison.");
 }
 

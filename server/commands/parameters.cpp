@@ -1,9 +1,12 @@
-#include "server/commands/parameter_list.h"
-
-#include "proto/command_line/command.h"
+// `evod parameters` and `evod limits`: what the documents docs/PARAMETERS.md and docs/OPERATIONS.md contain, printed
+// from the registries in the program.
 #include "server/parameters/parameters.h"
+#include "proto/command_line/command.h"
+#include "server/commands/commands.h"
+#include "server/network/limits.h"
 
 #include <iostream>
+#include <string>
 
 namespace evod::commands {
 namespace {
@@ -45,8 +48,14 @@ std::string parameter_list() {
 } // namespace
 
 void add_parameters_command(command_line::Command& app) {
-    app.add_command("parameters", "Print every parameter, as docs/PARAMETERS.md has it").action([] {
+    app.add_command("parameters", "Print every parameter, as in docs/PARAMETERS.md").action([] {
         std::cout << parameter_list();
+    });
+}
+
+void add_limits_command(command_line::Command& app) {
+    app.add_command("limits", "Print every limit of the network, as in docs/OPERATIONS.md").action([] {
+        std::cout << network::limit_list();
     });
 }
 

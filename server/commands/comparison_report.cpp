@@ -1,0 +1,143 @@
+#include "server/commands/comparison_report.h"
+
+#include "server/experiments/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace evod::commands {
+namespace {
+
+using namespace experiments;
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+    std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)), '\0');
+    std::snprintf(text.data(), text.size() + 1, format, values...);
+    return text;
+}
+
+int name_width_of(const ComparisonPlan& plan) {
+    std::size_t width = 16;
+    for (const Arm& arm : plan.arms) {
+        width = std::max(width, arm.name.size());
+    }
+    return static_cast<int>(width);
+}
+
+std::string interval_text(const Interval& interval, int decimals) {
+    return signed_text(interval.low, decimals) + " to " + signed_text(interval.high, decimals);
+}
+
+std::vector<double> rises_of(std::span<const Course> courses) {
+    std::vector<double> rises;
+    for (const Course& course : courses) {
+        rises.push_back(rise_of(course));
+    }
+    return rises;
+}
+
+std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const Course> courses, int decimals) {
+    std::vector<double> first, last;
+    std::size_t extinct = 0; // generations in which all organisms died
+    for (const Course& course : courses) {
+        first.push_back(course.front().mean);
+        last.push_back(course.back().mean);
+        extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
+    }
+    if (arm.parameters.fitness != parameters::FitnessFunction::Life) {
+        extinct = 0; // without lives there are no deaths
+    }
+    const std::vector<double> rises = rises_of(courses);
+    std::string row = formatted("%-*s %9.*f %9.*f %9s  %-20s %7zu  ", name_width_of(plan), arm.name.c_str(), decimals,
+                                mean_of(first), decimals, mean_of(last), signed_text(mean_of(rises), decimals).c_str(),
+                                interval_text(student_interval(rises), decimals).c_str(), extinct) +
+                      changes_between(plan.arms[0].parameters, arm.parameters);
+    row.erase(row.find_last_not_of(' ') + 1);
+    return row + "\n";
+}
+
+/// The conclusion about two worlds, neither of which is a control of the other.
+std::string sentence_of(const Arm& world, const Arm& other, const Finding& finding, std::size_t tests, int decimals) {
+    const std::string by = signed_text(std::abs(finding.mean), decimals).substr(finding.mean != 0 ? 1 : 0);
+    const std::string p = formatted(" (adjusted p = %.2g).", finding.adjusted_p);
+    switch (judge(finding, tests)) {
+    case Judgement::Above:
+        return world.name + " rises more than " + other.name + ", by " + by + p;
+    case Judgement::Below:
+        return world.name + " rises less than " + other.name + ", by " + by + p;
+    case Judgement::CannotBeShown:
+        return "There are too few replicates to show a difference between " + world.name + " and " + other.name + ".";
+    case Judgement::NotShown:
+        break;
+    }
+    return "No difference between " + world.name + " and " + other.name + " is shown" + p;
+}
+
+} // namespace
+
+int decimals_for(std::span<const std::vector<Course>> courses) {
+    double greatest = 0;
+    for (const std::vector<Course>& of_arm : courses) {
+        for (const Course& course : of_arm) {
+            greatest = std::max({greatest, std::abs(course.front().mean), std::abs(course.back().mean)});
+        }
+    }
+    return greatest >= 20 ? 1 : greatest >= 2 ? 2 : 4;
+}
+
+std::string rises_text(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses, int decimals) {
+    const int name_width = name_width_of(plan);
+    std::string text = formatted("%-*s %9s %9s %9s  %-20s %7s  %s\n", name_width, "world", "first", "last", "rise",
+                                 "95 % interval", "extinct", "changes");
+    for (std::size_t arm = 0; arm < courses.size(); ++arm) {
+        text += rise_row(plan, plan.arms[arm], courses[arm], decimals);
+    }
+    for (const Control& control : plan.controls) {
+        if (!control.cannot_differ.empty()) {
+            text += formatted("%-*s is not run: %s\n", name_width, control.name.c_str(), control.cannot_differ.c_str());
+        }
+    }
+    return text;
+}
+
+std::string findings_text(const ComparisonPlan& plan, std::span<const Finding> findings, int decimals) {
+    const int name_width = name_width_of(plan);
+    std::string text =
+        formatted("rise of %s minus the rise of the other world, seed by seed\n%-*s %10s  %-20s %7s %9s %9s\n",
+                  plan.arms[0].name.c_str(), name_width, "other", "difference", "95 % interval", "g", "p", "adjusted");
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        const Finding& finding = findings[i];
+        text += formatted(
+            "%-*s %10s  %-20s %7s %9.2g %9.2g\n", name_width, plan.arms[i + 1].name.c_str(),
+            signed_text(finding.mean, decimals).c_str(), interval_text(finding.interval, decimals).c_str(),
+            finding.effect_size ? signed_text(*finding.effect_size, 2).c_str() : "-", finding.p, finding.adjusted_p);
+    }
+    return text;
+}
+
+std::string conclusions_text(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses,
+                             std::span<const Finding> findings, int decimals) {
+    std::string text;
+    if (plan.controls.empty()) {
+        for (std::size_t i = 0; i < findings.size(); ++i) {
+            text += sentence_of(plan.arms[0], plan.arms[i + 1], findings[i], findings.size(), decimals) + "\n";
+        }
+        return text;
+    }
+    std::vector<ControlResult> weighed;
+    std::size_t next = 0; // of the findings: controls that cannot differ have none
+    for (const Control& control : plan.controls) {
+        weighed.push_back(
+            {control, control.cannot_differ.empty() ? std::optional{findings[next++]} : std::optional<Finding>{}});
+    }
+    const std::vector<double> rises = rises_of(courses[0]);
+    for (const std::string& sentence : verdict(mean_of(rises), student_interval(rises), weighed, decimals)) {
+        text += sentence + "\n";
+    }
+    return text;
+}
+
+} // namespace evod::commands

@@ -1,0 +1,29 @@
+// Comparison report: the results of `evod compare` as tables and sentences for the terminal.
+//
+// Threads  none.
+#pragma once
+
+#include "server/experiments/comparison.h"
+#include "server/experiments/comparison_plan.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evod::commands {
+
+/// The number of decimals at which the means of a comparison differ.
+int decimals_for(std::span<const std::vector<experiments::Course>> courses);
+
+/// A table with the rise of every arm. courses  shape (arms, replicates).
+std::string rises_text(const experiments::ComparisonPlan& plan,
+                       std::span<const std::vector<experiments::Course>> courses, int decimals);
+/// A table with the differences between the first arm and each other. findings  shape (arms − 1).
+std::string findings_text(const experiments::ComparisonPlan& plan, std::span<const experiments::Finding> findings,
+                          int decimals);
+/// One line per conclusion.
+std::string conclusions_text(const experiments::ComparisonPlan& plan,
+                             std::span<const std::vector<experiments::Course>> courses,
+                             std::span<const experiments::Finding> findings, int decimals);
+
+} // namespace evod::commands

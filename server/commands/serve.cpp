@@ -1,0 +1,113 @@
+// Serving: `evod` without a subcommand, and `evod replay`.
+#include "proto/command_line/command.h"
+#include "server/commands/commands.h"
+#include "server/commands/common_options.h"
+#include "server/commands/serve_options.h"
+#include "server/log/log.h"
+
+#include <sys/resource.h>
+
+#include <atomic>
+#include <string>
+#include <utility>
+
+namespace evod::commands {
+namespace {
+
+using command_line::Command;
+
+constexpr int exit_not_written = 4;
+
+std::atomic<bool> is_logging = false;
+
+void begin_log(const ServeOptions& options) {
+    is_logging = true;
+    log::begin(log::level_named(options.log_level),
+               options.log_format == "json" ? log::Format::Json : log::Format::Text);
+}
+
+/// Raises the limit of file descriptors to what the system allows: each connection takes one, and the usual limit of
+/// 1,024 is soon reached.
+void raise_descriptor_limit() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+        limit.rlim_cur = limit.rlim_max;
+        ::setrlimit(RLIMIT_NOFILE, &limit);
+    }
+}
+
+void log_http_address(const boost::asio::ip::tcp::endpoint& http) {
+    const std::string address = http.address().to_string();
+    log::info("metrics and health at http://{}:{}/metrics and /healthz",
+              http.address().is_v6() ? "[" + address + "]" : address, http.port());
+    if (!http.address().is_loopback()) {
+        log::warn("HTTP has no tokens: any machine that reaches {}:{} can read the metrics", address, http.port());
+    }
+}
+
+/// Serves until a signal or a ShutDown request ends the server. Returns the exit status.
+int run_server(network::ServerOptions options) {
+    raise_descriptor_limit();
+    const std::string folder = options.data_folder, first_world = options.first_world.name;
+    const bool encrypted = !options.tls.certificate.empty();
+    const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
+    const auto server = network::Server::open(std::move(options));
+    if (!server) {
+        return fail("evod", server.error());
+    }
+    if (!folder.empty()) {
+        log::info("runs are kept in {}", folder);
+    }
+    const auto endpoint = (*server)->endpoint();
+    if (!endpoint.address().is_loopback() && !encrypted) {
+        log::warn("without TLS, any machine on the network path to {} can read tokens and use them: see --tls-cert",
+                  endpoint.address().to_string());
+    }
+    if (const auto http = (*server)->http_endpoint()) {
+        log_http_address(*http);
+    }
+    const auto seed = (*server)->first_seed();
+    log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
+              seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
+    const bool all_written = (*server)->run();
+    log::info("stopped");
+    return all_written ? 0 : exit_not_written;
+}
+
+} // namespace
+
+bool standard_output_is_log() {
+    return is_logging;
+}
+
+void add_server(Command& app) {
+    auto& options = app.keep(ServeOptions{});
+    add_server_options(app, options);
+    add_first_world_options(app, options);
+    add_storage_options(app, options);
+    app.footer("Without a subcommand evod is a server.");
+    app.hand_options_down("the server");
+    app.action([&options] {
+        begin_log(options);
+        auto server = server_options(options);
+        return server ? run_server(*std::move(server)) : fail("evod", server.error());
+    });
+}
+
+void add_replay_command(Command& app) {
+    auto& command = app.add_command("replay", "Serve a run file: clients can watch its run, but not change it");
+    auto& options = command.keep(ServeOptions{});
+    auto& run = command.keep(network::ServerOptions::Replay{});
+    command.add_option("run", &run.path, "Run file, NAME.evod; the run may still be in progress").required();
+    command.add_option("--generation", &run.generation, "Generation to begin with; without it, the first")
+        .check(generation_number);
+    command.add_option("--data", &options.data_folder, "Folder with the tokens of clients on other machines");
+    add_server_options(command, options);
+    command.footer("Watch the replay with evoview, seek in it with evoctl seek, run and pause it like any world.");
+    command.action([&options, &run] {
+        begin_log(options);
+        return run_server(replay_server_options(options, run));
+    });
+}
+
+} // namespace evod::commands

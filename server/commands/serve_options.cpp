@@ -1,0 +1,207 @@
+#include "server/commands/serve_options.h"
+
+#include "proto/command_line/command.h"
+#include "server/commands/common_options.h"
+#include "server/experiments/experiment_file.h"
+#include "server/experiments/population_file.h"
+#include "server/log/log.h"
+#include "server/network/random_ids.h"
+
+#include <charconv>
+#include <utility>
+
+namespace evod::commands {
+namespace {
+
+using command_line::Command;
+using command_line::WholeNumber;
+
+constexpr WholeNumber port_number{0, 65535};
+
+void add_tls_options(Command& command, access::TlsFiles& tls) {
+    command.add_option("--tls-cert", &tls.certificate,
+                       "PEM file with the certificate. With it, the server accepts TLS only; see evod certificate");
+    command.add_option("--tls-key", &tls.key, "PEM file with the key of that certificate");
+    command.add_option(
+        "--tls-client-ca", &tls.client_ca,
+        "PEM file with CA certificates. With it, every client needs a certificate that one of them signed");
+}
+
+void add_http_options(Command& command, ServeOptions& options) {
+    const auto http = command
+                          .add_option("--http-port", &options.http_port,
+                                      "Port for /metrics and /healthz over HTTP, for example 7745; 0: any free port. "
+                                      "Without the option, the server has no HTTP")
+                          .check(port_number);
+    command.add_option("--http-bind", &options.http_bind_address, "Address for HTTP").needs(http).show_default();
+}
+
+/// The options that describe the same in both kinds of server.
+network::ServerOptions common_server_options(const ServeOptions& options) {
+    network::ServerOptions server;
+    server.bind_address = options.bind_address;
+    server.port = options.port;
+    server.threads = options.threads;
+    server.token_folder = data_folder_or_default(options.data_folder);
+    server.session_bounds = options.session_bounds;
+    server.token_needed = options.token_needed;
+    server.tls = options.tls;
+    if (options.http_port) {
+        server.http = {.bind_address = options.http_bind_address, .port = *options.http_port};
+    }
+    return server;
+}
+
+base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
+    simulation::CreateWorld create{
+        .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
+    if (!options.experiment_file.empty()) {
+        const auto experiment = experiments::load_experiment(options.experiment_file);
+        if (!experiment) {
+            return experiment.error();
+        }
+        create.name = experiments::world_name(options.experiment_file);
+        create.parameters = experiment->parameters;
+        create.schedule = experiment->schedule;
+        create.seed = experiment->seed.value_or(create.seed);
+    }
+    if (options.seed) {
+        create.seed = base::Seed{*options.seed};
+    }
+    auto population = experiments::load_population(options.population_file, create.parameters);
+    if (!population) {
+        base::Refusal refused = population.error();
+        refused.message = "--population: " + refused.message;
+        return refused;
+    }
+    create.first_population = *std::move(population);
+    return create;
+}
+
+} // namespace
+
+void add_server_options(Command& command, ServeOptions& options) {
+    command.add_option("--bind", &options.bind_address, "Address to listen on; 0.0.0.0: all interfaces").show_default();
+    command.add_option("--port", &options.port, "Port to listen on; 0: any free port")
+        .check(port_number)
+        .show_default();
+    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    add_http_options(command, options);
+    command
+        .add_option("--log-level", &options.log_level,
+                    "Least severe level that is logged. debug adds every refusal, trace every request")
+        .choices({log::level_names.begin(), log::level_names.end()})
+        .show_default();
+    command.add_option("--log-format", &options.log_format, "text: sentences; json: one JSON object per line")
+        .choices({"text", "json"})
+        .show_default();
+    command.add_flag("--require-token", &options.token_needed,
+                     "Require a token from clients on this machine too. Clients on other machines always need one");
+    add_tls_options(command, options.tls);
+    const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
+        command.add_option(name, &count, help).check(WholeNumber{1, 1'000'000}).show_default();
+    };
+    add_sessions("--sessions-max", options.session_bounds.sessions_max,
+                 "Most sessions at a time; the server rejects further ones. Each takes a file descriptor");
+    add_sessions("--sessions-per-address-max", options.session_bounds.sessions_per_address_max,
+                 "Most sessions at a time from one IPv4 address or one IPv6 /64");
+}
+
+void add_first_world_options(Command& command, ServeOptions& options) {
+    command.add_option("--experiment", &options.experiment_file, "JSON file with the parameters of the first world");
+    command
+        .add_option("--seed", &options.seed,
+                    "Seed of the first world; without it, the seed of the experiment file or a random one")
+        .check(any_number);
+    command.add_option("--population", &options.population_file,
+                       "CSV file of `evod export --what population`: the first world begins with these organisms "
+                       "instead of random ones");
+    command
+        .add_option("--speed", &options.speed,
+                    "Speed of the first or the restored world: simulated seconds per second, 0.001 to 10000, or max")
+        .check([](const std::string& text) {
+            return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
+        });
+    command.add_flag("--start", &options.start, "Run that world at once, without a limit");
+}
+
+void add_storage_options(Command& command, ServeOptions& options) {
+    const auto data = command.add_option("--data", &options.data_folder,
+                                         "Folder with one file per run; the server restores the worlds that it finds "
+                                         "there. Without the option, $XDG_STATE_HOME/evod or ~/.local/state/evod");
+    const auto keep_nothing =
+        command.add_flag("--keep-nothing", &options.keep_nothing, "Write no files: runs are lost when the server ends")
+            .excludes(data);
+    command
+        .add_option("--durability", &options.durability,
+                    "When the server answers a command. full: after it is on the disk; relaxed: before, so that a "
+                    "power cut can lose it, but a crash of evod cannot")
+        .choices({"full", "relaxed"})
+        .excludes(keep_nothing)
+        .show_default();
+    command
+        .add_option("--file-bytes-max", &options.file_bytes_max,
+                    "Size above which a run file keeps fewer of its older generations in full. evod can simulate the "
+                    "others again, and the file keeps their statistics")
+        .check(WholeNumber{std::uint64_t{1} << 20, std::uint64_t{1} << 50})
+        .excludes(keep_nothing)
+        .show_default();
+    command
+        .add_option("--keep-every", &options.keep_every,
+                    "New run files keep every N-th generation in full, and the first and the last. evod can simulate "
+                    "the others again, and the file keeps their statistics")
+        .check(WholeNumber{1, 1'000'000'000})
+        .excludes(keep_nothing)
+        .show_default();
+}
+
+std::optional<simulation::Speed> parse_speed(const std::string& text) {
+    if (text == "max") {
+        return simulation::Speed{};
+    }
+    double factor = 0;
+    const char* const end = text.data() + text.size();
+    const auto [read_until, error] = std::from_chars(text.data(), end, factor);
+    if (error != std::errc{} || read_until != end || !(factor >= simulation::speed_min) ||
+        !(factor <= simulation::speed_max)) {
+        return std::nullopt;
+    }
+    return simulation::Speed{factor};
+}
+
+base::Result<network::ServerOptions> server_options(const ServeOptions& options) {
+    auto world = first_world(options);
+    if (!world) {
+        return world.error();
+    }
+    network::ServerOptions server = common_server_options(options);
+    if (!options.keep_nothing) {
+        server.data_folder = data_folder_or_default(options.data_folder);
+        if (server.data_folder.empty()) {
+            return refusal(base::RefusalCode::InvalidArgument,
+                           std::string{no_data_folder} + ", or give --keep-nothing");
+        }
+    }
+    server.run_files = {.durability = options.durability == "relaxed" ? run_file::Durability::Relaxed
+                                                                      : run_file::Durability::Full,
+                        .vfs = nullptr,
+                        .file_bytes_max = options.file_bytes_max,
+                        .keep_every = options.keep_every};
+    server.first_world = *std::move(world);
+    server.first_world_asked =
+        !options.experiment_file.empty() || options.seed.has_value() || !options.population_file.empty();
+    server.first_seed_asked = options.seed.has_value();
+    server.first_run = options.start;
+    if (!options.speed.empty()) {
+        server.first_speed = *parse_speed(options.speed);
+    }
+    return server;
+}
+
+network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run) {
+    network::ServerOptions server = common_server_options(options);
+    server.replay = std::move(run);
+    return server;
+}
+
+} // namespace evod::commands

@@ -1,0 +1,148 @@
+#include "server/experiments/comparison_plan.h"
+
+#include "server/experiments/experiment_file.h"
+#include "server/experiments/trials.h"
+#include "server/replay/table.h"
+
+#include <algorithm>
+#include <ostream>
+
+namespace evod::experiments {
+namespace {
+
+using base::RefusalCode;
+using base::Result;
+
+struct NamedExperiment {
+    std::string name;
+    parameters::Experiment experiment;
+};
+
+/// The experiments by the names of their files. A name that repeats gets a number.
+Result<std::vector<NamedExperiment>> load_named(const std::vector<std::string>& paths) {
+    std::vector<NamedExperiment> named;
+    for (const std::string& path : paths) {
+        const auto loaded = load_experiment(path);
+        if (!loaded) {
+            return loaded.error();
+        }
+        const std::string name = world_name(path);
+        const bool is_taken = std::ranges::count(named, name, &NamedExperiment::name) > 0;
+        named.push_back({is_taken ? name + "_" + std::to_string(named.size() + 1) : name, *loaded});
+    }
+    if (named.empty()) {
+        named.push_back({"default", {}});
+    }
+    return named;
+}
+
+Result<Arm> arm_of(const NamedExperiment& named, const std::vector<std::string>& changes, std::uint32_t generations) {
+    auto experiment = with_changes(named.experiment, changes);
+    if (!experiment) {
+        return experiment.error();
+    }
+    experiment->parameters = of_fixed_length(experiment->parameters, generations);
+    experiment->schedule = of_fixed_length(experiment->schedule);
+    if (auto fits = fit_schedule(*experiment); !fits) {
+        return fits.error();
+    }
+    return Arm{named.name, experiment->parameters, experiment->schedule};
+}
+
+void add_controls(ComparisonPlan& plan) {
+    const Arm world = plan.arms[0];
+    for (const ControlKind kind : all_controls) {
+        Control control = control_of(world.parameters, kind);
+        if (schedule_affects(world.schedule, kind)) {
+            control.cannot_differ.clear();
+        }
+        if (control.cannot_differ.empty()) {
+            plan.arms.push_back({control.name, control.parameters, schedule_of(world.schedule, kind)});
+        }
+        plan.controls.push_back(std::move(control));
+    }
+}
+
+} // namespace
+
+Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request) {
+    if (request.controls && request.experiments.size() > 1) {
+        return refusal(RefusalCode::InvalidArgument,
+                       "--controls: got " + std::to_string(request.experiments.size()) +
+                           " experiments, allowed one: the controls are variants of that world");
+    }
+    if (!request.controls && request.experiments.size() < 2) {
+        return refusal(RefusalCode::InvalidArgument, "give --controls, or two or more experiments");
+    }
+    const auto named = load_named(request.experiments);
+    if (!named) {
+        return named.error();
+    }
+    const parameters::Experiment& first = named->front().experiment;
+    const std::uint32_t limit = first.parameters.generation_limit;
+    const std::uint32_t generations = request.generations.value_or(limit > 0 ? limit : default_generations);
+    if (generations < 2) {
+        return base::Refusal{.code = RefusalCode::InvalidArgument,
+                             .message = "fitness cannot rise in one generation; see --generations",
+                             .violations = {{"generation_limit", "at least 2", std::to_string(generations)}}};
+    }
+    ComparisonPlan plan{.arms = {},
+                        .controls = {},
+                        .seed = request.seed ? base::Seed{*request.seed} : first.seed.value_or(request.drawn_seed),
+                        .generations = generations};
+    for (const NamedExperiment& experiment : *named) {
+        const auto arm = arm_of(experiment, request.changes, generations);
+        if (!arm) {
+            return arm.error();
+        }
+        plan.arms.push_back(*arm);
+    }
+    if (request.controls) {
+        add_controls(plan);
+    }
+    return plan;
+}
+
+void write_courses(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses) {
+    replay::Table table{
+        out,
+        replay::Table::Format::Csv,
+        {"arm", "replicate", "seed", "generation", "fitness_mean", "fitness_best", "organism_count", "alive_count"}};
+    for (std::size_t arm = 0; arm < courses.size(); ++arm) {
+        for (std::size_t replicate = 0; replicate < courses[arm].size(); ++replicate) {
+            for (std::size_t i = 0; i < courses[arm][replicate].size(); ++i) {
+                const GenerationFitness& generation = courses[arm][replicate][i];
+                table.text(plan.arms[arm].name)
+                    .number(replicate)
+                    .number(replicate_seed(plan.seed, static_cast<std::uint32_t>(replicate)).value)
+                    .number(i + 1)
+                    .number(generation.mean)
+                    .number(generation.best)
+                    .number(generation.organism_count)
+                    .number(generation.alive_count)
+                    .end_row();
+            }
+        }
+    }
+}
+
+void write_curves(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses) {
+    replay::Table table{out, replay::Table::Format::Csv, {"arm", "generation", "mean", "low", "high"}};
+    for (std::size_t arm = 0; arm < courses.size(); ++arm) {
+        for (std::uint32_t i = 0; i < plan.generations; ++i) {
+            std::vector<double> means;
+            for (const Course& course : courses[arm]) {
+                means.push_back(course[i].mean);
+            }
+            const Interval interval = student_interval(means);
+            table.text(plan.arms[arm].name)
+                .number(i + 1)
+                .number(mean_of(means))
+                .number(interval.low)
+                .number(interval.high)
+                .end_row();
+        }
+    }
+}
+
+} // namespace evod::experiments

@@ -1,0 +1,151 @@
+#include "server/experiments/sweep_runner.h"
+
+#include "server/base/inline_executor.h"
+#include "server/experiments/atomic_file.h"
+#include "server/experiments/run_writer.h"
+#include "server/experiments/trials.h"
+#include "server/replay/columns.h"
+#include "server/simulation/world.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+namespace evod::experiments {
+namespace {
+
+using base::Refusal;
+using base::Result;
+using parameters::Parameters;
+
+/// The rows of the generation that has just ended, as runs.csv has them.
+void write_generation(replay::Table& table, const Sweep& sweep, std::size_t run, const simulation::World& world) {
+    const std::size_t cell = run / sweep.replicates, replicate = run % sweep.replicates;
+    for (const simulation::GenerationStatistics& statistics : world.history().back()) {
+        table.number(cell).number(replicate).number(world.seed().value);
+        for (const parameters::ParameterValue& value : sweep.cells[cell]) {
+            table.text(parameters::to_text(value));
+        }
+        replay::write_row(table, statistics);
+    }
+}
+
+} // namespace
+
+double work_of_generation(const Parameters& parameters) {
+    return static_cast<double>(parameters.population_size) * parameters.island_count * parameters.generation_s /
+           parameters.tick_s;
+}
+
+std::optional<double> work_of_run(const Parameters& parameters) {
+    if (parameters.generation_limit == 0) {
+        return std::nullopt;
+    }
+    return work_of_generation(parameters) * parameters.generation_limit;
+}
+
+std::optional<double> SweepRunner::work_of(const std::vector<std::size_t>& runs) const {
+    double sum = 0;
+    for (const std::size_t run : runs) {
+        const auto work = work_of_run(sweep_.parameters_of(cell_of(run)));
+        if (!work) {
+            return std::nullopt;
+        }
+        sum += *work;
+    }
+    return sum;
+}
+
+/// The longest runs begin first, so that all threads are busy until near the end.
+void SweepRunner::sort_by_work(std::vector<std::size_t>& runs) const {
+    std::vector<double> work;
+    for (std::size_t cell = 0; cell < sweep_.cells.size(); ++cell) {
+        const Parameters parameters = sweep_.parameters_of(cell);
+        work.push_back(work_of_run(parameters).value_or(work_of_generation(parameters)));
+    }
+    std::ranges::stable_sort(runs, std::ranges::greater{}, [&](std::size_t run) { return work[cell_of(run)]; });
+}
+
+Result<std::size_t> SweepRunner::make(std::vector<std::size_t> runs) {
+    sort_by_work(runs);
+    std::atomic<std::size_t> made = 0;
+    std::mutex mutex; // guards first_error
+    std::optional<Refusal> first_error;
+    for_each_trial(
+        runs.size(), options_.jobs,
+        [&](std::size_t index) {
+            const auto done = make(runs[index]);
+            if (done) {
+                made += *done;
+                return;
+            }
+            const std::scoped_lock lock{mutex};
+            if (!first_error) {
+                first_error = done.error();
+            }
+            failed_ = true;
+        },
+        [this] { return is_stopped(); });
+    if (first_error) {
+        return *first_error;
+    }
+    return made.load();
+}
+
+/// Makes one run from beginning to end. Returns false if it was stopped.
+Result<bool> SweepRunner::make(std::size_t run) const {
+    const std::size_t cell = cell_of(run), replicate = run % sweep_.replicates;
+    const Parameters parameters = sweep_.parameters_of(cell);
+    const auto expected = work_of_run(parameters);
+    const double generation_work = expected ? work_of_generation(parameters) : 0;
+    double done = 0;
+    simulation::World world{
+        parameters, replicate_seed(sweep_.seed, static_cast<std::uint32_t>(replicate)), {}, sweep_.schedule_of(cell)};
+    std::optional<RunWriter> writer;
+    if (options_.run_files) {
+        writer.emplace(folder_.run_file_of(run), folder_.name_of(run), options_.draw_run_id(), world);
+        if (auto followed = writer->follow(world); !followed) {
+            return followed.error();
+        }
+    }
+    AtomicFile part{folder_.part_of(run)};
+    std::ostringstream rows;
+    replay::Table table{rows, replay::Table::Format::Csv, sweep_columns(sweep_)};
+    rows.str({}); // without the heading
+    RunEnd end;
+    base::InlineExecutor executor;
+    while (world.outcome() == evolution::Outcome::Running && part.error().empty()) {
+        do {
+            if (is_stopped()) {
+                return false;
+            }
+            world.advance_tick(executor);
+            if (writer) {
+                if (auto followed = writer->follow(world); !followed) {
+                    return followed.error();
+                }
+            }
+        } while (!world.generation_over());
+        world.take_events();
+        write_generation(table, sweep_, run, world);
+        end.rows += world.history().back().size();
+        part.write(rows.str());
+        rows.str({});
+        done += generation_work;
+        options_.on_generation(generation_work);
+    }
+    if (writer && part.error().empty()) {
+        if (auto finished = writer->finish(); !finished) {
+            return finished.error();
+        }
+    }
+    end.outcome = world.outcome();
+    part.write(to_text(end));
+    if (auto finished = part.finish(); !finished) {
+        return finished.error();
+    }
+    options_.on_run(expected.value_or(0) - done);
+    return true;
+}
+
+} // namespace evod::experiments

@@ -1,0 +1,111 @@
+#include "server/commands/serve_options.h"
+
+#include "proto/command_line/command.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+namespace evod::commands {
+namespace {
+
+using testing::HasSubstr;
+
+/// The options after a command line; nothing if it was rejected.
+std::optional<ServeOptions> parse(std::vector<const char*> words) {
+    words.insert(words.begin(), "evod");
+    command_line::Command app{"evod", "", ""};
+    ServeOptions options;
+    add_server_options(app, options);
+    add_first_world_options(app, options);
+    add_storage_options(app, options);
+    app.action([] {});
+    testing::internal::CaptureStderr();
+    const bool accepted = !app.parse(static_cast<int>(words.size()), words.data());
+    testing::internal::GetCapturedStderr();
+    return accepted ? std::optional{options} : std::nullopt;
+}
+
+TEST(ServeOptions, SpeedIsMaxOrAFactorInRange) {
+    EXPECT_TRUE(parse_speed("max"));
+    EXPECT_TRUE(parse_speed("0.001"));
+    EXPECT_TRUE(parse_speed("10000"));
+    for (const char* wrong : {"", "0", "0.0009", "10001", "-1", "1x", "nan", "inf", "fast"}) {
+        EXPECT_FALSE(parse_speed(wrong)) << wrong;
+    }
+}
+
+TEST(ServeOptions, ValuesOutOfRangeAreRejected) {
+    EXPECT_TRUE(parse({"--port", "0", "--threads", "1024", "--speed", "max"}));
+    for (const std::vector<const char*>& words : {std::vector<const char*>{"--port", "65536"},
+                                                  {"--threads", "0"},
+                                                  {"--speed", "0"},
+                                                  {"--http-bind", "::1"},
+                                                  {"--durability", "some"},
+                                                  {"--file-bytes-max", "1"},
+                                                  {"--data", "a", "--keep-nothing"}}) {
+        EXPECT_FALSE(parse(words)) << words[0];
+    }
+}
+
+TEST(ServeOptions, DescribeTheServer) {
+    const auto options = parse({"--keep-nothing", "--port", "9", "--http-port", "8", "--seed", "5", "--speed", "2",
+                                "--start", "--sessions-max", "7"});
+    ASSERT_TRUE(options);
+    const auto server = server_options(*options);
+    ASSERT_TRUE(server) << to_text(server.error());
+    EXPECT_EQ(server->port, 9);
+    ASSERT_TRUE(server->http);
+    EXPECT_EQ(server->http->port, 8);
+    EXPECT_EQ(server->data_folder, "");
+    EXPECT_EQ(server->session_bounds.sessions_max, 7u);
+    EXPECT_EQ(server->first_world.name, "default");
+    EXPECT_EQ(server->first_world.seed, base::Seed{5});
+    EXPECT_TRUE(server->first_world_asked);
+    EXPECT_TRUE(server->first_seed_asked);
+    EXPECT_TRUE(server->first_speed);
+    EXPECT_TRUE(server->first_run);
+    EXPECT_FALSE(server->replay);
+}
+
+TEST(ServeOptions, TheFirstWorldIsTheExperiments) {
+    const recording::TemporaryFolder folder;
+    const std::string path = folder.path() + "/two islands.json";
+    std::ofstream{path} << R"({"seed": 6, "island_count": 2})";
+    ServeOptions options;
+    options.experiment_file = path;
+    options.data_folder = folder.path();
+    const auto server = server_options(options);
+    ASSERT_TRUE(server) << to_text(server.error());
+    EXPECT_EQ(server->first_world.name, "two_islands");
+    EXPECT_EQ(server->first_world.parameters.island_count, 2u);
+    EXPECT_EQ(server->first_world.seed, base::Seed{6});
+    EXPECT_FALSE(server->first_seed_asked);
+    EXPECT_EQ(server->data_folder, folder.path());
+    EXPECT_EQ(server->token_folder, folder.path());
+}
+
+TEST(ServeOptions, AFileThatCannotBeReadIsNamed) {
+    ServeOptions options;
+    options.keep_nothing = true;
+    options.experiment_file = "/nowhere/a.json";
+    EXPECT_THAT(to_text(server_options(options).error()), HasSubstr("/nowhere/a.json"));
+    options.experiment_file.clear();
+    options.population_file = "/nowhere/a.csv";
+    EXPECT_THAT(to_text(server_options(options).error()), HasSubstr("--population: "));
+}
+
+TEST(ServeOptions, AReplayHasNoWorldsOfItsOwn) {
+    ServeOptions options;
+    options.data_folder = "/tokens";
+    const auto server = replay_server_options(options, {.path = "/run.evod", .generation = 4});
+    ASSERT_TRUE(server.replay);
+    EXPECT_EQ(server.replay->path, "/run.evod");
+    EXPECT_EQ(server.replay->generation, 4u);
+    EXPECT_EQ(server.data_folder, "");
+    EXPECT_EQ(server.token_folder, "/tokens");
+}
+
+} // namespace
+} // namespace evod::commands
