@@ -1,9 +1,11 @@
-// Sweep files: many runs of one experiment with other parameters, as JSON. What may stand in one: docs/CLUSTER.md.
+// Sweep files: JSON files that describe many runs of one experiment with other parameters. docs/CLUSTER.md has the
+// format.
 //
-// A cell is one set of values; a run is one replicate of a cell. Cells, replicates and runs are numbered from 0, and a
-// run's number is cell × replicates + replicate.
+// A cell is one set of values; a run is one replicate of a cell. Cells, replicates and runs are numbered from 0. The
+// number of a run is cell × replicates + replicate.
 //
-// Determinism  cells follow from the text and the experiment alone, be they drawn or not.
+// Threads      none.
+// Determinism  the cells follow from the text and the experiment alone, also where they are drawn at random.
 #pragma once
 
 #include "server/base/random.h"
@@ -23,10 +25,10 @@ struct Sweep {
 
     std::string text;                  // of the file
     parameters::Parameters parameters; // of the experiment
-    parameters::Schedule schedule;     // of the experiment, but for what is swept
+    parameters::Schedule schedule;     // of the experiment, without the swept parameters
     base::Seed seed{1};
     std::uint32_t replicates = 1;
-    std::vector<const parameters::ParameterDescription*> swept; // in the order in which the file names them
+    std::vector<const parameters::ParameterDescription*> swept; // in the order of the file
     std::vector<std::vector<parameters::ParameterValue>> cells; // shape (cells, swept)
 
     std::size_t run_count() const { return cells.size() * replicates; }
@@ -38,15 +40,15 @@ struct Sweep {
 
 using LoadExperiment = std::function<base::Result<parameters::Experiment>(const std::string& path)>;
 
-/// Reads the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", and of
-/// values that do not go together the cell; no more than violations_max are told.
+/// Reads the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", or the
+/// cell whose values contradict each other. Reports at most violations_max of them.
 ///
 /// load  called for an experiment that is given by its path.
 base::Result<Sweep> parse_sweep(std::string_view text, const LoadExperiment& load);
 constexpr std::size_t violations_max = 100;
 
-/// Reads a file, and the experiment that it names, whose path begins where the file is; the refusal's message begins
-/// with the path.
+/// Reads a file and the experiment that it names, relative to the folder of the file. The refusal's message begins with
+/// the path.
 base::Result<Sweep> load_sweep(const std::string& path);
 
 } // namespace evod::experiments

@@ -7,6 +7,7 @@
 
 #include "server/base/random.h"
 #include "server/base/result.h"
+#include "server/parameters/json_text.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
 
@@ -27,6 +28,12 @@ struct Experiment {
 /// reference_population, which then equals population_size of generation 1. Violations name the field with its line:
 /// "mutation_chance (line 4)", "mutation_chance at generation 30 (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
+/// The same of a JSON value inside another file, with the lines of that file.
+base::Result<Experiment> read_experiment(const JsonNode& document);
+
+/// The value of a parameter. A number without a fraction becomes a count if it fits. Returns nullopt for null, arrays and
+/// objects.
+std::optional<ParameterValue> parameter_value_of(const JsonNode& node);
 
 enum class Written { Differences, Everything }; // Differences: only the parameters that differ from their defaults
 /// The parameters as an experiment file, one per line, in registry order. Scheduled parameters are written with the

@@ -252,7 +252,7 @@ class Check(Folder):
             '{\n\n "fod_count": 3}': "fod_count (line 3): got an unknown name, allowed a parameter of the registry; did you mean",
             '{\n "food_count": 3,\n}': "not JSON: line 3",
             '{\n "food_count": -3}': "food_count (line 2): got -3",
-            '{\n "seed": 1.5}': "seed (line 2): got 1.5E0",
+            '{\n "seed": 1.5}': "seed (line 2): got 1.5",
             '{\n "food_count": [3]}': "food_count (line 2): got [3]",
             "[1]": "expected a JSON object of parameters",
             '{"body_size_min": 300}': "body_size_max (line 1): got 200, allowed at least body_size_min (300)",

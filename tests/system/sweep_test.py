@@ -259,10 +259,10 @@ class Refused(Folder):
     def test_an_invalid_file_is_refused_before_anything_runs(self):
         for text, words in {
             '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
-                "small.json: the sweep has fields that cannot be used\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
+                "small.json: invalid sweep\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
             '{"list": [{}],\n"generation": 3}': "generation (line 2): got an unknown name, allowed description, experiment",
             '{"list": [{}], "experiment": "nowhere.json"}': "nowhere.json: cannot be read: No such file",
-            '{"list": [{}]}': "generations: got nothing, allowed what ends a run",
+            '{"list": [{}]}': "generations: got nothing, allowed a criterion that ends a run",
             '{"list": [{}]': "small.json: not JSON: line 1",
         }.items():
             with self.subTest(text):

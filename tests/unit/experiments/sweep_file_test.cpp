@@ -45,7 +45,7 @@ std::vector<std::string> column(const Sweep& sweep, std::string_view name) {
     return values;
 }
 
-TEST(SweepFile, AGridIsEveryCombinationTheLastParameterFirst) {
+TEST(SweepFile, AGridHasEveryCombination) {
     const Sweep sweep =
         sweep_of(R"({"grid": {"selection": ["roulette", "tournament"], "mutate_survivors": [true, false],
         "food_count": [5, 7]}, "generations": 3})");
@@ -63,7 +63,7 @@ TEST(SweepFile, AGridIsEveryCombinationTheLastParameterFirst) {
     EXPECT_EQ(last.population_size, parameters::Parameters{}.population_size);
 }
 
-TEST(SweepFile, ARangeHasBothItsEndsAndEvenSteps) {
+TEST(SweepFile, ARangeHasBothEndsAndEvenSteps) {
     const Sweep sweep =
         sweep_of(R"({"grid": {"mutation_step": {"from": 0.5, "to": 2.5, "steps": 5}}, "generations": 1})");
     EXPECT_THAT(column(sweep, "mutation_step"), ElementsAre("0.5", "1", "1.5", "2", "2.5"));
@@ -76,7 +76,7 @@ TEST(SweepFile, ARangeHasBothItsEndsAndEvenSteps) {
     EXPECT_EQ(std::get<double>(log.cells[3][0]), 100.0);
 }
 
-TEST(SweepFile, ARangeOfWholeNumbersHasTheNearestEachOnce) {
+TEST(SweepFile, ARangeOfWholeNumbersHasEachNearestOnce) {
     const auto food = [](const char* range) {
         return column(sweep_of(std::string{R"({"generations": 1, "grid": {"food_count": )"} + range + "}}"),
                       "food_count");
@@ -86,7 +86,7 @@ TEST(SweepFile, ARangeOfWholeNumbersHasTheNearestEachOnce) {
     EXPECT_THAT(food(R"({"from": 1, "to": 100, "steps": 3, "scale": "log"})"), ElementsAre("1", "10", "100"));
 }
 
-TEST(SweepFile, AListHasWhatTheExperimentHasWhereACellSaysNothing) {
+TEST(SweepFile, AListTakesOtherValuesFromTheExperiment) {
     const Sweep sweep = sweep_of(R"({"experiment": {"food_count": 9, "generation_limit": 4},
         "list": [{}, {"poison_count": 3}, {"food_count": 2, "generation_limit": 5}], "replicates": 3})");
     EXPECT_THAT(column(sweep, "poison_count"), ElementsAre("40", "3", "40"));
@@ -96,7 +96,7 @@ TEST(SweepFile, AListHasWhatTheExperimentHasWhereACellSaysNothing) {
     EXPECT_EQ(sweep.parameters_of(2).generation_limit, 5u);
 }
 
-TEST(SweepFile, AnExperimentsScheduleGivesWayToWhatIsSwept) {
+TEST(SweepFile, ASweptParameterReplacesItsSchedule) {
     const Sweep sweep = sweep_of(R"({"experiment": {"mutation_chance": {"1": 0.2, "30": 0.05},
         "mutation_step": {"10": 5}, "generation_limit": {"1": 9, "4": 12}},
         "grid": {"mutation_chance": [0.1, 0.3]}, "generations": 40})");
@@ -113,7 +113,7 @@ TEST(SweepFile, AnExperimentsScheduleGivesWayToWhatIsSwept) {
                 HasSubstr("cell 0 (tournament_size 3): tournament_size at generation 5"));
 }
 
-TEST(SweepFile, ALatinHypercubeHasOneSampleInEachPartOfEachRange) {
+TEST(SweepFile, ALatinHypercubeSamplesEachPartOnce) {
     const Sweep sweep = sweep_of(R"({"generations": 1, "seed": 3, "latin_hypercube": {"samples": 40, "parameters": {
         "mutation_chance": {"from": 0.2, "to": 0.6}, "mutation_step": {"from": 1, "to": 100, "scale": "log"},
         "food_count": {"from": 1, "to": 4}, "selection": ["roulette", "random"]}}})");
@@ -145,10 +145,10 @@ TEST(SweepFile, ALatinHypercubeFollowsFromTheSeed) {
     EXPECT_NE(drawn("5").cells, drawn("6").cells);
     const Sweep sweep = drawn("5");
     EXPECT_NE(column(sweep, "mutation_chance"), column(sweep, "survivors"));
-    EXPECT_EQ(column(sweep, "survivors")[0], "0.13972668521716183"); // for ever
+    EXPECT_EQ(column(sweep, "survivors")[0], "0.13972668521716183"); // must never change
 }
 
-TEST(SweepFile, TheSeedIsItsOwnOrTheExperimentsOrOne) {
+TEST(SweepFile, TheSeedIsTheSweepsOrTheExperimentsOrOne) {
     const std::string rest = R"("list": [{}], "generations": 1)";
     EXPECT_EQ(sweep_of("{" + rest + "}").seed, base::Seed{1});
     EXPECT_EQ(sweep_of(R"({"experiment": {"seed": 9}, )" + rest + "}").seed, base::Seed{9});
@@ -171,7 +171,7 @@ TEST(SweepFile, AnExperimentIsLoadedByItsPath) {
     EXPECT_THAT(refusal_of(R"({"experiment": "x.json", "list": [{}]})"), HasSubstr("x.json: cannot be read"));
 }
 
-TEST(SweepFile, WhateverIsWrongIsNamedWithItsLine) {
+TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
     const std::map<std::string, std::string> wrong{
         {"{\n\"list\": [{}],\n\"steps\": 3}",
          "steps (line 3): got an unknown name, allowed description, experiment, grid"},
@@ -225,21 +225,21 @@ TEST(SweepFile, WhateverIsWrongIsNamedWithItsLine) {
     for (const auto& [text, words] : wrong) {
         EXPECT_THAT(refusal_of(text), HasSubstr(words)) << text;
     }
-    // All at once, not one after another.
+    // All errors are reported at once.
     const std::string all = refusal_of(R"({"grid": {"survivors": [2], "luck": [1]}, "replicates": 0, "seed": "x"})");
     for (const char* field : {"grid.survivors[0]", "grid.luck", "replicates", "seed"}) {
         EXPECT_THAT(all, HasSubstr(field));
     }
 }
 
-TEST(SweepFile, WhatIsNoJsonIsToldWithItsLine) {
+TEST(SweepFile, InvalidJsonIsReportedWithItsLine) {
     EXPECT_THAT(refusal_of("{\n\"list\": [{}]\n\"seed\": 1}"), HasSubstr("not JSON: line 3"));
     EXPECT_THAT(refusal_of(""), HasSubstr("not JSON"));
     EXPECT_THAT(refusal_of("{} {}"), HasSubstr("not JSON"));
-    EXPECT_THAT(refusal_of("[]"), HasSubstr("a JSON object is needed"));
+    EXPECT_THAT(refusal_of("[]"), HasSubstr("expected a JSON object"));
 }
 
-TEST(SweepFile, ValuesThatDoNotGoTogetherAreNamedWithTheirCell) {
+TEST(SweepFile, ContradictoryValuesAreNamedWithTheirCell) {
     const std::string said =
         refusal_of(R"({"generations": 1, "grid": {"tournament_size": [2, 5], "tournament_winners": [1, 3]}})");
     EXPECT_THAT(
@@ -249,13 +249,13 @@ TEST(SweepFile, ValuesThatDoNotGoTogetherAreNamedWithTheirCell) {
     }
     const std::string many = refusal_of(R"({"generations": 1, "experiment": {"tournament_size": 300}, "grid":
         {"tournament_winners": {"from": 301, "to": 1000, "steps": 700}}})");
-    EXPECT_THAT(many, HasSubstr("700, of which the first are"));
+    EXPECT_THAT(many, HasSubstr("700 errors, of which the first are"));
     EXPECT_EQ(std::ranges::count(many, '\n'), static_cast<std::ptrdiff_t>(violations_max));
 }
 
-TEST(SweepFile, ARunThatWouldNeverEndIsRefused) {
+TEST(SweepFile, ARunWithoutAnEndIsRefused) {
     EXPECT_THAT(refusal_of(R"({"list": [{}, {"food_count": 1}]})"),
-                HasSubstr("generations: got nothing, allowed what ends a run"));
+                HasSubstr("generations: got nothing, allowed a criterion that ends a run"));
     EXPECT_THAT(refusal_of(R"({"list": [{"stagnation_limit": 5}, {"food_count": 1}]})"),
                 HasSubstr("cell 1 (stagnation_limit 0, food_count 1): generation_limit: got nothing"));
     for (const char* criterion : {R"("generation_limit": 1)", R"("stagnation_limit": 1)",
@@ -264,7 +264,7 @@ TEST(SweepFile, ARunThatWouldNeverEndIsRefused) {
     }
 }
 
-TEST(SweepFile, ThereAreAtMostAHundredThousandRuns) {
+TEST(SweepFile, HasAtMostAHundredThousandRuns) {
     const auto grid = [](const std::string& replicates) {
         return R"({"generations": 1, "replicates": )" + replicates + R"(, "grid": {
             "survivors": {"from": 0, "to": 1, "steps": 100}, "mutation_chance": {"from": 0, "to": 1, "steps": 100}}})";
@@ -274,7 +274,7 @@ TEST(SweepFile, ThereAreAtMostAHundredThousandRuns) {
     EXPECT_THAT(refusal_of(R"({"generations": 1, "replicates": 2, "latin_hypercube": {"samples": 100000, "parameters":
         {"survivors": {"from": 0, "to": 1}}}})"),
                 HasSubstr("got 100000 cells of 2 replicates, allowed at most 100000 runs"));
-    // A product that no number holds.
+    // The number of cells exceeds 64 bits.
     std::string huge = R"({"generations": 1, "grid": {)";
     for (const char* name : {"survivors", "mutation_chance", "crossover_chance", "rearrange_chance", "reset_chance"}) {
         huge += std::string{huge.back() == '{' ? "\"" : ", \""} + name + R"(": {"from": 0, "to": 1, "steps": 99999})";
@@ -282,7 +282,7 @@ TEST(SweepFile, ThereAreAtMostAHundredThousandRuns) {
     EXPECT_THAT(refusal_of(huge + "}}"), HasSubstr("allowed at most 100000 runs"));
 }
 
-TEST(SweepFile, TheExamplesAreGood) {
+TEST(SweepFile, TheExamplesAreValid) {
     const auto sweep = load_sweep(EVOD_SOURCE_FOLDER "/experiments/sweeps/mutation.json");
     ASSERT_TRUE(sweep) << to_text(sweep.error());
     EXPECT_EQ(sweep->run_count(), 64u);

@@ -1,33 +1,77 @@
 #include "server/parameters/json_text.h"
 
-#include <boost/json.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace evod::parameters {
 namespace {
 
-TEST(JsonText, LinesAreCountedFromOne) {
-    EXPECT_EQ(line_of("a\nb\n\nc", 0), 1u);
-    EXPECT_EQ(line_of("a\nb\n\nc", 1), 1u);
-    EXPECT_EQ(line_of("a\nb\n\nc", 2), 2u);
-    EXPECT_EQ(line_of("a\nb\n\nc", 5), 4u);
-    EXPECT_EQ(line_of("", 0), 1u);
-}
+using testing::StartsWith;
 
 TEST(JsonText, HasOneValue) {
     ASSERT_TRUE(parse_json(" {\"a\": [1, 2]}\r\n\t").has_value());
-    EXPECT_EQ(parse_json("3").value().as_int64(), 3);
+    EXPECT_EQ(parse_json("3").value().whole_number(), 3u);
     EXPECT_FALSE(parse_json("").has_value());
     EXPECT_FALSE(parse_json("1 2").has_value());
     EXPECT_FALSE(parse_json("{} {}").has_value());
+    EXPECT_FALSE(parse_json(std::string(100'000, '[')).has_value());
 }
 
 TEST(JsonText, ErrorsNameTheirLine) {
     const auto refused = parse_json("{\n\"a\": 1,\n\"b\" 2\n}").error();
     EXPECT_EQ(refused.code, base::RefusalCode::InvalidArgument);
-    EXPECT_THAT(refused.message, testing::StartsWith("not JSON: line 3: "));
-    EXPECT_THAT(parse_json("{\"a\": 1}\n}").error().message, testing::StartsWith("not JSON: line 2: "));
+    EXPECT_THAT(refused.message, StartsWith("not JSON: line 3: "));
+    EXPECT_THAT(parse_json("{\"a\": 1}\n}").error().message, StartsWith("not JSON: line 2: "));
+}
+
+TEST(JsonText, MembersAndElementsHaveTheirLines) {
+    const std::string text = "\n{\"a\": {\n\"b\\n\\u0022\": [1,\n\"x,]}\", [ ]]},\n\"a\":\nnull}";
+    const auto document = parse_json(text);
+    ASSERT_TRUE(document);
+    EXPECT_EQ(document->line, 2u);
+    ASSERT_EQ(document->members.size(), 2u);
+    EXPECT_EQ(document->members[1].line, 5u);
+    EXPECT_EQ(document->members[1].value.line, 6u);
+    EXPECT_EQ(document->members[1].value.text, "null");
+    const JsonMember& inner = document->find("a")->value.members[0];
+    EXPECT_EQ(inner.name, "b\n\"");
+    EXPECT_EQ(inner.line, 3u);
+    ASSERT_EQ(inner.value.elements.size(), 3u);
+    EXPECT_EQ(inner.value.elements[1].line, 4u);
+    EXPECT_EQ(inner.value.elements[1].string(), "x,]}");
+    EXPECT_TRUE(inner.value.elements[2].elements.empty());
+    EXPECT_EQ(document->find("b"), nullptr);
+}
+
+TEST(JsonText, NumbersKeepAllTheirBits) {
+    const auto whole = [](std::string_view text) { return parse_json(text)->whole_number(); };
+    EXPECT_EQ(whole("18446744073709551615"), ~std::uint64_t{0});
+    EXPECT_EQ(whole("-0"), 0u);
+    for (const char* text : {"18446744073709551616", "-1", "1.0", "1e2", "\"1\"", "null"}) {
+        EXPECT_EQ(whole(text), std::nullopt) << text;
+    }
+    EXPECT_EQ(parse_json("0.1")->real(), 0.1);
+    EXPECT_EQ(parse_json("123456789012345678901234567890")->real(), 123456789012345678901234567890.0);
+    EXPECT_EQ(parse_json("1e-999")->real(), 0.0);
+}
+
+TEST(JsonText, LongTextsAreDescribedInErrors) {
+    EXPECT_EQ(parse_json("[1, 2]")->quoted(), "[1, 2]");
+    const std::string list = "[" + std::string(60, ' ') + "]", object = "{" + std::string(60, ' ') + "}";
+    EXPECT_EQ(parse_json(list)->quoted(), "a list");
+    EXPECT_EQ(parse_json(object)->quoted(), "an object");
+}
+
+TEST(JsonText, ARepeatedNameIsAViolation) {
+    const std::string text = "{\"a\": 1,\n\"b\": 2,\n\"a\": 3}";
+    const auto document = parse_json(text);
+    std::vector<base::Violation> violations;
+    const auto members = unique_members(*document, "list[0].", violations);
+    ASSERT_EQ(members.size(), 2u);
+    EXPECT_EQ(members[0]->value.text, "1");
+    ASSERT_EQ(violations.size(), 1u);
+    EXPECT_EQ(violations[0].field, "list[0].a (line 3)");
+    EXPECT_EQ(violations[0].got, "given twice");
 }
 
 } // namespace
