@@ -135,7 +135,8 @@ class ScheduleReader {
     const Schedule& schedule() const { return schedule_; }
 
   private:
-    /// The line of the faulty value; otherwise of its parameter; otherwise of a parameter that changes in that generation.
+    /// The line of the faulty value; otherwise of its parameter; otherwise of a parameter that changes in that
+    /// generation.
     std::optional<std::size_t> line_of(const ScheduleFault& fault, const JsonNode& document) const {
         if (const auto read = read_.find(fault.violation.field); read != read_.end()) {
             if (const auto line = read->second.line_at(fault.generation)) {

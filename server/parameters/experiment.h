@@ -31,8 +31,8 @@ base::Result<Experiment> parse_experiment(std::string_view text);
 /// The same of a JSON value inside another file, with the lines of that file.
 base::Result<Experiment> read_experiment(const JsonNode& document);
 
-/// The value of a parameter. A number without a fraction becomes a count if it fits. Returns nullopt for null, arrays and
-/// objects.
+/// The value of a parameter. A number without a fraction becomes a count if it fits. Returns nullopt for null, arrays
+/// and objects.
 std::optional<ParameterValue> parameter_value_of(const JsonNode& node);
 
 enum class Written { Differences, Everything }; // Differences: only the parameters that differ from their defaults

@@ -47,7 +47,7 @@ class Run(Folder):
                 self.assertIn("ended: generation_limit", done.stdout)
                 self.assertIn("M organism-ticks/s", done.stdout)
 
-    def test_the_same_seed_gives_the_same_state_on_any_number_of_threads(self):
+    def test_a_seed_gives_the_same_state_for_any_threads(self):
         states = {
             state(evod("run", "--seed", "7", "--generations", "3", "--threads", str(n), *self.short).stdout)
             for n in (1, 2, 3)
@@ -66,7 +66,7 @@ class Run(Folder):
             self.assertLessEqual(float(row["fitness_worst"]), float(row["fitness_mean"]))
             self.assertLessEqual(float(row["fitness_mean"]), float(row["fitness_best"]))
 
-    def test_the_exit_status_tells_the_outcome(self):
+    def test_the_exit_status_is_the_outcome(self):
         evod("run", "--seed", "1", "--set", "stop_at_target_fitness=true", "--set", "target_fitness=1", *self.short)
         evod("run", "--seed", "1", "--set", "stagnation_limit=2", "--set", "fitness=gene_sum", "--set",
              "mutation_chance=0", status=3)
@@ -84,7 +84,7 @@ class Run(Folder):
         self.assertIn("ended: interrupted", rest)
         self.assertRegex(rest, "state [0-9a-f]{32}")
 
-    def test_ask_takes_answers_proposals_and_asks_again(self):
+    def test_ask_repeats_a_question_after_a_wrong_answer(self):
         # Population, food (twice), poison, time, generations; the rest as proposed.
         answers = "9\nmany\n11\n\n1.5\n1\n" + "\n" * 40
         done = evod("run", "--seed", "1", "--ask", stdin=answers)
@@ -96,18 +96,18 @@ class Run(Folder):
                     "--set", "generation_s=1.5")
         self.assertEqual(state(done.stdout), state(same.stdout))
 
-    def test_ask_ends_with_its_input(self):
+    def test_ask_fails_at_the_end_of_its_input(self):
         for answers in ("", "9\n", "9\n11\n\n1.5\n1\n"):
             done = evod("run", "--seed", "1", "--ask", stdin=answers, status=1)
             self.assertIn("--ask: the input ended before the answer to ", done.stderr)
 
-    def test_what_a_file_holds_does_not_steer_the_terminal(self):
+    def test_control_characters_of_files_are_not_printed(self):
         path = pathlib.Path(self.folder.name) / "steering.json"
         path.write_bytes(b'{"mutation_\\u001b[2Jchance\xc2\x9b31m": 1}')
         said = evod("check", path, status=1)
         self.assertFalse(re.search("[\x00-\x09\x0b-\x1f\x7f-\x9f]", said.stdout + said.stderr), said)
 
-    def test_a_server_judges_its_options_before_it_opens_files(self):
+    def test_a_server_checks_options_before_it_opens_files(self):
         data = pathlib.Path(self.folder.name) / "not made"
         for options, words in ((["--bind", "300.1.1.1"], "give --bind the address of an interface"),
                                (["--http-port", "0", "--http-bind", "x"], "give --http-bind the address of an interface"),
@@ -115,11 +115,11 @@ class Run(Folder):
             self.assertIn(words, evod("--port", "0", "--data", data, *options, status=1).stderr)
             self.assertFalse(data.exists())
 
-    def test_wrong_usage_is_said(self):
+    def test_wrong_usage_ends_with_status_2(self):
         for arguments in (("--seed", "-1"), ("--generations", "many"), ("--threads", "0"), ("--speed", "2")):
             evod("run", *arguments, status=2)
 
-    def test_what_cannot_be_is_named(self):
+    def test_values_that_are_not_allowed_are_named(self):
         for arguments, words in {
             ("--set", "mutation_chance=1.5"): ["--set mutation_chance: got 1.5, allowed 0 to 1"],
             ("--set", "mutation_chanse=0.5"): ["--set mutation_chanse", "did you mean mutation_chance"],
@@ -137,7 +137,7 @@ class Run(Folder):
 
 
 class Options(Folder):
-    def test_what_stands_before_a_subcommand_counts_as_if_it_came_after(self):
+    def test_options_before_a_subcommand_count_as_its_own(self):
         short = ["--generations", "1", *Run.short]
         self.assertEqual(state(evod("--seed", "7", "run", *short).stdout), state(evod("run", "--seed", "7", *short).stdout))
         evod("--data", self.folder.name, "token", "add", "anna", "--role", "viewer")
@@ -146,7 +146,7 @@ class Options(Folder):
         said = evod("--data", self.folder.name, "fork", "/nowhere.evod", "--name", "a b", status=1).stderr
         self.assertIn("--name: got \"a b\"", said)
 
-    def test_what_a_subcommand_has_no_use_for_is_refused(self):
+    def test_options_of_the_server_are_refused_by_subcommands(self):
         path = self.file("{}")
         for option, words in ((["--port", "7744"], ["verify", path]), (["--data", self.folder.name], ["run", path]),
                               (["--start"], ["replay", path]), (["--keep-every", "2"], ["export", path, "--what", "events"]),
@@ -158,11 +158,11 @@ class Options(Folder):
                 said = evod(*option, *words, status=2).stderr
                 self.assertIn(f"{option[0]}: an option of the server, which evod {command} has no use for: leave it out", said)
 
-    def test_what_writes_files_is_refused_where_nothing_is_kept(self):
+    def test_keep_nothing_excludes_options_of_run_files(self):
         for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):
             self.assertIn(f"--keep-nothing excludes {option[0]}", evod("--keep-nothing", *option, status=2).stderr)
 
-    def test_a_number_that_cannot_be_is_told_with_what_is_allowed(self):
+    def test_an_invalid_number_is_reported_with_its_range(self):
         for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
                                    (["--sessions-max"], 1, 1000000), (["--seed"], 0, 2**64 - 1),
                                    (["--keep-every"], 1, 10**9), (["--file-bytes-max"], 2**20, 2**50),
@@ -180,7 +180,7 @@ class Options(Folder):
 
 
 class Output(Folder):
-    def test_what_cannot_be_written_is_no_success(self):
+    def test_a_full_standard_output_is_an_error(self):
         for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",
                                                                                                    "1", "--generations", "1"):
             with open("/dev/full", "w") as full:
@@ -188,12 +188,12 @@ class Output(Folder):
             self.assertEqual(done.returncode, 1, words)
             self.assertIn("evod: standard output cannot be written", done.stderr)
 
-    def test_a_word_that_is_no_command_is_told_those_there_are(self):
+    def test_an_unknown_command_gets_a_list_of_commands(self):
         said = evod("exprot", status=2).stderr
         self.assertIn("exprot", said)
         self.assertIn("Commands are run compare sweep check fork replay verify export token certificate parameters limits", said)
 
-    def test_a_file_that_cannot_be_made_is_told_with_the_reason(self):
+    def test_an_output_file_error_is_reported_with_its_reason(self):
         self.assertIn(f"--csv: cannot write {self.folder.name}: Is a directory",
                       evod("run", "--csv", self.folder.name, "--generations", "1", status=1).stderr)
         self.assertIn(f"there are no tokens in {self.folder.name}", evod("token", "list", "--data", self.folder.name).stderr)
@@ -241,12 +241,12 @@ class Population(Folder):
 
 
 class Check(Folder):
-    def test_a_good_file_is_good(self):
+    def test_a_valid_file_is_described(self):
         done = evod("check", self.file('{"food_count": 3, "seed": 18446744073709551615, "description": "Few meals."}'))
         self.assertIn("valid\nFew meals.", done.stdout)
         self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
 
-    def test_what_is_wrong_is_named_with_its_line(self):
+    def test_errors_name_their_line(self):
         for text, word in {
             '{\n  "food_count": 3,\n  "mutation_chance": 2\n}': "mutation_chance (line 3): got 2, allowed 0 to 1",
             '{\n\n "fod_count": 3}': "fod_count (line 3): got an unknown name, allowed a parameter of the registry; did you mean",
@@ -264,7 +264,7 @@ class Check(Folder):
 
 
 class Image(Folder):
-    def test_what_it_runs_is_given_options_that_it_knows(self):
+    def test_subcommands_get_only_options_they_have(self):
         program = pathlib.Path(self.file("#!/bin/sh\necho \"$@\"\n", "evod"))
         program.chmod(0o755)
         path = f"{self.folder.name}:{os.environ['PATH']}"
@@ -278,7 +278,7 @@ class Image(Folder):
 
 
 class Documents(unittest.TestCase):
-    """What the program prints stands in them."""
+    """They contain what the program prints."""
 
     def test_parameters(self):
         self.assertEqual((ROOT / "docs/PARAMETERS.md").read_text(), evod("parameters").stdout)

@@ -89,7 +89,7 @@ class Export(Runs):
         self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
                          self.evod_export("--what", "population", "--generation", "2"))
 
-    def test_what_was_not_kept_is_simulated_again_and_comes_in_parts(self):
+    def test_purged_generations_are_simulated_again(self):
         _, client = self.serve("--keep-every", "50")
         self.run_world(client, 120, fitness="gene_sum", population_size=100)
         text, parts = self.table(client, table=c.RUN_TABLE_ORGANISMS)
@@ -97,7 +97,7 @@ class Export(Runs):
         self.assertEqual(text, self.evod_export("--what", "organisms"))
         self.assertEqual(text.count("\n"), 1 + 120 * 2 * 100)
 
-    def test_a_plate_goes_from_one_world_to_another(self):
+    def test_a_population_can_be_copied_to_another_world(self):
         server, client = self.serve()
         self.run_world(client, 3)
         plate = f"{self.folder}/plate.csv"
@@ -109,7 +109,7 @@ class Export(Runs):
         copied, _ = self.table(client, world="copy", table=c.RUN_TABLE_POPULATION)
         self.assertEqual(copied, pathlib.Path(plate).read_text())
 
-    def test_a_world_that_runs_is_exported_up_to_now_and_goes_on(self):
+    def test_a_running_world_can_be_exported(self):
         _, client = self.serve()
         self.run_world(client, 30)
         client.call(run=c.Run(world="w"))
@@ -120,17 +120,17 @@ class Export(Runs):
         client.call(pause=c.Pause(world="w"))
         self.assertTrue(self.table(client, table=c.RUN_TABLE_GENERATIONS)[0].startswith(text))
 
-    def test_the_past_is_exported_too(self):
+    def test_a_replay_can_be_exported(self):
         server, client = self.serve()
         self.run_world(client, 4)
         live, _ = self.table(client, table=c.RUN_TABLE_ORGANISMS)
-        look = client.call(open_replay=c.OpenReplay(world="w")).world.name
-        self.assertEqual(self.table(client, world=look, table=c.RUN_TABLE_ORGANISMS)[0], live)
+        replay = client.call(open_replay=c.OpenReplay(world="w")).world.name
+        self.assertEqual(self.table(client, world=replay, table=c.RUN_TABLE_ORGANISMS)[0], live)
         server.end()
         replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
         self.assertEqual(self.table(replayed, table=c.RUN_TABLE_ORGANISMS)[0], live)
 
-    def test_what_is_wrong_is_named(self):
+    def test_errors_name_the_field(self):
         server, client = self.serve()
         self.run_world(client, 2)
         events = {"table": c.RUN_TABLE_EVENTS}
@@ -139,7 +139,7 @@ class Export(Runs):
         self.refused(client, INVALID_ARGUMENT, "format", format=0, **events)
         self.refused(client, INVALID_ARGUMENT, "generation", generation=1, **events)
         self.refused(client, INVALID_ARGUMENT, "of", of=c.OrganismName(generation=1), **events)
-        self.refused(client, NOT_FOUND, "world", **{**events, "world": "nobody"})
+        self.refused(client, NOT_FOUND, "world", **{**events, "world": "unknown"})
         self.refused(client, NOT_FOUND, "generation", table=c.RUN_TABLE_POPULATION, generation=9)
         for field, of in (("generation", (9, 0, 0)), ("island", (1, 2, 0)), ("organism", (1, 0, 12))):
             name = c.OrganismName(generation=of[0], island=of[1], organism=of[2])
@@ -149,7 +149,7 @@ class Export(Runs):
         self.assertIn("No such file", self.evoctl(server, "--what", "events", "--output", "/nowhere/x", status=2))
         client.call(list_worlds=c.ListWorlds())
 
-    def test_a_session_exports_one_at_a_time_and_all_together_as_many_as_there_may_be(self):
+    def test_exports_are_limited_by_session_and_server(self):
         server, client = self.serve()
         self.run_world(client, 60, fitness="gene_sum", population_size=100)
         organisms = c.ExportRun(world="w", table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)
@@ -164,13 +164,12 @@ class Export(Runs):
         exports_max = client.welcome.limits.exports_max
         others = [self.client(server) for _ in range(exports_max)]
 
-
         def begins(asking):
             return asking.response(asking.ask(export_run=organisms)).status.code == 0
         for other in others[:-1]:
-            plain.until(lambda asking=other: begins(asking), "a place: one just given up may still have it")
+            plain.until(lambda asking=other: begins(asking), "an export: one just cancelled may still count")
         others[-1].call(RESOURCE_EXHAUSTED, export_run=organisms)
-        others[0].socket.close()  # whoever leaves makes room
+        others[0].socket.close()  # a session that ends frees its export
         plain.until(lambda: begins(others[-1]), "room")
         server.end()
 

@@ -271,7 +271,7 @@ class Refused(Folder):
         self.assertIn("cannot be read: No such file", evod("sweep", "/nowhere.json", status=1).stderr)
         self.assertIn("this is a folder, not a sweep file", evod("sweep", "/tmp", status=1).stderr)
 
-    def test_an_experiment_is_found_beside_the_sweep_file_and_its_faults_are_told(self):
+    def test_experiment_paths_are_relative_to_the_sweep_file(self):
         (self.folder / "deep").mkdir()
         sweep = self.file('{"list": [{}], "experiment": "../mine.json"}', "deep/small.json")
         self.file('{"generation_limit": 1, "generation_s": 1}', "mine.json")
@@ -279,21 +279,21 @@ class Refused(Folder):
         self.file('{"generation_limit": 1,\n"generation_s": -1}', "mine.json")
         said = evod("sweep", sweep, "--out", self.folder / "out", status=1).stderr
         self.assertIn("experiment ../mine.json: generation_s (line 2): got -1, allowed 0.001 to 86400", said)
-        # What it says now is another sweep.
+        # With another experiment it is another sweep.
         self.file('{"generation_limit": 2, "generation_s": 1}', "mine.json")
         said = evod("sweep", sweep, "--out", self.folder / "out", status=1).stderr
         self.assertRegex(said, r"another sweep.*\n  parameters: got \{.*\"generation_limit\": 1\}, allowed \{.*: 2\}")
 
-    def test_a_folder_of_another_sweep_is(self):
+    def test_a_folder_of_another_sweep_is_refused(self):
         out = self.folder / "out"
         evod("sweep", self.file(SMALL), "--out", out)
         table = (out / "runs.csv").read_bytes()
         for gather in ([], ["--gather"], ["--array-index", "0"]):
             said = evod("sweep", self.file({**SMALL, "seed": 8}), "--out", out, *gather, status=1).stderr
-            self.assertRegex(said, "another sweep.*--out.*\n  seed: got 7, allowed 8\n  sweep file: got one that has been changed")
+            self.assertRegex(said, "another sweep.*--out.*\n  seed: got 7, allowed 8\n  sweep file: got a changed text")
         self.assertEqual((out / "runs.csv").read_bytes(), table)
 
-    def test_wrong_usage_is(self):
+    def test_wrong_usage_ends_with_status_2(self):
         sweep = self.file(SMALL)
         for arguments in ((), (sweep, "--jobs", "0"), (sweep, "--jobs", "many"), (sweep, "--array-index", "-1"),
                           (sweep, "--array-index", "x"), (sweep, "--array-index"), (sweep, "--gather", "--run-files"),

@@ -72,9 +72,9 @@ TEST(SweepFolder, OfAnotherSweepIsRefusedWithTheDifferences) {
         return opened ? "" : to_text(opened.error());
     };
     const std::string other_seed = refused(two_cells(R"(, "seed": 5)"));
-    EXPECT_THAT(other_seed, HasSubstr("has the results of another sweep"));
+    EXPECT_THAT(other_seed, HasSubstr("contains the results of another sweep"));
     EXPECT_THAT(other_seed, HasSubstr("\n  seed: got 1, allowed 5"));
-    EXPECT_THAT(other_seed, HasSubstr("\n  sweep file: got one that has been changed"));
+    EXPECT_THAT(other_seed, HasSubstr("\n  sweep file: got a changed text"));
     EXPECT_THAT(other_seed, Not(HasSubstr("\n  model")));
     EXPECT_THAT(
         refused(two_cells(R"(, "experiment": {"poison_count": 7})")),
@@ -102,7 +102,7 @@ TEST(SweepFolder, WithResultsOfAnUnknownSweepIsRefused) {
     const Sweep sweep = two_cells();
     const auto opened = SweepFolder::open(folder.path(), sweep);
     ASSERT_FALSE(opened);
-    EXPECT_THAT(opened.error().message, HasSubstr("/runs.csv is there, and no sweep.txt"));
+    EXPECT_THAT(opened.error().message, HasSubstr("/runs.csv exists without the sweep.txt"));
     EXPECT_EQ(text_of(folder.path() + "/runs.csv"), "mine");
     EXPECT_FALSE(SweepFolder::open(folder.path() + "/runs.csv", sweep)); // a file
 }
@@ -144,7 +144,7 @@ TEST(SweepFolder, GathersPartsInOrderAfterTheProvenance) {
                                         to_text(RunEnd{run == 2 ? Outcome::Extinction : Outcome::GenerationLimit, 1}));
     }
     const std::string stray = AtomicFile::temporary_name(folder->part_of(1));
-    write(stray, "of somebody who was killed");
+    write(stray, "of a killed process");
     const auto gathered = folder->gather();
     ASSERT_TRUE(gathered) << to_text(gathered.error());
     EXPECT_EQ(gathered->rows, 4u);
@@ -173,7 +173,7 @@ TEST(SweepFolder, NamesAPartThatWasChanged) {
     }
     const auto gathered = folder->gather();
     ASSERT_FALSE(gathered);
-    EXPECT_THAT(gathered.error().message, HasSubstr("cell-0-replicate-1.csv is not as it was written"));
+    EXPECT_THAT(gathered.error().message, HasSubstr("cell-0-replicate-1.csv was changed"));
     EXPECT_FALSE(std::filesystem::exists(folder->table()));
 }
 
