@@ -25,7 +25,7 @@ void hand_down_options(const CLI::App& program, const std::string& owner) {
         CLI::Option* own = command->get_option_no_throw(name);
         if (own == nullptr) {
             throw CLI::ValidationError{name,
-                                       "an option of " + owner + ", which " + words + " has no use for: leave it out"};
+                                       "an option of " + owner + " that " + words + " does not use: leave it out"};
         }
         if (own->count() > 0) {
             throw CLI::ValidationError{name, "given twice, before " + command->get_name() + " and after it"};
@@ -39,11 +39,6 @@ void hand_down_options(const CLI::App& program, const std::string& owner) {
 
 Option Option::check(Check check) const {
     option_->check(std::move(check));
-    return *this;
-}
-
-Option Option::range(int min, int max) const {
-    option_->check(CLI::Range(min, max));
     return *this;
 }
 

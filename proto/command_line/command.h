@@ -45,8 +45,6 @@ class Option {
     explicit Option(CLI::Option* option) : option_{option} {}
 
     Option check(Check check) const;
-    /// Whole numbers; the help shows the range.
-    Option range(int min, int max) const;
     /// One of these words; the help shows them.
     Option choices(const std::vector<std::string>& choices) const;
     /// How many values a vector takes.

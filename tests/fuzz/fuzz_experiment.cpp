@@ -1,4 +1,5 @@
-// Any text as an experiment file: valid parameters, which are written and read back the same, or a refusal.
+// Parses any text as an experiment file. The result must be valid parameters that survive writing and reading, or a
+// refusal.
 #include "server/parameters/experiment.h"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Any text as a population file: islands of whole organisms, as many as there are lines, or what is wrong.
+// Parses any text as a population file. The result must be one organism per line, or an error.
 #include "proto/codec/population_csv.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Any text as a sweep file: cells that are valid and end, the same each time, or a refusal that says why.
+// Parses any text as a sweep file. The result must be valid cells with an end, the same each time, or a refusal.
 #include "server/experiments/sweep_file.h"
 
 #include <cstdlib>
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             !parameters.stop_at_target_fitness && !parameters.stop_at_extinction) {
             std::abort();
         }
-        for (std::size_t i = 0; i < sweep->swept.size(); ++i) { // is what the tables say it is
+        for (std::size_t i = 0; i < sweep->swept.size(); ++i) { // the value in the table
             if (sweep->swept[i]->get(parameters) != sweep->cells[cell][i]) {
                 std::abort();
             }

@@ -156,7 +156,7 @@ class Options(Folder):
             command = " ".join(words[:2]) if words[0] == "token" else words[0]
             with self.subTest(command):
                 said = evod(*option, *words, status=2).stderr
-                self.assertIn(f"{option[0]}: an option of the server, which evod {command} has no use for: leave it out", said)
+                self.assertIn(f"{option[0]}: an option of the server that evod {command} does not use: leave it out", said)
 
     def test_keep_nothing_excludes_options_of_run_files(self):
         for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):

@@ -88,7 +88,7 @@ TEST(Command, HandsOptionsDownToTheSubcommand) {
     EXPECT_EQ(program.call({"--seed", "4", "run", "--seed", "5"}), exit_usage);
     EXPECT_THAT(program.err, HasSubstr("--seed: given twice, before run and after it"));
     EXPECT_EQ(program.call({"--seed", "4", "token", "list"}), exit_usage);
-    EXPECT_THAT(program.err, HasSubstr("an option of the laboratory, which lab token list has no use for"));
+    EXPECT_THAT(program.err, HasSubstr("an option of the laboratory that lab token list does not use"));
 }
 
 TEST(Command, TakesOptionsAfterTheSubcommandIfAllowed) {

@@ -5,7 +5,7 @@
 namespace evod::command_line {
 namespace {
 
-TEST(WholeNumber, TakesWhatIsInRange) {
+TEST(WholeNumber, AcceptsNumbersInRange) {
     for (const char* word : {"0", "7", "18446744073709551615"}) {
         EXPECT_EQ(WholeNumber{}(word), "") << word;
     }
@@ -13,14 +13,14 @@ TEST(WholeNumber, TakesWhatIsInRange) {
     EXPECT_EQ((WholeNumber{1, 10}("10")), "");
 }
 
-TEST(WholeNumber, SaysWhatIsAllowedAndWhatWasGiven) {
+TEST(WholeNumber, ReportsTheRangeAndTheWord) {
     for (const std::string word :
          {"0", "11", "-1", "1e99", "abc", "", "1.5", "010", "0x3", "+2", " 3", "99999999999999999999"}) {
         EXPECT_EQ((WholeNumber{1, 10}(word)), "must be a whole number, 1 to 10, not " + word);
     }
 }
 
-TEST(RealNumber, TakesWhatIsInRangeAndNothingElse) {
+TEST(RealNumber, AcceptsOnlyNumbersInRange) {
     for (const char* word : {"0.1", "3600", "1e3", "2.5"}) {
         EXPECT_EQ((RealNumber{0.1, 3600}(word)), "") << word;
     }
