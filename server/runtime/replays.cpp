@@ -163,8 +163,8 @@ void Replays::stop_waiting() {
 void Replays::read_and_seek(const replay::StoredRun& run, const std::optional<replay::WantedMoment>& to,
                             replay::RecordedUntil known, std::uint64_t owner, SeekDone done, const Begun& begun) {
     if (pending_.size() + seeks_.size() >= seeks_max) {
-        return done(
-            refusal(RefusalCode::ResourceExhausted, "too many seeks are under way: try again", base::Reason::ReplaysMax));
+        return done(refusal(RefusalCode::ResourceExhausted, "too many seeks are under way: try again",
+                            base::Reason::ReplaysMax));
     }
     const std::uint64_t number = ++last_seek_;
     pending_.emplace(number, PendingSeek{.owner = owner, .begun = begun, .done = std::move(done)});

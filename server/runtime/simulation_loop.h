@@ -117,7 +117,7 @@ class SimulationLoop {
     };
     std::optional<RunBefore> run_of(const simulation::Command& command) const;
     const simulation::Entry* entry_in(const simulation::Command& command) const;
-    /// Why no command can be applied to this world now; nullopt: it can.
+    /// Why the journal cannot store the command now, whatever it contains; nullopt: it can.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
     void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                 const std::optional<RunBefore>& before);

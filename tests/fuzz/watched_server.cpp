@@ -98,8 +98,7 @@ base::Result<access::Visitor> admit(const std::string& token) {
 }
 
 WatchedServer::WatchedServer()
-    : send_memory_{network::client_buffer_bytes_max, [] { require(false); }}
-    // a script leaves less than this unread
+    : send_memory_{network::client_buffer_bytes_max, [] { require(false); }} // a script leaves less than this unread
     , outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
     , dispatcher_{context_,
