@@ -1,0 +1,97 @@
+#include "server/jobs/job_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <optional>
+#include <set>
+#include <thread>
+#include <vector>
+
+namespace evod::jobs {
+namespace {
+
+TEST(JobQueue, RunsJobsInOrderOnOneThread) {
+    std::vector<int> done;
+    std::set<std::thread::id> threads;
+    std::promise<void> last;
+    {
+        JobQueue queue{{.name = "test"}};
+        for (int i = 0; i < 3; ++i) {
+            queue.add([&, i](const std::stop_token&) {
+                done.push_back(i);
+                threads.insert(std::this_thread::get_id());
+                if (i == 2) {
+                    last.set_value();
+                }
+            });
+        }
+        last.get_future().wait();
+    }
+    EXPECT_EQ(done, (std::vector{0, 1, 2}));
+    EXPECT_EQ(threads.size(), 1u);
+    EXPECT_FALSE(threads.contains(std::this_thread::get_id()));
+}
+
+TEST(JobQueue, RunsAtMostSoManyJobsAtATime) {
+    std::atomic<int> running = 0, most = 0, done = 0;
+    std::promise<void> two_run, all_done;
+    std::promise<void> go_on;
+    std::shared_future<void> may_end = go_on.get_future().share();
+    JobQueue queue{{.name = "test", .threads_max = 2}};
+    for (int i = 0; i < 4; ++i) {
+        queue.add([&](const std::stop_token&) {
+            const int now = ++running;
+            most = std::max(most.load(), now);
+            if (now == 2 && done == 0) {
+                two_run.set_value();
+            }
+            may_end.wait();
+            --running;
+            if (++done == 4) {
+                all_done.set_value();
+            }
+        });
+    }
+    two_run.get_future().wait();
+    go_on.set_value();
+    all_done.get_future().wait();
+    EXPECT_EQ(most, 2);
+}
+
+TEST(JobQueue, ACancelledJobSeesItsStopToken) {
+    JobQueue queue{{.name = "test"}};
+    std::promise<void> ended;
+    std::stop_source job = queue.add([&](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            std::this_thread::yield();
+        }
+        ended.set_value();
+    });
+    job.request_stop();
+    ended.get_future().wait();
+}
+
+TEST(JobQueue, ItsEndStopsRunningJobsAndDropsWaitingOnes) {
+    std::promise<void> begun;
+    bool stopped = false, other_ran = false;
+    {
+        std::optional<JobQueue> queue{std::in_place, JobQueue::Options{.name = "test"}};
+        queue->add([&](const std::stop_token& stop) {
+            begun.set_value();
+            while (!stop.stop_requested()) {
+                std::this_thread::yield();
+            }
+            stopped = true;
+        });
+        queue->add([&](const std::stop_token&) { other_ran = true; });
+        begun.get_future().wait();
+    }
+    EXPECT_TRUE(stopped);
+    EXPECT_FALSE(other_ran);
+}
+
+} // namespace
+} // namespace evod::jobs
