@@ -15,7 +15,7 @@ int main(int argument_count, char** arguments) {
     install_termination_handler();
     // Writing beyond `ulimit -f` then fails like a full disk, instead of ending the process.
     std::signal(SIGXFSZ, SIG_IGN);
-    // The server reports a malformed message to its sender. Protocol Buffers would also log each one, so that any client
+    // The server reports a malformed message to its sender. protobuf would also log each one, so that any client
     // could fill the log.
     google::protobuf::SetLogHandler(nullptr);
 

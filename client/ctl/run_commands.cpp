@@ -1,6 +1,6 @@
 // Commands that control worlds: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
-#include "client/ctl/experiment_file.h"
+#include "client/ctl/registry.h"
 #include "client/ctl/text.h"
 #include "proto/codec/framing.h"
 #include "proto/codec/population_csv.h"
@@ -49,14 +49,17 @@ std::ifstream open_file(const std::string& what, const std::string& path) {
     return file;
 }
 
-ExperimentFile read_experiment(const std::string& path, const Registry& registry) {
+/// Adds the text of an experiment file, which the server reads.
+void add_experiment(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file = open_file("experiment", path);
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    auto experiment = parse_experiment(text, registry);
-    if (!experiment) {
-        stop_for("the experiment file " + path + " is wrong:", experiment.error());
+    command.set_experiment_json(std::string{std::istreambuf_iterator<char>{file}, {}});
+    if (command.experiment_json().empty()) {
+        throw Stop{ExitCode::Usage, "the experiment file " + path + " is empty"};
     }
-    return *std::move(experiment);
+    constexpr std::size_t bytes_max = 1 << 20;
+    if (command.experiment_json().size() > bytes_max) {
+        throw Stop{ExitCode::Usage, "the experiment file " + path + " has more than 1 MiB"};
+    }
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
@@ -85,38 +88,18 @@ void create(const Common& common, const CreateOptions& options) {
     if (!options.population.empty()) {
         add_population(options.population, command);
     }
-    std::optional<std::uint64_t> seed;
-    if (!options.experiment.empty() || !options.words.empty()) {
-        const Registry registry = caller.registry();
-        if (!options.experiment.empty()) {
-            const ExperimentFile file = read_experiment(options.experiment, registry);
-            command.mutable_parameters()->Assign(file.parameters.begin(), file.parameters.end());
-            command.mutable_schedule()->Assign(file.schedule.begin(), file.schedule.end());
-            seed = file.seed;
-            if (!file.schedule.empty()) {
-                caller.need_planned_changes();
-            }
-        }
-        auto assignments = registry.assignments(options.words);
+    if (!options.experiment.empty()) {
+        add_experiment(options.experiment, command);
+    }
+    if (!options.words.empty()) {
+        const auto assignments = caller.registry().assignments(options.words);
         if (!assignments) {
             stop_for("nothing was created:", assignments.error());
         }
-        for (const auto& assignment : *assignments) {
-            // --set overrides the file, in all generations; the server accepts each name once.
-            auto& schedule = *command.mutable_schedule();
-            schedule.erase(std::remove_if(schedule.begin(), schedule.end(),
-                                          [&](const auto& s) { return s.name() == assignment.name(); }),
-                           schedule.end());
-            auto& given = *command.mutable_parameters();
-            const auto same = std::ranges::find_if(given, [&](const auto& g) { return g.name() == assignment.name(); });
-            *(same == given.end() ? given.Add() : &*same) = assignment;
-        }
+        command.mutable_parameters()->Assign(assignments->begin(), assignments->end());
     }
     if (options.seed) {
-        seed = options.seed;
-    }
-    if (seed) {
-        command.set_seed(*seed);
+        command.set_seed(*options.seed);
     }
     const v1::Response response = caller.call(std::move(request));
     print(common, response, [&] {

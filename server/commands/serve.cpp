@@ -103,7 +103,7 @@ void add_replay_command(Command& app) {
         .check(generation_number);
     command.add_option("--data", &options.data_folder, "Folder with the tokens of clients on other machines");
     add_server_options(command, options);
-    command.footer("Watch the replay with evoview, seek in it with evoctl seek, run and pause it like any world.");
+    command.footer("Open the replay with evoview, seek in it with evoctl seek, run and pause it like any world.");
     command.action([&options, &run] {
         begin_log(options);
         return run_server(replay_server_options(options, run));

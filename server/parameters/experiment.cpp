@@ -164,6 +164,13 @@ class ExperimentReader {
     explicit ExperimentReader(const JsonNode& document) : document_{document} {}
 
     base::Result<Experiment> read() {
+        // More are mistakes, and reporting each would take long.
+        const std::size_t members_max = 2 * parameter_registry().size();
+        if (document_.members.size() > members_max) {
+            return invalid("invalid experiment",
+                           {{"the experiment", "at most " + std::to_string(members_max) + " fields",
+                             std::to_string(document_.members.size())}});
+        }
         for (const JsonMember* member : unique_members(document_, "", violations_)) {
             read(*member);
         }

@@ -1,6 +1,7 @@
 #include "server/protocol/commands.h"
 
 #include "server/base/number_text.h"
+#include "server/protocol/experiments.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
 #include "server/protocol/refusals.h"
@@ -45,24 +46,20 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
                                     .seed = request.has_seed() ? base::Seed{request.seed()} : draws.seed,
                                     .run_id = draws.run_id};
     if (!too_many(request.parameters_size(), "create_world.parameters", violations)) {
-        Violations missing;
-        const auto assignments = to_assignments(request.parameters(), "create_world.", missing);
-        if (missing.empty()) {
-            auto parameters = parameters::assign({}, assignments, "create_world.");
-            if (parameters) {
-                command.parameters = *parameters;
-            } else {
-                missing = parameters.error().violations;
-            }
+        Violations found;
+        parameters::Experiment experiment = experiment_of(request, found);
+        command.parameters = experiment.parameters;
+        command.schedule = std::move(experiment.schedule);
+        if (experiment.seed && !request.has_seed()) {
+            command.seed = *experiment.seed;
         }
-        if (missing.empty()) {
-            command.first_population = first_population_of(request, missing);
+        if (found.empty()) {
+            command.first_population = first_population_of(request, found);
             const auto faults =
                 simulation::faults_of(command.first_population, command.parameters, "create_world.population");
-            missing.insert(missing.end(), faults.begin(), faults.end());
-            command.schedule = to_schedule(request.schedule(), command.parameters, "create_world.", missing);
+            found.insert(found.end(), faults.begin(), faults.end());
         }
-        violations.insert(violations.end(), missing.begin(), missing.end());
+        violations.insert(violations.end(), found.begin(), found.end());
     }
     return command;
 }

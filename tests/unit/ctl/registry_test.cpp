@@ -1,4 +1,3 @@
-#include "client/ctl/experiment_file.h"
 #include "client/ctl/registry.h"
 
 #include <gmock/gmock.h>
@@ -70,74 +69,6 @@ TEST(Assignments, ReportEveryMistakeTogether) {
 
 TEST(Assignments, LeaveRangesToTheServer) {
     EXPECT_EQ(set("mutation_chance=1.5"), "1.5");
-}
-
-TEST(ExperimentFile, ContainsParametersSeedAndDescription) {
-    const auto file = parse_experiment(
-        R"({"description": "a test", "seed": 18446744073709551615, "mutation_chance": 1, "respawn": true,
-            "selection": "tournament"})",
-        small_registry());
-    ASSERT_TRUE(file);
-    EXPECT_EQ(file->description, "a test");
-    EXPECT_EQ(file->seed, 18446744073709551615U);
-    ASSERT_EQ(file->parameters.size(), 3U);
-    EXPECT_EQ(file->parameters[0].value().real(), 1) << "a whole JSON number is a real where the registry says so";
-}
-
-TEST(ExperimentFile, ReferencePopulationFollowsThePopulation) {
-    const auto alone = parse_experiment(R"({"population_size": 20})", small_registry());
-    ASSERT_TRUE(alone);
-    ASSERT_EQ(alone->parameters.size(), 2U);
-    EXPECT_EQ(alone->parameters[1].name(), "reference_population");
-    EXPECT_EQ(alone->parameters[1].value().count(), 20U);
-    const auto both = parse_experiment(R"({"reference_population": 5, "population_size": 20})", small_registry());
-    EXPECT_EQ(both->parameters.size(), 2U);
-    EXPECT_EQ(both->parameters[0].value().count(), 5U);
-}
-
-TEST(ExperimentFile, MayHaveValuesByGeneration) {
-    const auto file = parse_experiment(
-        R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "selection": {"5": "tournament"}, "population_size": {"1": 20, "9": 40}})",
-        small_registry());
-    ASSERT_TRUE(file) << file.error().lines.front();
-    ASSERT_EQ(file->parameters.size(), 3U);
-    EXPECT_EQ(file->parameters[0].value().real(), 0.2);
-    EXPECT_EQ(file->parameters[2].name(), "reference_population");
-    EXPECT_EQ(file->parameters[2].value().count(), 20U);
-    ASSERT_EQ(file->schedule.size(), 3U);
-    EXPECT_EQ(file->schedule[0].generation(), 30U);
-    EXPECT_EQ(file->schedule[0].value().real(), 0.05);
-    EXPECT_EQ(file->schedule[1].value().choice(), "tournament");
-    const auto wrong = parse_experiment(
-        R"({"mutation_chance": {"0": 0.2, "x": 1, "007": 1, "30": "much"}, "respawn": {}, "selection": {"2": [1]}})",
-        small_registry());
-    ASSERT_FALSE(wrong);
-    EXPECT_THAT(wrong.error().lines,
-                ElementsAre(HasSubstr("mutation_chance: got \"0\", allowed generations as keys"),
-                            HasSubstr("got \"x\""), HasSubstr("got \"007\""),
-                            HasSubstr("mutation_chance at generation 30: got \"much\", allowed 0 to 1"),
-                            HasSubstr("respawn: got {}, allowed a generation and its value"),
-                            HasSubstr("selection at generation 2: got [1]")));
-    v1::Description at_reset;
-    *at_reset.add_parameters() = parameter("island_count", v1::PARAMETER_KIND_COUNT, 1, 9);
-    at_reset.mutable_parameters(0)->set_effect(v1::PARAMETER_EFFECT_RESET);
-    EXPECT_THAT(parse_experiment(R"({"island_count": {"2": 3}})", Registry{at_reset}).error().lines,
-                ElementsAre(HasSubstr("it can change only at a reset")));
-}
-
-TEST(ExperimentFile, ErrorsAreNamed) {
-    const auto mistakes = [](std::string_view text) {
-        const auto file = parse_experiment(text, small_registry());
-        return file ? std::vector<std::string>{} : file.error().lines;
-    };
-    EXPECT_THAT(mistakes(R"({"mutation_chance": "0.5", "zebra": 1, "seed": -1, "respawn": [1]})"),
-                ElementsAre("mutation_chance: got \"0.5\", allowed 0 to 1", "there is no parameter 'zebra'",
-                            "seed: got -1, allowed 0 to 2^64 - 1, whole", "respawn: got [1], allowed true or false"));
-    EXPECT_THAT(mistakes("[]"), ElementsAre(HasSubstr("an experiment is a JSON object")));
-    EXPECT_THAT(mistakes("{\n\"seed\": 1,\n}"), ElementsAre(HasSubstr("line 3")));
-    EXPECT_THAT(mistakes("{} {}"), ElementsAre("line 1: more than one JSON value"));
-    EXPECT_THAT(mistakes(""), ElementsAre(HasSubstr("line 1")));
-    EXPECT_THAT(mistakes("{"), ElementsAre(HasSubstr("line 1")));
 }
 
 } // namespace
