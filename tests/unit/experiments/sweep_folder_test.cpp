@@ -33,34 +33,6 @@ std::string text_of(const std::string& path) {
     return {std::istreambuf_iterator<char>{file}, {}};
 }
 
-TEST(AtomicFile, IsCompleteOrAbsent) {
-    const recording::TemporaryFolder folder;
-    const std::string path = folder.path() + "/file";
-    {
-        AtomicFile file{path};
-        file.write(std::string(1 << 20, 'x'));
-    }
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-    write(path, "before");
-    AtomicFile file{path};
-    file.write("new");
-    EXPECT_EQ(text_of(path), "before");
-    ASSERT_TRUE(file.finish());
-    EXPECT_EQ(text_of(path), "new");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator{folder.path()}, {}), 1);
-}
-
-TEST(AtomicFile, ReportsWhyItCannotBeWritten) {
-    AtomicFile file{"/nowhere/file"};
-    EXPECT_FALSE(file.error().empty());
-    file.write("x");
-    const auto finished = file.finish();
-    ASSERT_FALSE(finished);
-    EXPECT_EQ(finished.error().message, "/nowhere/file cannot be written: No such file or directory");
-    AtomicFile full{"/dev/full/file"};
-    EXPECT_FALSE(full.finish());
-}
-
 TEST(SweepFolder, OfAnotherSweepIsRefusedWithTheDifferences) {
     const recording::TemporaryFolder folder;
     const Sweep sweep = two_cells();

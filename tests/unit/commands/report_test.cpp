@@ -1,0 +1,23 @@
+#include "server/commands/report.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::commands {
+namespace {
+
+TEST(Report, RowsAreAsWideAsTheHeading) {
+    simulation::GenerationStatistics statistics;
+    statistics.generation = 12;
+    statistics.fitness_best = 99.95;
+    for (const bool with_island : {false, true}) {
+        EXPECT_EQ(table_row(statistics, with_island).size(), table_heading(with_island).size());
+    }
+}
+
+TEST(Report, TheIslandHasAColumnOnlyIfThereAreSeveral) {
+    EXPECT_EQ(table_heading(false).find("island"), std::string::npos);
+    EXPECT_NE(table_heading(true).find("island"), std::string::npos);
+}
+
+} // namespace
+} // namespace evod::commands
