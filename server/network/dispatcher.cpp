@@ -449,6 +449,26 @@ void Dispatcher::query(Session& session, v1::Request request) {
     }
 }
 
+void Dispatcher::set_view(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    const std::uint32_t subscription_id = request.set_view().subscription_id();
+    const auto found = session.snapshots.subscriptions.find(subscription_id);
+    if (found == session.snapshots.subscriptions.end()) {
+        return session.answer(
+            protocol::refusing(id, no_such_subscription("set_view.subscription_id", subscription_id)));
+    }
+    if (!found->second.view) {
+        return session.answer(protocol::refusing(
+            id, refusal(base::RefusalCode::FailedPrecondition,
+                        "the subscription has no view: its snapshots are not made of tiles", base::Reason::NoView)));
+    }
+    v1::Response response = response_to(id);
+    response.mutable_subscription()->set_subscription_id(subscription_id);
+    response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
+    session.answer(encode_response(std::move(response))); // before the first snapshot of the new view
+    return streams_.set_view(session, subscription_id, request.set_view().view());
+}
+
 void Dispatcher::subscription(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     const auto refuse_it = [&](const base::Refusal& refused) { session.answer(protocol::refusing(id, refused)); };
@@ -470,21 +490,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         return refuse_it(protocol::invalid(std::move(faults)));
     }
     if (request.has_set_view()) {
-        const std::uint32_t subscription_id = request.set_view().subscription_id();
-        const auto found = session.snapshots.subscriptions.find(subscription_id);
-        if (found == session.snapshots.subscriptions.end()) {
-            return refuse_it(no_such_subscription("set_view.subscription_id", subscription_id));
-        }
-        if (!found->second.view) {
-            return refuse_it(refusal(base::RefusalCode::FailedPrecondition,
-                                     "the subscription has no view: its snapshots are not made of tiles",
-                                     base::Reason::NoView));
-        }
-        v1::Response response = response_to(id);
-        response.mutable_subscription()->set_subscription_id(subscription_id);
-        response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
-        session.answer(encode_response(std::move(response))); // before the first snapshot of the new view
-        return streams_.set_view(session, subscription_id, request.set_view().view());
+        return set_view(session, request);
     }
 
     // The world is looked up by the simulation; the subscription begins back here.

@@ -59,6 +59,8 @@ class Dispatcher {
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
     void subscription(Session& session, const v1::Request& request);
+    /// Changes the view of a subscription.
+    void set_view(Session& session, const v1::Request& request);
     void replay(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
     void breeding(Session& session, const v1::Request& request);

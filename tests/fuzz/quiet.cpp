@@ -1,4 +1,4 @@
-// Protocol Buffers writes a line for every text that is no UTF-8, which takes longer than the parsing.
+// The protobuf library logs every text that is not UTF-8, which takes longer than the parsing.
 #include <google/protobuf/stubs/logging.h>
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
