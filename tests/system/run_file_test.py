@@ -422,7 +422,7 @@ class Export(Case):
         folder = self.bundle(changed, "small.evod")
         self.assertEqual(self.repeat(folder), 2)
         self.assertIn("Parameters were changed while it ran, 2 times", (folder / "REPEAT.md").read_text())
-        self.assertIn("is there already", evod("export", plain, "--bundle", folder, status=1))
+        self.assertIn("exists already", evod("export", plain, "--bundle", folder, status=1))
         self.assertIn("--format: got jsonl, allowed only csv with --bundle",
                       evod("export", plain, "--bundle", self.folder + "/lines", "--format", "jsonl", status=1))
         self.assertFalse(os.path.exists(self.folder + "/lines"))
