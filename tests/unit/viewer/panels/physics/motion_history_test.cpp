@@ -59,7 +59,7 @@ evod::v1::Motion moving(double share, std::uint64_t too_fast) {
 TEST(JudgeTick, AcceptsSlowBodies) {
     const TickVerdict verdict = judge_tick(moving(0.2, 0));
     EXPECT_EQ(verdict.level, TickVerdict::Level::Good);
-    EXPECT_EQ(verdict.sentence, "The tick is short enough: the fastest body moves 0.2 of its radius in a tick.");
+    EXPECT_EQ(verdict.sentence, "The tick is short enough: the fastest body moves 0.2 of its radius per tick.");
 }
 
 TEST(JudgeTick, NamesParametersThatHelp) {
@@ -76,9 +76,9 @@ TEST(JudgeTick, NamesParametersThatHelp) {
 TEST(JudgeTick, CountsFastMovesOfTheGeneration) {
     const TickVerdict verdict = judge_tick(moving(0.1, 1234));
     EXPECT_EQ(verdict.level, TickVerdict::Level::TooLong);
-    EXPECT_THAT(verdict.sentence, HasSubstr("1,234 moves of this generation went further than the body's own radius"));
+    EXPECT_THAT(verdict.sentence, HasSubstr("1,234 moves in this generation exceeded the radius of the body"));
     EXPECT_THAT(verdict.sentence, HasSubstr("Halve tick_s, to 0.025, or lower max_speed_px_s."));
-    EXPECT_THAT(judge_tick(moving(0.1, 1)).sentence, HasSubstr("1 move of"));
+    EXPECT_THAT(judge_tick(moving(0.1, 1)).sentence, HasSubstr("1 move in"));
 }
 
 } // namespace
