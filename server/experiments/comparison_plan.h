@@ -15,12 +15,13 @@
 namespace evod::experiments {
 
 struct ComparisonRequest {
-    std::vector<std::string> experiments; // paths; with controls at most one, empty: the default world
+    std::vector<std::string> experiments = {}; // paths; with controls at most one, empty: the default world
     bool controls = false;
-    std::optional<std::uint32_t> generations; // >= 2; nullopt: generation_limit of the first, or default_generations
-    std::optional<std::uint64_t> seed;        // nullopt: the seed of the first experiment, or drawn_seed
-    base::Seed drawn_seed;
-    std::vector<std::string> changes; // "name=value", made to all experiments
+    std::optional<std::uint32_t> generations =
+        {};                                 // >= 2; nullopt: generation_limit of the first, or default_generations
+    std::optional<std::uint64_t> seed = {}; // nullopt: the seed of the first experiment, or drawn_seed
+    base::Seed drawn_seed = {};
+    std::vector<std::string> changes = {}; // "name=value", made to all experiments
 };
 constexpr std::uint32_t default_generations = 60;
 
