@@ -17,8 +17,8 @@ namespace evod::experiments {
 struct ComparisonRequest {
     std::vector<std::string> experiments = {}; // paths; with controls at most one, empty: the default world
     bool controls = false;
-    std::optional<std::uint32_t> generations =
-        {};                                 // >= 2; nullopt: generation_limit of the first, or default_generations
+    /// >= 2; nullopt: generation_limit of the first, or default_generations.
+    std::optional<std::uint32_t> generations = {};
     std::optional<std::uint64_t> seed = {}; // nullopt: the seed of the first experiment, or drawn_seed
     base::Seed drawn_seed = {};
     std::vector<std::string> changes = {}; // "name=value", made to all experiments

@@ -25,7 +25,7 @@ std::optional<double> work_of_run(const parameters::Parameters& parameters);
 struct SweepRunnerOptions {
     std::size_t jobs = 1; // >= 1
     bool run_files = false;
-    std::function<simulation::RunId()> draw_run_id;                 // for run files
+    std::function<simulation::RunId()> draw_run_id = {};            // for run files
     std::function<bool()> stopped = [] { return false; };           // polled every tick
     std::function<void(double work)> on_generation = [](double) {}; // with the work it was expected to be
     /// With the rest of the expected work, which a run that ended before its generation_limit did not need.
