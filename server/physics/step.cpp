@@ -67,7 +67,7 @@ void Stepper::begin(Circles& circles, const Boxes& boxes, const Area& area, cons
     EVOD_ASSERT(parameters.integration.velocity_kept >= 0);
     EVOD_ASSERT(parameters.restitution >= 0);
     EVOD_ASSERT(parameters.max_speed_px_s > 0);
-    EVOD_ASSERT(!near_.stale(circles, boxes));
+    EVOD_ASSERT(near_.anchor_x().size() == circles.x.size());
     parameters_ = parameters;
     area_ = area;
     rules_ = {.tick_s = parameters.integration.tick_s,
