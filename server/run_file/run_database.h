@@ -15,6 +15,7 @@ namespace evod::run_file {
 struct RunDatabase {
     const std::string path;
     Database database;
+    bool has_end_mark = false; // it may; the first transaction deletes it
 
     RunDatabase(std::string file, Database::Mode mode, const char* vfs)
         : path{std::move(file)}, database{path, mode, vfs} {}
@@ -25,10 +26,16 @@ struct RunDatabase {
     std::int64_t number(const std::string& sql) { return database.number(sql.c_str()); }
     std::uint64_t natural(const std::string& sql) { return static_cast<std::uint64_t>(number(sql)); }
 
-    void begin() { run("BEGIN IMMEDIATE"); }
+    void begin() {
+        run("BEGIN IMMEDIATE");
+        if (has_end_mark) {
+            run("DELETE FROM end_mark");
+        }
+    }
     /// After a failure it is not known whether the transaction is in the file.
     base::Result<void> commit() {
         run("COMMIT");
+        has_end_mark = has_end_mark && failed();
         return unless_failed();
     }
 

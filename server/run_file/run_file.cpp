@@ -116,7 +116,7 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
     if (auto read = file->read_beginning(); !read) {
         return read.error();
     }
-    file->has_end_mark_ = true;
+    file->database_.has_end_mark = true;
     file->retention_.resume_purge();
     return file;
 }
@@ -187,9 +187,6 @@ Result<void> RunFile::copy_to(const std::string& path) {
 
 void RunFile::begin() {
     database_.begin();
-    if (has_end_mark_) {
-        database_.run("DELETE FROM end_mark");
-    }
 }
 
 void RunFile::write(const Record& record) {
@@ -222,11 +219,7 @@ void RunFile::put(EndMark mark) {
 }
 
 Result<void> RunFile::commit() {
-    if (auto committed = database_.commit(); !committed) {
-        return committed;
-    }
-    has_end_mark_ = false;
-    return {};
+    return database_.commit();
 }
 
 Result<bool> RunFile::write_checkpoint_part(const StoredCheckpoint& checkpoint) {
@@ -243,7 +236,7 @@ Result<bool> RunFile::write_checkpoint_part(const StoredCheckpoint& checkpoint) 
 }
 
 Result<bool> RunFile::purge_step() {
-    if (has_end_mark_) {
+    if (database_.has_end_mark) {
         return false;
     }
     if (checkpoints_.may_have_orphans()) {

@@ -92,7 +92,6 @@ class RunFile : public RunContents {
     void put(EndMark mark);
 
     const Options options_;
-    bool has_end_mark_ = false; // it may; the first transaction deletes it
     std::optional<TableWriter<StateHashTable>> hash_writer_;
 };
 

@@ -285,7 +285,7 @@ class Tokens(Access):
         self.assertIn("chmod it to 600", server.output())
         client.call(list_worlds=c.ListWorlds())  # admitted sessions continue
         server.end()
-        for change, words in ((lambda: None, "chmod 600"),
+        for change, words in ((lambda: None, "chmod it to 600"),
                               (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])), "tokens is damaged: line 2")):
             change()
             done = waiting.run([EVOD, "--port", "0", "--data", self.folder], capture_output=True, text=True)

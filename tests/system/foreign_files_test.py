@@ -60,7 +60,7 @@ class ForeignFiles(unittest.TestCase):
     def test_a_pipe_in_the_data_folder_is_refused(self):
         data = self.folder / "data"
         data.mkdir()
-        for name, file in ("tokens", "a file of tokens"), ("w.evod", "a run file"):
+        for name, file in ("tokens", "a token file"), ("w.evod", "a run file"):
             os.mkfifo(data / name, 0o600)
             self.assert_refused(*self.serve(), words=f"{data / name}: this is a pipe, not {file}")
             os.remove(data / name)

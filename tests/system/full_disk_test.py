@@ -273,7 +273,7 @@ class FullDisk(unittest.TestCase):
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
         self.assertLessEqual(set(listens.storage_states(KEEPS_UP)[:-1]), {FAILING})
-        self.assertIn("worlds go on", server.output())
+        self.assertIn("worlds continue", server.output())
         self.assertEqual(control.storage(), w.Storage(state=KEEPS_UP))
         until(lambda: control.world().state == w.RUN_STATE_WAITING, "all generations")
         last = control.world()

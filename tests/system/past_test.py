@@ -378,7 +378,7 @@ class Replay(Case):
                             "--at-generation", "2", "--name", "mine"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("forked mine", done.stdout)
-        self.assertIn("it is not kept", done.stdout)
+        self.assertIn("it is not recorded", done.stdout)
         self.assertIn("`evod fork`", done.stdout)
 
     def test_other_files_are_refused(self):

@@ -463,7 +463,7 @@ class Recovery(unittest.TestCase):
         with Client(server, "looks") as client:
             until(lambda: client.world("default").tick > 0, "ticks")
             self.assertEqual(client.world("b").tick, 0)
-        self.assertIn('--speed and --start are for world "default" alone; 2 others go on as they were', server.output())
+        self.assertIn('--speed and --start apply to world "default" only; 2 others continue as before', server.output())
         server.end()
 
     def test_runs_are_stored_in_the_state_folder_by_default(self):

@@ -225,7 +225,7 @@ def _plain(message: stream_pb2.SnapshotFrame) -> Content:
     for (name, sizes), count in zip(_SIZES.items(), _counts_of(message)):
         columns = getattr(message.plain, name)
         fields = {"x": "x_px", "y": "y_px"} | {size: size if size == "health" else size + "_px" for size in sizes}
-        kind = {field: numpy.array(getattr(columns, column), numpy.float64) for field, column in fields.items()}
+        kind: dict[str, Any] = {field: numpy.array(getattr(columns, column), numpy.float64) for field, column in fields.items()}
         if name in _HAVE_IDS:
             kind = {"id": numpy.array(columns.id, numpy.uint32)} | kind
             if numpy.any(kind["id"][1:] <= kind["id"][:-1]):

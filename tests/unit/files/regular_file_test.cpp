@@ -56,7 +56,7 @@ TEST_F(RegularFileTest, RefusesPipesFoldersAndDevicesAtOnce) {
          {std::pair{path, "a pipe"}, {folder, "a folder"}, {std::string{"/dev/zero"}, "a device"}}) {
         const auto refused = read_file(named, "a text", 1 << 20);
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().code, RefusalCode::InvalidArgument);
+        EXPECT_EQ(refused.error().code, RefusalCode::FailedPrecondition);
         EXPECT_EQ(refused.error().message, named + ": this is " + kind + ", not a text");
     }
 }

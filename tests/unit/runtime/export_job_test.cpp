@@ -96,7 +96,7 @@ TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
     const auto part = next(thread);
     ASSERT_FALSE(part);
-    EXPECT_THAT(part.error().message, HasSubstr("given up"));
+    EXPECT_THAT(part.error().message, HasSubstr("was cancelled"));
 }
 
 TEST_F(ExportJobTest, StoppingEndsASimulationUnderWay) {
