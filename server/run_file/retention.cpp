@@ -79,11 +79,11 @@ bool Retention::exceeds(std::int64_t bytes) {
                           bytes;
 }
 
-Result<bool> Retention::halve() {
+std::optional<RetentionRule> Retention::next_rule() {
     const std::uint64_t last = last_generation();
     // The storage thread may still write to the last two.
     if (purge_ || last < identity_.first_generation + 2 || last - 2 <= rule_.until_generation) {
-        return false;
+        return std::nullopt;
     }
     // Once only the first of the older generations is left, there is nothing to halve.
     const std::uint64_t twice = rule_.keep_every > last ? 1 : 2;
@@ -91,18 +91,20 @@ Result<bool> Retention::halve() {
         .keep_every = twice * std::max(rule_.keep_every, keep_every_), .until_generation = last - 2, .until_tick = 0};
     next.until_tick = database_.natural("SELECT first_tick FROM generation WHERE generation = " +
                                         std::to_string(next.until_generation + 1));
-    database_.begin();
+    return next;
+}
+
+void Retention::write(const RetentionRule& next) {
     database_.run("DELETE FROM checkpoint WHERE generation <= " + std::to_string(next.until_generation) +
                   " AND (generation - " + std::to_string(identity_.first_generation) + ") % " +
                   std::to_string(next.keep_every) + " != 0");
     TableWriter<ThinnedTable>{database_.database}.write(
         ThinnedTable::Row{1 + database_.natural("SELECT max(number) FROM thinned"), next});
-    if (auto committed = database_.commit(); !committed) {
-        return committed.error();
-    }
-    rule_ = next;
+}
+
+void Retention::begin_purge(const RetentionRule& committed) {
+    rule_ = committed;
     purge_ = Purge{};
-    return true;
 }
 
 void Retention::resume_purge() {

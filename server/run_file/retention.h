@@ -40,10 +40,12 @@ class Retention {
 
     /// Whether the rows of the file take more bytes than this. false while a purge is under way.
     bool exceeds(std::int64_t bytes);
-    /// Halves what is retained of the older generations, in a transaction of its own, and begins a purge.
-    ///
-    /// returns  false if there is nothing left to halve.
-    base::Result<bool> halve();
+    /// The rule that halves what is retained of the older generations; nothing if there is nothing left to halve.
+    std::optional<RetentionRule> next_rule();
+    /// Writes a rule within the current transaction.
+    void write(const RetentionRule& next);
+    /// The rule is committed: it holds from now on, and a purge begins.
+    void begin_purge(const RetentionRule& committed);
     /// After a file has been opened: an earlier purge may be incomplete.
     void resume_purge();
     bool is_purging() const { return purge_.has_value(); }

@@ -273,13 +273,17 @@ Result<void> RunFile::shrink_if_large() {
     if (!is_large()) {
         return {};
     }
-    const auto halved = retention_.halve();
-    if (!halved) {
-        return halved.error();
+    const std::optional<RetentionRule> next = retention_.next_rule();
+    if (!next) {
+        return {};
     }
-    if (*halved) {
-        checkpoints_.expect_orphans();
+    begin();
+    retention_.write(*next);
+    if (auto committed = commit(); !committed) {
+        return committed;
     }
+    retention_.begin_purge(*next);
+    checkpoints_.expect_orphans();
     return {};
 }
 
