@@ -25,7 +25,7 @@ int make_certificate(const CertificateOptions& options) {
 } // namespace
 
 void add_certificate_command(command_line::Command& app) {
-    auto& command = app.add_command("certificate", "Make a key and a self-signed certificate for TLS");
+    auto& command = app.add_command("certificate", "Create a key and a self-signed certificate for TLS");
     auto& options = command.keep(CertificateOptions{});
     command.add_option("host", &options.hosts, "Names and IP addresses under which clients will reach the server")
         .required();

@@ -110,7 +110,7 @@ Result<void> export_to(const ExportOptions& options) {
     }
     std::error_code error;
     if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error)) {
-        return wrong_option("--output", "another file than the run file itself", options.output);
+        return wrong_option("--output", "a file other than the run file itself", options.output);
     }
     const auto file = RunFile::open_checked(options.run);
     if (!file) {

@@ -69,7 +69,7 @@ int fork(const ForkOptions& options) {
 } // namespace
 
 void add_fork_command(command_line::Command& app) {
-    auto& command = app.add_command("fork", "Make a second world from a generation of a run file, or from its end");
+    auto& command = app.add_command("fork", "Create a second world from a generation of a run file, or from its end");
     auto& options = command.keep(ForkOptions{});
     command.add_option("run", &options.run_file, "Run file, NAME.evod; the run may still be in progress").required();
     command

@@ -1,4 +1,4 @@
-// Interview: the questions of `evod run --ask`, about population, food, poison, time and every choice of the algorithm.
+// Interview: the questions of `evod run --ask`, about population, food, poison, time and every option of the genetic algorithm.
 #pragma once
 
 #include "server/base/result.h"

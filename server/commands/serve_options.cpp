@@ -21,7 +21,7 @@ constexpr WholeNumber port_number{0, 65535};
 void add_tls_options(Command& command, access::TlsFiles& tls) {
     command.add_option("--tls-cert", &tls.certificate,
                        "PEM file with the certificate. With it, the server accepts TLS only; see evod certificate");
-    command.add_option("--tls-key", &tls.key, "PEM file with the key of that certificate");
+    command.add_option("--tls-key", &tls.key, "PEM file with the private key for --tls-cert");
     command.add_option(
         "--tls-client-ca", &tls.client_ca,
         "PEM file with CA certificates. With it, every client needs a certificate that one of them signed");

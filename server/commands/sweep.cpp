@@ -298,12 +298,12 @@ void add_sweep_command(command_line::Command& app) {
         command
             .add_option(
                 "--array-index", &options.array_index,
-                "Make the runs of this cell alone, counted from 0, as one task of a job array; after all tasks, "
+                "Run only this cell, counted from 0, as one task of a job array; after all tasks, "
                 "use --gather")
             .check(any_number);
     const auto with_gather = command
                                  .add_flag("--gather", &options.gather,
-                                           "Make no runs: write FOLDER/runs.csv, or print which runs are missing")
+                                           "Do not run anything: write FOLDER/runs.csv, or print which runs are missing")
                                  .excludes(with_jobs)
                                  .excludes(with_run_files)
                                  .excludes(with_array_index);

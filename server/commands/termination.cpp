@@ -67,7 +67,7 @@ const char* missing_resource(std::exception_ptr error) {
     const char* const missing = missing_resource(std::current_exception());
     memory_for_last_message.reset();
     if (standard_output_is_log()) {
-        log::error("{}: evod ends; restart it to resume the runs where they were", missing);
+        log::error("{}: evod is shutting down; restart it to resume the runs", missing);
     } else {
         std::cerr << "evod: " << missing << '\n';
     }

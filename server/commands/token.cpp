@@ -55,7 +55,7 @@ int revoke_token(const TokenOptions& options) {
 } // namespace
 
 void add_token_command(command_line::Command& app) {
-    auto& token = app.add_command("token", "Make, list and revoke the tokens of clients on other machines");
+    auto& token = app.add_command("token", "Create, list and revoke the tokens of clients on other machines");
     auto& options = token.keep(TokenOptions{});
     const auto set_up = [&options](command_line::Command& command, int (*act)(const TokenOptions&)) {
         command.add_option("--data", &options.folder,
@@ -64,7 +64,7 @@ void add_token_command(command_line::Command& app) {
             [&options, act] { return find_data_folder("evod token", options.folder) ? act(options) : exit_error; });
     };
 
-    auto& add = token.add_command("add", "Make a token and print it; it cannot be printed again");
+    auto& add = token.add_command("add", "Create a token and print it; it cannot be printed again");
     add.add_option("name", &options.name, "Name of its owner, 1 to 64 of a-z A-Z 0-9 _ - .").required();
     add.add_option("--role", &options.role,
                    "viewer: reads and watches. controller: also runs worlds and sets parameters. admin: also makes and "

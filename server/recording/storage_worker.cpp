@@ -391,7 +391,7 @@ void StorageThread::Worker::report_lost() {
                        lost, run.path);
         } else {
             log::error({.world = world},
-                       "world \"{}\": {}. {} contains everything that was answered, and the next server continues the "
+                       "world \"{}\": {}. {} contains every acknowledged command, and the next server continues the "
                        "world from there once there is room",
                        world, lost, run.path);
         }

@@ -187,7 +187,7 @@ class FullDisk(unittest.TestCase):
         self.fill_and_ask_for_what_cannot_be_written(server, control)
         server.end(status=4)
         self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the ends of \d+ generations, '
-                                          f"1 commands, and its last tick. {self.data}/default.evod contains everything that was answered")
+                                          f"1 commands, and its last tick. {self.data}/default.evod contains every acknowledged command")
         self.make_room()
         server = self.serve()
         now = self.client(server, "control").world()

@@ -74,7 +74,7 @@ class ResourceLimits(unittest.TestCase):
             client.send(session_pb2.ClientMessage(request=c.Request(
                 request_id=4, client_key=client.key, run=c.Run(world="crowd"))))
             self.assertEqual(waiting.ended(server.process), OUT_OF_MEMORY, server.output())
-        self.assertRegex(server.output(), r"error.* out of memory.*: evod ends; restart it to resume the runs where they were")
+        self.assertRegex(server.output(), r"error.* out of memory.*: evod is shutting down; restart it to resume the runs")
         server = self.serve()
         with Client(server, "k") as client:
             self.assertEqual(client.call(1, **set_parameter("food_health", 7)).status.code, 0)

@@ -44,7 +44,7 @@ void ReplayControl::take_opened() {
     }
     const auto response = opening_.get();
     const bool at_start = std::exchange(opening_at_start_, false);
-    if (!server_.accepted_or_noticed(response)) {
+    if (!server_.report_if_refused(response)) {
         if (at_start) {
             open_refusal_ = refusal_of(response);
         }
@@ -134,7 +134,7 @@ void ReplayControl::send_seek(std::optional<evod::v1::RunMoment> to) {
     request.mutable_seek()->set_world(feed_.name());
     *request.mutable_seek()->mutable_to() = *std::move(to);
     const auto take_answer = [this](const core::Result<evod::v1::Response>& response) {
-        if (server_.accepted_or_noticed(response)) {
+        if (server_.report_if_refused(response)) {
             feed_.take_info(response->world());
         }
         if (auto next = seeks_.answered()) {
@@ -170,7 +170,7 @@ void ReplayControl::fork(const std::string& name) {
     request.mutable_fork_world()->set_world(feed_.name());
     request.mutable_fork_world()->set_name(name);
     server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
-        if (server_.accepted_or_noticed(response)) {
+        if (server_.report_if_refused(response)) {
             forked_ = name;
             server_.notice("Forked the world " + name + " from this moment; B shows it beside");
         }

@@ -50,7 +50,7 @@ std::string ServerConnection::problem() const {
     return connection_loss_text(status(), !options_.token.empty());
 }
 
-bool ServerConnection::accepted_or_noticed(const core::Result<evod::v1::Response>& response) {
+bool ServerConnection::report_if_refused(const core::Result<evod::v1::Response>& response) {
     std::string refusal = refusal_of(response);
     const bool accepted = refusal.empty();
     if (!accepted) {

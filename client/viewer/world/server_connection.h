@@ -56,7 +56,7 @@ class ServerConnection {
     /// Adds a notice: one sentence, which the window shows for some seconds.
     void notice(std::string text) { notices_.push_back(std::move(text)); }
     /// Adds a notice if the request was refused or not answered. Returns whether it was accepted.
-    bool accepted_or_noticed(const core::Result<evod::v1::Response>& response);
+    bool report_if_refused(const core::Result<evod::v1::Response>& response);
     /// The notices since the last call, oldest first.
     std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
 

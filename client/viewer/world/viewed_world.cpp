@@ -77,7 +77,7 @@ void ViewedWorld::find_next_world(std::function<void(const std::string& world)> 
     evod::v1::Request request;
     request.mutable_list_worlds();
     server.send(std::move(request), [this, found = std::move(found)](const core::Result<evod::v1::Response>& response) {
-        if (!server.accepted_or_noticed(response)) {
+        if (!server.report_if_refused(response)) {
             return;
         }
         if (const auto world = world_after_this(response->worlds())) {

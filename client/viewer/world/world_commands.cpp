@@ -13,7 +13,7 @@ void WorldCommands::send(std::optional<evod::v1::Request> request) {
         return feed_.request_statistics(request->get_statistics().world());
     }
     server_.send(*std::move(request), [this](const core::Result<evod::v1::Response>& response) {
-        server_.accepted_or_noticed(response);
+        server_.report_if_refused(response);
         send(feed_.control().answered(response ? &*response : nullptr));
     });
 }

@@ -135,7 +135,7 @@ TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
     EXPECT_THAT(said,
                 testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
                                        "commands, and its last tick. " +
-                                       data.file_of("w") + " contains everything that was answered"));
+                                       data.file_of("w") + " contains every acknowledged command"));
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal().read()->size(), 1u);
 }
 

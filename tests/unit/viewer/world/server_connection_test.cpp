@@ -21,7 +21,7 @@ struct ServerConnectionTest : testing::Test {
         request.mutable_list_worlds();
         connection.send(std::move(request), [this](const auto& response) {
             ++answered_count;
-            connection.accepted_or_noticed(response);
+            connection.report_if_refused(response);
         });
     }
     template <class Condition>
