@@ -1,4 +1,5 @@
-// EVOD_ASSERT: checks what the core relies on, in every build. A wrong simulation is worse than none.
+// EVOD_ASSERT: an assertion for the preconditions of the core. It is checked in every build, because a wrong simulation
+// is worse than none.
 #pragma once
 
 #include <cstdio>

@@ -23,7 +23,7 @@ void* allocate_column(std::size_t bytes) {
 #if defined(__linux__)
     if (bytes >= 2 * large_page) {
         madvise(memory, bytes / large_page * large_page,
-                MADV_HUGEPAGE); // only advice: without large pages the memory works the same
+                MADV_HUGEPAGE); // only a hint: the program also works without large pages
     }
 #endif
     return memory;

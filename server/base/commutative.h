@@ -1,8 +1,8 @@
-// Commutative operations on memory that several pieces of a parallel loop write to: the final value does not depend on
-// the order of the writes. The returned values do depend on it, so no result may use them.
+// Commutative operations on memory to which several pieces of a parallel loop write. The final value does not depend on
+// the order of the writes. The returned values depend on it, so no result may use them.
 //
-// `parallel` is true if several threads may write at the same time. If it is false, the plain operation is used,
-// which is several times faster.
+// `parallel` is true if several threads may write at the same time. If it is false, the plain operation is used, which
+// is several times faster.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void fetch_min(T& value, T candidate) {
     }
 }
 
-/// value = what; all threads that write at the same time write the same value.
+/// value = what. Threads that write at the same time must all write the same value.
 template <bool parallel, class T>
 void put(T& value, T what) {
     if constexpr (parallel) {

@@ -25,8 +25,8 @@ constexpr std::array<double, 24> inverse_factorials() {
 }
 constexpr auto inverse_factorial = inverse_factorials();
 
-/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4. With 18 or 19 the
-/// first omitted term is below 1e-19.
+/// The Taylor series of sine (if `last` is odd) or cosine (if `last` is even) up to the power `last`, for |x| <= π/4.
+/// If `last` is 18 or 19, the first omitted term is below 1e-19.
 template <class Real>
 constexpr Real series(Real x, int last) {
     const Real square = x * x;
@@ -39,7 +39,7 @@ constexpr Real series(Real x, int last) {
 }
 
 struct Octant {
-    unsigned quarter; // nearest multiple of a quarter turn, mod 4
+    unsigned quarter; // index of the nearest multiple of a quarter turn, mod 4
     double angle;     // the remainder, in −π/4 … π/4
 };
 
@@ -126,7 +126,8 @@ double pow(double x, double y) {
 }
 
 Direction direction(unsigned word) {
-    // The nearest quarter turn, then a signed remainder of at most an eighth of a turn with 29 bits.
+    // The angle is split into the nearest quarter turn and a signed remainder: at most an eighth of a turn, with 29
+    // bits.
     const unsigned quarter = (word + 0x2000'0000u) >> 30;
     const auto rest = static_cast<std::int32_t>(word - (quarter << 30));
     const float angle = static_cast<float>(rest) * static_cast<float>(2 * pi / 4294967296.0);

@@ -1,8 +1,8 @@
 // Executor: runs the pieces of a parallel loop for the core. The core receives an executor and never creates one.
 //
 // Threads      parallel_for returns after every piece has run; a piece touches only the data it was given.
-// Determinism  which thread runs which piece is unknown, so no result may depend on it. The caller reduces in index
-//              order, over one partial result per block of fixed size.
+// Determinism  no result may depend on which thread runs which piece. The caller combines partial results, one per
+//              block of fixed size, in index order.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace evod::base {
 
-/// A reference to a callable, as cheap as two pointers. Valid only while the callable lives.
+/// A non-owning reference to a callable, as cheap to copy as two pointers. Valid only while the callable exists.
 template <class Signature>
 class FunctionRef;
 
@@ -43,7 +43,8 @@ class Executor {
     virtual ~Executor() = default;
 
     /// Runs `body` over [0, count) in pieces of at most `grain` indices (grain >= 1), cut at multiples of `grain`.
-    /// Returns when all have run. May be called from inside a piece. A loop of one piece runs on the calling thread.
+    /// Returns when all pieces have run. A piece may call parallel_for() too. If there is only one piece, it runs on
+    /// the calling thread.
     void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(Range)> body) {
         if (count == 0) {
             return;
@@ -55,8 +56,8 @@ class Executor {
         }
     }
 
-    /// Threads that may work at once, >= 1. Use it to decide whether to cut a loop, never how: results must not depend
-    /// on it.
+    /// The number of threads that may work at the same time, >= 1. Use it to decide whether to cut a loop, never where
+    /// to cut it: results must not depend on it.
     virtual std::size_t thread_count() const = 0;
 
   protected:

@@ -1,4 +1,5 @@
-// The hash of many entities at once, for kernels (lanes.h). Each lane gives the result of hash_of() in state_hash.h.
+// Computes the hashes of several entities at once, for kernels (lanes.h). Each lane gives the same result as hash_of()
+// in state_hash.h.
 #pragma once
 
 #include "server/base/lanes.h"
@@ -6,11 +7,11 @@
 namespace evod::base {
 namespace {
 
-/// Sums over lanes of the two words of hash_of().
+/// The sums, over all added lanes, of the two words that hash_of() returns.
 struct HashSums {
     Longs low{}, high{};
 
-    /// lanes_used  a comparison: all bits set where a lane counts.
+    /// lanes_used  the result of a comparison: a lane is added if all its bits are set.
     void add(Words kind_and_id, Words a, Words b, Words c, Words d, Words e, Integers lanes_used) {
         const Words key = kind_and_id * 0x9e3779b1u;
         a ^= key;

@@ -1,4 +1,4 @@
-// Instructions: which of the processor's vector instructions the loops over many bodies use.
+// Instructions: selects the processor's vector instructions for the loops over many bodies.
 //
 // The loops are compiled twice from one source (see evod_kernels in the top CMakeLists.txt). Both copies compute the
 // same bits; the wider one is faster.
@@ -8,13 +8,14 @@ namespace evod::base {
 
 enum class Instructions : unsigned char { Baseline, Avx2 };
 
-/// The instructions in use: initially the widest that this processor has.
+/// The instructions in use. Initially these are the widest that this processor has.
 Instructions instructions();
 
-/// The widest that this processor has.
+/// The widest vector instructions that this processor has.
 Instructions widest_instructions();
 
-/// For tests and measurements. No kernel may be running at the time, and the processor must have these instructions.
+/// Selects the instructions to use, for tests and measurements. The processor must have them, and no kernel may be
+/// running during the call.
 void use_instructions(Instructions instructions);
 
 /// Returns the copy of a kernel for the instructions in use.

@@ -1,10 +1,11 @@
 // Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled twice:
 // once for every processor and once for processors with AVX2.
 //
-// Everything here is in an unnamed namespace, and kernels include no other inline code. The linker keeps one copy of a
-// function that both copies of a kernel share, and that copy might contain instructions that some processors lack.
-// Determinism  a lane computes what a loop over single numbers would compute, so the width changes no bit: + − × ÷ √,
-//              rounding and integers only.
+// Everything in this file is in an unnamed namespace, and kernels include no other inline code. If both copies of a
+// kernel shared an inline function, the linker would keep only one copy of that function. The copy might contain
+// instructions that some processors lack.
+// Determinism  a lane computes what a loop over single numbers would compute, so results do not depend on the width.
+//              Kernels use only + − × ÷ √, rounding and integer operations.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +30,7 @@ static_assert(lanes == 4 || lanes == 8);
 using Floats = float __attribute__((vector_size(4 * lanes)));
 using Integers = std::int32_t __attribute__((vector_size(4 * lanes)));
 using Words = std::uint32_t __attribute__((vector_size(4 * lanes)));
-using Longs = std::uint64_t __attribute__((vector_size(4 * lanes))); // half as many, twice as wide
+using Longs = std::uint64_t __attribute__((vector_size(4 * lanes))); // half as many lanes, each twice as wide
 
 template <class Vector, class T>
 inline Vector load(const T* from) {
@@ -45,8 +46,8 @@ inline void store(T* to, Vector vector) {
     __builtin_memcpy(to, &vector, sizeof vector);
 }
 
-/// Prefetches what the columns hold some way after index i. The hardware prefetcher follows fewer columns at once than
-/// kernels read: without this, a tick of 1,000,000 organisms takes a sixth longer.
+/// Prefetches elements of the columns some distance after index i. The hardware prefetcher follows fewer columns at
+/// once than kernels read. Without this function, a tick of 1,000,000 organisms takes a sixth longer.
 template <class... Columns>
 inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
     constexpr std::size_t ahead = 512, per_cache_line = 16, into_second_level = 2;
@@ -90,7 +91,7 @@ inline Floats square_root(Floats v) {
 #endif
 }
 
-/// The nearest integer, halves to even.
+/// Rounds to the nearest integer, halves to even.
 inline Integers round_to_integers(Floats v) {
 #if defined(__x86_64__) && EVOD_LANES == 8
     return (Integers)_mm256_cvtps_epi32((__m256)v);
@@ -120,7 +121,7 @@ inline unsigned bits_of(Integers mask) {
 #endif
 }
 
-/// The lower halves of the 64-bit lanes, multiplied to 64 bits.
+/// Multiplies the lower halves of the 64-bit lanes; the products have 64 bits.
 inline Longs multiply_low_halves(Longs a, Longs b) {
 #if defined(__x86_64__) && EVOD_LANES == 8
     return (Longs)_mm256_mul_epu32((__m256i)a, (__m256i)b);
@@ -131,21 +132,21 @@ inline Longs multiply_low_halves(Longs a, Longs b) {
 #endif
 }
 
-/// The even and the odd 32-bit lanes, as the lower halves of 64-bit lanes. The contents of the upper halves are
-/// undefined.
+/// Moves the even 32-bit lanes to the lower halves of 64-bit lanes; odd_lanes() does so with the odd lanes. The upper
+/// halves of the results are undefined.
 inline Longs even_lanes(Words v) {
     return (Longs)v;
 }
 inline Longs odd_lanes(Words v) {
     return (Longs)v >> 32;
 }
-/// The inverse: lower halves to the even and odd lanes.
+/// The inverse of even_lanes() and odd_lanes(): moves the lower halves to the even and the odd 32-bit lanes.
 inline Words interleave(Longs even, Longs odd) {
     return (Words)((even & 0xffff'ffffu) | odd << 32);
 }
 
-/// Lane 2i of a and of b side by side, as one 64-bit lane, with a's lane in the lower half. odd_pairs() does the same
-/// with lanes 2i + 1.
+/// Combines lane 2i of a and lane 2i of b into one 64-bit lane, with a's lane in the lower half. odd_pairs() does the
+/// same with lanes 2i + 1.
 inline Longs even_pairs(Words a, Words b) {
 #if EVOD_LANES == 8
     return (Longs)__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -161,7 +162,7 @@ inline Longs odd_pairs(Words a, Words b) {
 #endif
 }
 
-/// 64-bit lanes with their halves exchanged: rotated by 32.
+/// Exchanges the two halves of each 64-bit lane: a rotation by 32 bits.
 inline Longs exchanged_halves(Longs v) {
     const auto words = (Words)v;
 #if EVOD_LANES == 8

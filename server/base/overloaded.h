@@ -1,4 +1,4 @@
-// Overloaded: one visitor of a variant made of a lambda per alternative.
+// Overloaded: combines lambdas, one per alternative of a variant, into one visitor.
 #pragma once
 
 namespace evod::base {

@@ -1,9 +1,9 @@
-// Parameter descriptions: name, range, unit, default and help text of every number that a folder of the core takes.
+// Parameter descriptions: name, range, unit, default and help text of each parameter of the core.
 //
 // A folder lists its parameters once, as REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
-// parameters/parameters.h). The struct with its defaults and the descriptions are both expanded from that list.
-// Validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md follow from it, so a new parameter needs
-// one new line.
+// parameters/parameters.h). Macros generate both the struct with its defaults and the descriptions from that list.
+// Validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md use the descriptions, so a new parameter
+// needs only one new line.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace evod::base {
 
 /// When a changed value takes effect.
 enum class Effect {
-    NextTick,       // from the tick at which the command is applied; for breeding: the next breeding
+    NextTick,       // from the tick at which the command is applied; a breeding parameter: from the next breeding
     NextGeneration, // from the first tick of the next generation
     Reset,          // when the world is reset or created
 };
@@ -24,10 +24,10 @@ enum class Effect {
 constexpr std::uint32_t count_max = std::numeric_limits<std::uint32_t>::max();
 
 struct RealRange {
-    double min, max; // both allowed
+    double min, max; // both inclusive
 };
 struct CountRange {
-    std::uint32_t min, max; // both allowed
+    std::uint32_t min, max; // both inclusive
 };
 
 /// Specialised by EVOD_CHOICE_NAMES for every enumeration that a CHOICE parameter can hold.
@@ -36,7 +36,7 @@ struct ChoiceNames;
 
 } // namespace evod::base
 
-/// Assigns to the enumerators of an enumeration, in order, the names that users write. For use at global scope.
+/// Gives the enumerators of an enumeration, in order, the names that users write. Use it at global scope.
 #define EVOD_CHOICE_NAMES(Type, ...)                                                                                   \
     template <>                                                                                                        \
     struct evod::base::ChoiceNames<Type> {                                                                             \

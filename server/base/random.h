@@ -15,7 +15,7 @@
 
 namespace evod::base {
 
-/// What a stream is for. The numbers are part of a run's identity: never reuse or renumber one.
+/// The use of a stream. The numbers determine the draws of every run: never reuse or renumber one.
 enum class Purpose : std::uint32_t {
     InitialChromosome = 1,
     OrganismPlacement = 2,
@@ -33,11 +33,11 @@ enum class Purpose : std::uint32_t {
     Mutation = 14,
     SurvivorMutation = 15,
     Migration = 16,
-    Shuffle = 17,   // of many items; its seed is drawn, so island and generation are 0
-    Replicate = 18, // seeds of the runs of a parameter sweep, by replicate; island and generation are 0
+    Shuffle = 17,   // shuffles of many items; the seed itself is drawn, so island and generation are 0
+    Replicate = 18, // seeds of the runs of a parameter sweep, keyed by replicate; island and generation are 0
     FitnessShuffle = 19,
-    SignFlip = 20,       // of a permutation test; island and generation are 0
-    LatinHypercube = 21, // cells of a parameter sweep, by parameter; island and generation are 0
+    SignFlip = 20,       // signs in a permutation test; island and generation are 0
+    LatinHypercube = 21, // cells of a parameter sweep, keyed by parameter; island and generation are 0
     ScenarioTest = 1000, // tests and demonstrations
 };
 
@@ -47,7 +47,7 @@ struct Seed {
     friend bool operator==(const Seed&, const Seed&) = default;
 };
 
-/// The part of a draw's identity that many entities share. Built once per (purpose, island, generation).
+/// The part of a draw's identity that many entities share. Constructed once per (purpose, island, generation).
 class RandomKey {
   public:
     RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);
@@ -55,11 +55,11 @@ class RandomKey {
     /// Four uniform 32-bit words.
     std::array<std::uint32_t, 4> words(std::uint32_t entity, std::uint64_t tick, std::uint32_t block) const;
 
-    /// Two uniform 32-bit words from Philox2x32-10, which takes half the time of words(). For draws of every organism
-    /// in every tick. The low half of this key is the generator's key; the high half is combined with the tick by
-    /// exclusive or. A purpose that uses pair() must not use words().
+    /// Two uniform 32-bit words from Philox2x32-10, in half the time of words(). Intended for draws made for every
+    /// organism in every tick. The low half of this RandomKey is the Philox key; the high half is XORed with the tick.
+    /// Do not call both pair() and words() for the same purpose.
     std::array<std::uint32_t, 2> pair(std::uint32_t entity, std::uint32_t tick) const;
-    // The inputs of the generator in pair(), for kernels that draw for many entities.
+    // The Philox key and counter of pair(), for kernels that draw for many entities.
     std::uint32_t pair_key() const { return low_; }
     std::uint32_t pair_counter(std::uint32_t tick) const { return high_ ^ tick; }
 
@@ -67,12 +67,12 @@ class RandomKey {
     std::uint32_t low_, high_;
 };
 
-/// A uniform number in [0, 1) from one word: 24 bits, exact as a float.
+/// Converts a word to a uniform number in [0, 1). The number has 24 bits, which a float represents exactly.
 inline float unit_float(std::uint32_t word) {
     return static_cast<float>(word >> 8) * 0x1p-24f;
 }
 
-/// A sequence of draws of one entity at one tick, for code that needs an unknown number of draws.
+/// A sequence of draws for one entity at one tick, for code that does not know beforehand how many draws it needs.
 class RandomStream {
   public:
     /// At most 2^34 words can be drawn from a stream.
@@ -90,12 +90,12 @@ class RandomStream {
         const std::uint64_t high = word();
         return high << 32 | word();
     }
-    /// Uniform in [0, 1), 53 bits; two words.
+    /// Uniform in [0, 1), with 53 random bits; draws two words.
     double uniform() { return static_cast<double>(long_word() >> 11) * 0x1p-53; }
-    /// Uniform in [low, high); two words.
+    /// Uniform in [low, high); draws two words.
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    /// Uniform in 0 … bound − 1 without bias (Lemire 2019, "Fast random integer generation in an interval"); bound
-    /// >= 1.
+    /// Uniform in 0 … bound − 1 without bias; bound >= 1 (Lemire 2019, "Fast random integer generation in an
+    /// interval").
     std::uint32_t below(std::uint32_t bound) {
         EVOD_ASSERT(bound >= 1);
         std::uint64_t product = std::uint64_t{word()} * bound;
@@ -107,9 +107,9 @@ class RandomStream {
         }
         return static_cast<std::uint32_t>(product >> 32);
     }
-    /// True with probability p; takes two words for every p.
+    /// True with probability p. Always draws two words, even if p is 0 or 1.
     bool chance(double p) { return uniform() < p; }
-    /// Standard normal (Box & Muller 1958, cosine branch); four words.
+    /// Standard normal (Box & Muller 1958, cosine branch); draws four words.
     double gaussian();
     /// Shuffles so that every order of `items` is equally likely (Fisher & Yates; Durstenfeld 1964).
     template <class T>

@@ -1,4 +1,5 @@
-// Draws for many entities at once, for kernels (lanes.h). Each lane gives the result of random.h and elementary.h.
+// Draws for several entities at once, for kernels (lanes.h). Each lane gives the same result as the corresponding
+// function in random.h or elementary.h.
 #pragma once
 
 #include "server/base/lanes.h"
@@ -10,12 +11,13 @@ struct WordPairs {
     Words first, second;
 };
 
-/// RandomKey::pair(entity, tick), where counter and key are pair_counter(tick) and pair_key(): Philox2x32-10.
+/// Computes RandomKey::pair(entity, tick) with Philox2x32-10. counter is pair_counter(tick), and key is pair_key().
 inline WordPairs philox_pairs(Words entity, std::uint32_t counter, std::uint32_t key) {
     struct Counter {
         Longs first, second;
     };
-    // Even and odd lanes separately, each in the lower half of a 64-bit lane. The upper halves may hold anything.
+    // Even and odd lanes are processed separately, each in the lower half of a 64-bit lane. The upper halves are
+    // undefined.
     Counter even{even_lanes(entity), Longs{} + counter}, odd{odd_lanes(entity), Longs{} + counter};
     const Longs multiplier = Longs{} + 0xd256d193u;
     const auto round = [&](Counter& words, std::uint32_t round_key) {
@@ -56,7 +58,8 @@ inline Directions directions(Words words) {
     cosine = cosine * square - 0.5f;
     cosine = cosine * square + 1.0f;
     const Integers swapped = (quarter & 1u) != 0u;
-    const Words sign_x = ((quarter + 1u) & 2u) << 30, sign_y = (quarter & 2u) << 30; // of the quarters 1, 2; 2, 3
+    const Words sign_x = ((quarter + 1u) & 2u) << 30, sign_y = (quarter & 2u) << 30; // x is negative in the quarters 1
+                                                                                     // and 2, y in the quarters 2 and 3
     const Floats x = swapped ? sine : cosine, y = swapped ? cosine : sine;
     return {(Floats)((Words)x ^ sign_x), (Floats)((Words)y ^ sign_y)};
 }

@@ -34,8 +34,8 @@ const char* name_of(RefusalCode code) {
 
 namespace {
 
-/// Text from a file or an argument must not control the terminal that shows it: control characters except line breaks
-/// become '?'.
+/// Replaces control characters except line breaks by '?', so that text from a file or an argument cannot control the
+/// terminal that shows it.
 std::string visible(std::string utf8) {
     for (std::size_t i = 0; i < utf8.size(); ++i) {
         const auto byte = static_cast<unsigned char>(utf8[i]);

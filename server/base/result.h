@@ -1,4 +1,5 @@
-// Result<T>: a value, or a Refusal that names every wrong field. Used where outside input is translated.
+// Result<T>: a value, or a Refusal that names every wrong field. Used wherever input from outside is checked and
+// converted.
 #pragma once
 
 #include <boost/system/result.hpp>
@@ -24,7 +25,7 @@ enum class RefusalCode {
     Unauthenticated = 16,
 };
 
-/// Which documented situation occurred, for programs. The numbers are those of evod.v1.Reason.
+/// The documented situation that caused a refusal, for programs. The numbers are those of evod.v1.Reason.
 enum class Reason {
     Unspecified = 0,
     FieldInvalid = 10,
@@ -90,7 +91,7 @@ struct Violation {
     std::string got;     // "1.5"
 };
 
-/// A typed "no". A refused request has changed nothing.
+/// The error that is returned for a refused request. A refused request has changed nothing.
 struct Refusal {
     RefusalCode code = RefusalCode::InvalidArgument;
     std::string message; // one sentence

@@ -1,8 +1,8 @@
-// State hash: one 128-bit number for the whole state of a world, independent of how the work was divided.
+// State hash: one 128-bit number for the whole state of a world, independent of how the work was divided among threads.
 //
-// Each entity is mixed into two 64-bit words from its identity and its fields. The hash is the sum of these words. It
-// therefore does not depend on the order of entities, on threads or on memory layout, and it can be updated when one
-// entity changes.
+// Each entity's identity and fields are mixed into two 64-bit words. The hash is the sum of these words over all
+// entities. It therefore does not depend on the order of entities, on threads or on memory layout, and it can be
+// updated when one entity changes.
 //
 // Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators" (SplitMix64).
 #pragma once
@@ -68,11 +68,11 @@ struct HashedWords {
     std::uint32_t a, b, c, d, e;
 };
 
-/// Like EntityHash, but for entities that are hashed in every tick: six multiplications of 32-bit words, which a kernel
-/// computes for several entities at once (hash_lanes.h).
+/// Like EntityHash, but for entities that are hashed in every tick. It takes six multiplications of 32-bit words, which
+/// a kernel computes for several entities at once (hash_lanes.h).
 ///
 /// The fields are multiplied in pairs, each with a key derived from the identity. Each pair is also added unchanged to
-/// the other sum, so that no field is lost when its factor is 0.
+/// the other half of the hash. A field is therefore not lost if the other factor is 0.
 /// Source  the pairwise products are those of NH (Black, Halevi, Krawczyk, Krovetz & Rogaway 1999, "UMAC").
 inline StateHash hash_of(const HashedWords& words) {
     const auto product = [](std::uint64_t a, std::uint64_t b) { return (a & 0xffff'ffff) * (b & 0xffff'ffff); };

@@ -1,4 +1,4 @@
-// Within memory: runs work that needs much memory at once, and refuses it if there is not enough.
+// Within memory: runs a function that may need much memory, and returns a refusal if there is not enough.
 #pragma once
 
 #include "server/base/result.h"

@@ -1,8 +1,9 @@
-// The steps of breeding: which organisms are chosen, and how the genes of each are made. next_generation() performs the
-// steps for all organisms; a breeding record repeats them for the organisms it contains.
+// The steps of breeding: they choose the organisms that survive and mate, and compute the genes of the next generation.
+// next_generation() performs the steps for all organisms; record_breeding() repeats them for the organisms in its
+// record.
 //
-// Threads      none of its own; after its construction, several threads may call a Descent.
-// Determinism  every draw is keyed, so a step has the same result regardless of the caller and of the order of steps.
+// Threads      none of its own; several threads may use the same Descent object.
+// Determinism  every draw is keyed, so the result of a step depends neither on the caller nor on the order of steps.
 #pragma once
 
 #include "server/base/assert.h"
@@ -31,10 +32,10 @@ struct Choice {
     std::vector<std::uint32_t> others; // the survivors, if they differ from the picks
 };
 
-/// The number of picks that the selection makes, and its pool. If wanted is 0, no selection takes place.
+/// The arguments of select(): the number of picks, and the pool to pick from. If `wanted` is 0, nothing is selected.
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
 
-/// The key that select() receives.
+/// The key to pass to select().
 base::RandomKey selection_key(const BreedingKey& key);
 
 Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
@@ -68,7 +69,7 @@ struct WithoutRecord {
     static unsigned clamp(Genes genes, const GeneBounds& bounds) { return evolution::clamp(genes, bounds); }
 };
 
-/// Makes the genes of survivors and of children.
+/// Computes the genes of survivors and of children.
 class Descent {
   public:
     /// present  the parents' generation; must outlive this object.
@@ -85,7 +86,8 @@ class Descent {
 
     // by  applies the mutations: WithoutRecord, or a class that also records them.
 
-    /// Makes a survivor, in its place of the next generation. Returns the number of clamped genes.
+    /// Writes the genes of a survivor to `genes`. `place` is its index in the next generation. Returns the number of
+    /// clamped genes.
     template <class By>
     unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
         EVOD_ASSERT(organism < static_cast<std::size_t>(present_.cols()));
@@ -98,13 +100,14 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// The mask of the first child of a pair; the second child has the complement. nullopt: no crossover.
+    /// Draws the mask of the first child of a pair; the second child has the complement. nullopt: no crossover.
     std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(random);
     }
 
-    /// Makes one child, in its place. Returns the number of clamped genes.
+    /// Writes the genes of a child to `child`. `place` is its index in the next generation. Returns the number of
+    /// clamped genes.
     template <class By>
     unsigned make_child(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
         EVOD_ASSERT(of.parents.first < static_cast<std::size_t>(present_.cols()));

@@ -15,7 +15,7 @@ using Contender = BreedingRecord::Contender;
 using Pick = BreedingRecord::Pick;
 using Descendant = BreedingRecord::Descendant;
 
-/// Rows first … end − 1 of a list of `count`.
+/// The rows first … end − 1 of a list.
 struct Rows {
     std::uint32_t first, end;
     Rows(std::uint32_t wanted_first, std::uint32_t count, std::uint32_t count_max)

@@ -1,6 +1,6 @@
-// Breeding record: how a generation was bred: the wheel and its spins, the tournaments and their contestants, the
-// pairs, the cuts, and every changed gene. It is computed afterwards from the same inputs by the same steps
-// (breeding.h); breeding itself records nothing.
+// Breeding record: shows how a generation was bred. It contains the wheel and its spins, the tournaments and their
+// contestants, the pairs, the crossover cuts and every changed gene. It is computed afterwards from the same inputs by
+// the same steps (breeding.h); breeding itself records nothing.
 //
 // Threads      none of its own.
 // Determinism  the descendants equal those of next_generation() bit for bit.
@@ -19,44 +19,43 @@
 
 namespace evod::evolution {
 
-/// Which rows of each list the record contains: count_max rows from the first one on.
+/// The rows of each list that the record contains: at most count_max rows, from the given first row on.
 struct WantedRows {
     std::uint32_t first_contender = 0, first_pick = 0, first_descendant = 0;
     std::uint32_t count_max = 0;
 };
 
 struct BreedingRecord {
-    /// An organism as the selection saw it.
+    /// An organism that the selection could pick.
     struct Contender {
         double fitness = 0;
         std::uint32_t rank = 0; // 0: the fittest
         double weight = 0;      // scaled fitness
-        double slot_begin = 0;  // of the wheel, in turns; 0 for methods without a wheel
+        double slot_begin = 0;  // where its slot of the wheel begins, in turns; 0 for methods without a wheel
         double slot_end = 0;
-        CopiesLaw law{};                   // of the copies in all picks
-        std::uint32_t copies = 0;          // in all picks, as it happened
-        std::optional<Migrant> migrant;    // the migrant that took its place; set by the caller, which knows the
-                                           // migration
-        std::optional<double> own_fitness; // its fitness before the shuffle, if `fitness` was shuffled; set by the
-                                           // caller
+        CopiesLaw law{};                   // distribution of its number of copies in all picks
+        std::uint32_t copies = 0;          // its actual number of copies in all picks
+        std::optional<Migrant> migrant;    // the migrant that replaced it; set by the caller, which has the list of
+                                           // migrants
+        std::optional<double> own_fitness; // its true fitness, if `fitness` was shuffled; set by the caller
     };
     struct Pick {
         std::uint32_t organism = 0;
-        std::optional<double> turns;             // of the wheel, in [0, 1)
+        std::optional<double> turns;             // position on the wheel, in [0, 1)
         std::optional<std::uint32_t> tournament; // index of the tournament that it won
-        std::vector<std::uint32_t> contestants;  // of that tournament, itself included; empty without a tournament, or
-                                                 // if there are too many to record
+        std::vector<std::uint32_t> contestants;  // contestants of that tournament, the winner included; empty without a
+                                                 // tournament, or if there are too many to record
     };
     struct Descendant {
         std::uint32_t id = 0;
         Parents parents{};
-        Chromosome first_genes, second_genes; // of the parents
+        Chromosome first_genes, second_genes; // genes of the first and of the second parent
         GeneMask from_second = 0;             // the genes that come from the second parent
         bool crossed = false;
         std::optional<std::array<std::uint32_t, gene_count>> order; // after an order mutation: which gene's value each
                                                                     // gene received
         std::vector<GeneChange> changes;
-        Chromosome genes; // the result
+        Chromosome genes; // after all changes
     };
 
     Places places;

@@ -1,8 +1,8 @@
-// Chance: events of one fixed probability, many from one random word.
+// Chance: draws events of one fixed probability p. One random word suffices for many events.
 //
-// A draw compares the binary digits of a uniform number with the digits of p, from the first, and stops at the first
-// difference: after two digits on average. Six genes therefore take little more than one word, and the probability is
-// exactly p.
+// A draw compares the binary digits of a uniform number with the digits of p, from the first digit on. It stops at the
+// first difference: after two digits on average. Six genes therefore take little more than one word. The probability of
+// an event is exactly p.
 // Source  Knuth & Yao 1976, "The complexity of nonuniform random number generation".
 #pragma once
 
@@ -15,7 +15,7 @@ namespace evod::evolution {
 
 class Chance {
   public:
-    /// p  in [0, 1]; represented exactly from 2^-11 up, and rounded to a multiple of 2^-64 below.
+    /// p  in [0, 1]; exact if p >= 2^-11, otherwise rounded to a multiple of 2^-64.
     explicit Chance(double p) : digits_{p < 1 ? static_cast<std::uint64_t>(p * 0x1p64) : 0}, certain_{p >= 1} {
         EVOD_ASSERT(p >= 0);
         EVOD_ASSERT(p <= 1);
@@ -33,7 +33,7 @@ class Chance {
             return static_cast<std::uint32_t>(all);
         }
         std::uint64_t undecided = all, happens = 0;
-        std::uint64_t digits = digits_; // of p; the next digit is in the highest place
+        std::uint64_t digits = digits_; // the remaining digits of p; the next digit is the highest bit
         while (undecided != 0 && digits != 0) {
             std::uint64_t word = random.word();
             for (unsigned left = 32; left >= count; left -= count) {
@@ -50,8 +50,8 @@ class Chance {
     bool draw(base::RandomStream& random) const { return draw_bits(1, random) != 0; }
 
   private:
-    std::uint64_t digits_; // p is 1, which has no digits after the point
-    bool certain_;         // p is 1, which is not below 2^64 · 2^-64
+    std::uint64_t digits_; // p · 2^64; not used if p is 1, which would not fit
+    bool certain_;         // whether p is 1
 };
 
 } // namespace evod::evolution

@@ -1,6 +1,7 @@
-// Chromosomes: six real genes each, stored as the columns of one matrix.
+// Chromosomes: each has six real genes and is one column of a matrix.
 //
-// Determinism  the first generation uses one stream per organism, so an organism does not depend on how many there are.
+// Determinism  each organism of the first generation has its own stream, so its genes do not depend on the number of
+//              organisms.
 #pragma once
 
 #include "server/base/random.h"
@@ -21,7 +22,7 @@ constexpr unsigned gene_count = 6;
 constexpr std::array<std::string_view, gene_count> gene_names = {"normal_speed", "impulse",     "body_size",
                                                                  "base_health",  "food_radius", "poison_radius"};
 
-/// Shape (gene_count, organisms): a column is a chromosome, in order of organism.
+/// Shape (gene_count, organisms): column i is the chromosome of organism i.
 using GeneMatrix = Eigen::Array<float, gene_count, Eigen::Dynamic>;
 using Chromosome = Eigen::Array<float, gene_count, 1>;
 
@@ -36,7 +37,7 @@ inline ConstGenes column(const GeneMatrix& genes, std::uint32_t organism) {
     return ConstGenes{genes.data() + std::size_t{gene_count} * organism, gene_count};
 }
 
-/// A gene stays within [min, max].
+/// The allowed range of each gene, both ends included.
 struct GeneBounds {
     Chromosome min, max;
 };
@@ -50,7 +51,8 @@ unsigned clamp(Genes genes, const GeneBounds& bounds);
 /// bounds.
 ///
 /// organism_count  0 is allowed.
-/// returns         shape (gene_count, organism_count); a larger population begins with the smaller one.
+/// returns         shape (gene_count, organism_count); the first organisms of a larger population equal a smaller
+///                 population.
 GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
                               std::uint32_t island);
 

@@ -1,7 +1,7 @@
 // Crossover: mixes the genes of two parents into two children.
 //
-// Every method gives one mask: the genes that the first child takes from the second parent. The second child is the
-// complement, so no gene of either parent is lost.
+// Every method draws one mask per pair: the genes that the first child inherits from the second parent. The second
+// child has the complementary mask, so no gene of either parent is lost.
 // Source  De Jong 1975 and Eshelman, Caruana & Schaffer 1989 (cut points); Syswerda 1989, "Uniform crossover in genetic
 //         algorithms".
 #pragma once
@@ -17,21 +17,21 @@
 
 namespace evod::evolution {
 
-/// Bit g stands for gene g.
+/// A set of genes: bit g is 1 if gene g is in the set.
 using GeneMask = std::uint32_t;
 
 constexpr GeneMask all_genes = (1u << gene_count) - 1;
 
-/// The mask for a set of cuts: the parent changes at every cut. Bit c of `cuts`, 1 … gene_count − 1, is a cut before
-/// gene c.
+/// Returns the mask for a set of cuts. At every cut, inheritance changes to the other parent. Bit c of `cuts` (c = 1 …
+/// gene_count − 1) is a cut before gene c.
 GeneMask mask_of_cuts(GeneMask cuts);
 
 class Crossover {
   public:
     explicit Crossover(const Parameters& parameters);
 
-    /// Draws the mask of one pair. Returns nullopt, and the children are copies, unless an event of probability
-    /// crossover_chance happens.
+    /// Draws the mask of one pair, with probability crossover_chance. Otherwise returns nullopt: the children are
+    /// copies of their parents.
     ///
     /// uniform       each of the 64 masks is equally likely.
     /// single_point  each of the 5 interior cuts is equally likely.
@@ -42,7 +42,7 @@ class Crossover {
   private:
     CrossoverMethod method_;
     Chance chance_;
-    std::array<GeneMask, 10> masks_{}; // the sets of cuts to choose from
+    std::array<GeneMask, 10> masks_{}; // the masks to choose from
     std::uint32_t mask_count_ = 0;
 };
 

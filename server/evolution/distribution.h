@@ -1,4 +1,4 @@
-// Distribution: a stable counting sort of many items into buckets, by blocks that run in parallel.
+// Distribution: a stable counting sort of many items into buckets. Blocks of items are processed in parallel.
 //
 // Determinism  the place of an item depends on the buckets alone, not on the blocks.
 #pragma once
@@ -11,19 +11,19 @@
 
 namespace evod::evolution {
 
-/// Calls put(i, place) once for each i of 0 … count − 1, in parallel: first come the items of bucket 0, then those of
-/// bucket 1, and so on, in order of i within a bucket.
+/// Calls put(i, place) once for each i of 0 … count − 1, in parallel. Places are ordered by bucket, and within a bucket
+/// by i.
 ///
 /// bucket_of(i)  less than bucket_count; called twice.
-/// returns       shape (bucket_count + 1): the place where each bucket begins, and `count`.
+/// returns       shape (bucket_count + 1): the place where each bucket begins, followed by `count`.
 template <class BucketOf, class Put>
 std::vector<std::uint32_t> distribute(std::size_t count, std::size_t bucket_count, base::Executor& executor,
                                       const BucketOf& bucket_of, const Put& put) {
     constexpr std::size_t block_size = 16384;
     const std::size_t blocks = (count + block_size - 1) / block_size;
     std::vector<std::uint32_t> places(blocks *
-                                      bucket_count); // per block and bucket: the count, later the place of the next
-                                                     // item
+                                      bucket_count); // per block and bucket: first the number of items, later the place
+                                                     // of the next item
     executor.parallel_for(count, block_size, [&](base::Range block) {
         std::uint32_t* const counts = &places[block.begin / block_size * bucket_count];
         for (std::size_t i = block.begin; i < block.end; ++i) {

@@ -1,5 +1,5 @@
-// Fitness shuffle: a control for experiments. Permutes the fitness values among an island's organisms at random. The
-// selection then has the same differences to select by, but they have nothing to do with the organisms.
+// Fitness shuffle: a control for experiments. It permutes the fitness values of an island's organisms at random.
+// Selection is then as strong as before, but unrelated to the organisms' genes.
 //
 // Owner        World, between a generation's end and the migration; also the code that recomputes how a generation was
 //              bred.
@@ -16,8 +16,8 @@
 
 namespace evod::evolution {
 
-/// The fitness that a generation is bred by: shuffled on every island if the parameters say so, otherwise unchanged.
-/// Migration and selection both use it, so code that repeats a run must call this first.
+/// Shuffles the fitness values of every island if shuffle_fitness is on; otherwise changes nothing. Migration and
+/// selection both use the result, so code that recomputes a breeding must call this function first.
 ///
 /// fitness_of  fitness_of(i) returns island i's fitness, a std::span<double>, shape (population).
 /// generation  the generation that has just ended.
@@ -25,7 +25,7 @@ template <class FitnessOf>
 void apply_shuffle(const Parameters& parameters, std::size_t island_count, FitnessOf&& fitness_of, base::Seed seed,
                    std::uint64_t generation, base::Executor& executor);
 
-/// Permutes the values; every order is equally likely. generation: the one that has just ended.
+/// Permutes the values; every order is equally likely. The generation of `key` is the one that has just ended.
 void shuffle_fitness(std::span<double> fitness, const BreedingKey& key, base::Executor& executor);
 
 template <class FitnessOf>

@@ -11,7 +11,7 @@
 namespace evod::evolution {
 namespace {
 
-// The draws of one migration and island have different decisions in the place of the tick.
+// Each kind of decision has its own stream per migration and island: the Decision takes the place of the tick.
 enum Decision : std::uint64_t { Destination, EmigrantChoice, ReplacedChoice, LastPlaces };
 
 struct Edge {
@@ -50,18 +50,21 @@ std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed see
     return result;
 }
 
-/// Divides the places of an island among the edges that lead to it: in rounds, one place each, until places or migrants
-/// run out. The places of an incomplete last round are drawn.
+/// Divides the places of an island among the edges that lead to it. In each round, every edge that has migrants left
+/// gets one place, until all places or all migrants are used up. If the last round is incomplete, the edges that get a
+/// place in it are drawn.
 ///
-/// wanted   migrants of each edge.
-/// returns  how many migrants of each edge get a place; `wanted` itself, without a draw, if there is room for all.
+/// wanted   number of migrants of each edge.
+/// returns  how many migrants of each edge get a place. If there is room for all, this is `wanted`, and nothing is
+///          drawn.
 std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, std::uint32_t places,
                                            base::RandomStream random, base::Executor& executor) {
     if (std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0}) <= places) {
         return wanted;
     }
     std::vector<std::uint32_t> shares(wanted.size());
-    std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left; all have the same share so far
+    std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left; all have received the same number of
+                                                       // places so far
     std::iota(waiting.begin(), waiting.end(), 0u);
     while (places > 0) {
         std::erase_if(waiting, [&](std::uint32_t edge) { return shares[edge] == wanted[edge]; });

@@ -32,13 +32,14 @@ bool migration_due(std::uint64_t generation, const Parameters& parameters);
 ///
 /// ring             island i sends to i + 1, the last to the first.
 /// fully_connected  every island sends to every other island.
-/// random           every island sends to one other island, drawn in each epoch, each equally likely.
+/// random           every island sends to one other island, which is drawn in each epoch; all are equally likely.
 ///
-/// min(migrant_count, population) different organisms go along each edge: either the best, best first (ties: lower
-/// index), or organisms drawn uniformly for that edge. At an island they replace either the worst, worst first (of
-/// equals the higher index is the worse), or different organisms drawn uniformly. If more would arrive than the island
-/// holds, its places are shared evenly among the edges: an edge gets at most one place more than another, unless the
-/// other has no more migrants. The edges that get the remaining places are drawn, each equally likely.
+/// Each edge carries min(migrant_count, population) different organisms. They are either the best, best first (ties:
+/// lower index first), or drawn uniformly for that edge. At the destination they replace either the worst organisms,
+/// worst first (ties: higher index first), or different organisms drawn uniformly. If more migrants would arrive than
+/// the island has organisms, its places are shared evenly among the edges: an edge gets at most one place more than
+/// another edge, unless the other edge has no more migrants. The edges that get the remaining places are drawn, each
+/// equally likely.
 ///
 /// fitness     one span per island, shape (population), finite. Populations may differ; an island with an empty
 ///             population sends and receives none.

@@ -16,8 +16,8 @@ double symmetric_uniform(base::RandomStream& random) {
     return (random.word() + 0.5) * 0x1p-31 - 1;
 }
 
-/// Standard normal numbers, most of them from one word. The area under the density is covered by layers of equal area;
-/// a point in the part of a layer that lies entirely under the density is accepted at once.
+/// Draws standard normal numbers, most of them from one word. The area under the density is covered by layers of equal
+/// area. A point in the part of a layer that lies entirely under the density is accepted at once.
 /// Source  Marsaglia & Tsang 2000, "The ziggurat method for generating random variables", with independent bits for
 ///         layer and position (Doornik 2005).
 class Ziggurat {
@@ -46,7 +46,7 @@ class Ziggurat {
             if (layer == 0) {
                 return std::copysign(draw_tail(random), x);
             }
-            // Between the densities at the two edges of the layer.
+            // The height of the point is uniform between the densities at the two edges of the layer.
             const double low = density(width_[layer]), high = density(width_[layer + 1]);
             if (low + random.uniform() * (high - low) < density(x)) {
                 return x;
@@ -71,7 +71,7 @@ class Ziggurat {
     }
 
     std::array<double, layers + 1> width_;    // half the width of each layer, from the lowest up; decreasing
-    std::array<double, layers> wholly_under_; // the share of the width that lies entirely under the density
+    std::array<double, layers> wholly_under_; // per layer: the share of the width that lies entirely under the density
 };
 
 double draw_normal(base::RandomStream& random) {
@@ -177,8 +177,8 @@ template <class Change>
 void ValueMutation::flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const {
     std::array<std::uint32_t, gene_count> flips{};
     if (rare_flips_) {
-        // A division by bits_. It is exact because there are few trials: the error of the reciprocal adds up to less
-        // than 2^16.
+        // Divides by bits_ without a division. The result is exact because there are few trials: the error of the
+        // reciprocal adds up to less than 2^16.
         const unsigned reciprocal = (1u << 16) / bits_ + 1;
         rare_flips_->draw(random, [&](unsigned trial) {
             const unsigned gene = trial * reciprocal >> 16;

@@ -1,6 +1,6 @@
 // Value mutation: creep, random reset and bit flip give genes new values; then genes are clamped to their bounds.
 //
-// Determinism  the caller passes one stream per chromosome; how many words it takes depends on which genes mutate.
+// Determinism  the caller passes one stream per chromosome. The number of words drawn depends on which genes mutate.
 // Source       Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.3.1 (bit flip), 4.4.1 (creep, random
 //              reset).
 #pragma once
@@ -17,13 +17,13 @@
 
 namespace evod::evolution {
 
-/// The fixed-point binary view of a gene: `bits` plain binary digits, all 0 at the lower bound and all 1 at the upper.
-/// It is no Gray code, so neighbouring values can differ in all digits.
+/// A gene as a fixed-point binary code of `bits` digits: all 0 at the lower bound, all 1 at the upper bound. It is not
+/// a Gray code, so neighbouring values can differ in all digits.
 struct BinaryView {
     float min, max;
     unsigned bits; // 1 … 24
 
-    /// The nearest code to a value within the bounds; 0 if the bounds are equal.
+    /// The code nearest to a value within the bounds; 0 if the bounds are equal.
     std::uint32_t to_code(float value) const;
     float to_value(std::uint32_t code) const;
 };
@@ -47,16 +47,16 @@ class ValueMutation {
 
     /// Mutates one chromosome, in this order:
     ///
-    /// creep     each gene with probability mutation_chance: + mutation_step · U, U uniform in (−1, 1) or standard
-    ///           normal.
-    /// reset     each gene with probability reset_chance: uniform within its bounds.
-    /// bounds    a gene outside its bounds is moved to the nearer bound, and counted.
-    /// bit flip  each bit of each gene's BinaryView with probability bit_flip_chance. A gene is changed only if one of
-    ///           its bits flips; it is then also rounded to a value that has a code.
+    /// creep     adds mutation_step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or
+    ///           standard normal.
+    /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
+    /// bounds    moves each gene that is outside its bounds to the nearer bound, and counts it.
+    /// bit flip  flips each bit of each gene's BinaryView with probability bit_flip_chance. A gene without a flipped
+    ///           bit keeps its exact value. A gene with one gets the value of its new code.
     ///
     /// returns  the number of clamped genes.
     unsigned apply(Genes genes, base::RandomStream& random) const;
-    /// The same, and appends the changes to `changes`, in order.
+    /// Does the same, and appends the changes to `changes`, in order.
     unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
 
   private:

@@ -18,7 +18,7 @@ class Breeding {
     Breeding(const GeneMatrix& genes, const Parameters& parameters, const BreedingKey& key, base::Executor& executor)
         : present_{genes}, executor_{executor}, descent_{genes, parameters, key} {}
 
-    /// Copies the survivors, and mutates those after `kept`.
+    /// Copies the survivors, and mutates all of them except the first `kept`.
     void keep(std::span<const std::uint32_t> survivors, std::uint32_t kept, NextGeneration& next) const {
         next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
             const auto place = static_cast<std::uint32_t>(i);
@@ -52,7 +52,7 @@ class Breeding {
     }
 
   private:
-    /// Prefetches a chromosome that will be read soon: parents are scattered over memory.
+    /// Prefetches a chromosome that will be read soon, because parents are scattered over memory.
     void prefetch(std::uint32_t organism) const {
         const ConstGenes genes = column(present_, organism);
         __builtin_prefetch(&genes.front());

@@ -4,10 +4,10 @@
 //
 // Owner        World, once per generation and island.
 // Threads      none of its own; the executor processes pairs and survivors in blocks.
-// Determinism  every draw is keyed by (seed, stage, island, generation) and by its draw, pair or place. The result does
-//              not depend on threads, and any single child can be recomputed alone.
-// Cost         O(n) time and memory in the larger of the two population sizes, for every choice of every stage except
-//              tournament selection, which adds its contestants (tournament.h).
+// Determinism  every draw is keyed by (seed, stage, island, generation) and by the index of the draw, pair or place.
+//              The result does not depend on threads, and any single child can be recomputed alone.
+// Cost         O(n) time and memory, where n is the larger of the two population sizes. Only tournament selection can
+//              take longer, because it also draws contestants (tournament.h).
 #pragma once
 
 #include "server/base/executor.h"
@@ -38,8 +38,8 @@ struct NextGeneration {
     std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 survived, the elite among them; the others are
                                       // children
     std::uint64_t clamped_count = 0; // genes that were out of bounds and were clamped
-    // Compared with the previous generation before migration. Set by the caller; nullopt in the first generation, or if
-    // the previous one is not available.
+    // The change from the previous generation, as it was before migration. Set by the caller; nullopt in the first
+    // generation, or if the previous generation is not available.
     std::optional<SelectionAccount> account = std::nullopt;
 };
 
@@ -48,9 +48,9 @@ struct Places {
     std::uint32_t elite, survivors, children; // the survivors include the elite
 };
 
-/// The places of a next generation of `wanted` organisms bred from `present`; both >= 1.
+/// Divides the places of a next generation of `wanted` organisms that is bred from `present` organisms; both >= 1.
 ///
-/// elite         elite_count, but not more than `present` or `wanted`.
+/// elite         elite_count, but at most `present` and at most `wanted`.
 /// hybrid        survivors: round(survivors · wanted), half up, at least 1 and at least the elite.
 /// generational  survivors: the elite alone.
 /// steady_state  survivors: min(present, wanted) − replaced_count, at least 0 and at least the elite. A growing
@@ -64,15 +64,16 @@ Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameter
 /// parameters  each in its range.
 /// wanted      organisms in the next generation, >= 1; the population grows or shrinks to this number.
 ///
-/// hybrid        The selection picks as many organisms as survive; an organism that is picked twice survives twice. The
-///               elite come first. Each of them uses up one of its picks, or the last pick if it has none. The
-///               survivors are the parents.
-/// generational  As many parents as children, but at least two, are selected from the whole population.
-/// steady_state  The best survive, in index order after the elite. Parents are selected as in generational, so the
-///               worst breed too.
+/// hybrid        Selection picks the survivors; an organism that is picked twice survives twice. The elite come first
+///               among the survivors. Each elite organism replaces one of its own picks, or the last pick if it was not
+///               picked. The survivors are also the parents.
+/// generational  Selection picks the parents from the whole population: as many as there are children, but at least
+///               two.
+/// steady_state  The best organisms survive: first the elite, then the others in index order. Parents are selected as
+///               in generational, so the worst organisms can breed too.
 ///
-/// The elite are copied unchanged, and so are the other survivors unless mutate_survivors is on. Every organism is
-/// clamped to the present bounds.
+/// The elite are copied unchanged, and so are the other survivors unless mutate_survivors is on. The genes of every
+/// organism are clamped to the present bounds.
 NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, base::Executor& executor);
 

@@ -1,4 +1,5 @@
-// Order mutation: genes change places inside a chromosome. It makes no new values, and it is optional.
+// Order mutation: exchanges the values of genes inside a chromosome. It creates no new values, and it is off by
+// default.
 //
 // Source  Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.5.1 (swap, scramble, inversion).
 #pragma once
@@ -13,26 +14,27 @@
 
 namespace evod::evolution {
 
-/// Which gene's value each gene received.
+/// Element i is the index of the gene whose value gene i received.
 using GeneOrder = std::span<std::uint32_t, gene_count>;
 
 class OrderMutation {
   public:
     explicit OrderMutation(const Parameters& parameters);
 
-    /// Mutates with probability rearrange_chance. Every slice or pair below has two different indices, each pair of
-    /// indices equally likely.
+    /// Mutates with probability rearrange_chance. A pair or slice is given by two different indices; every choice of
+    /// them is equally likely.
     ///
-    /// swap       two genes trade places; with probability 1/2 a second pair does too, which can be the same.
-    /// scramble   the genes of a slice, both ends included, are put in an order drawn uniformly. It can be the present
-    ///            order: with different genes that happens with probability 2383/10800.
+    /// swap       the two genes of a pair exchange values; with probability 1/2 so do those of a second pair, which can
+    ///            be the same.
+    /// scramble   the genes of a slice, both ends included, are shuffled; every order is equally likely, the present
+    ///            one too. If all genes differ, nothing changes with probability 2383/10800.
     /// inversion  the genes of a slice, both ends included, are reversed.
     ///
-    /// Genes may be out of their bounds afterwards, because each gene has bounds of its own.
+    /// Genes may be out of their bounds afterwards, because each gene has its own bounds.
     ///
-    /// returns  whether the event happened.
+    /// returns  whether the event of probability rearrange_chance happened.
     bool apply(Genes genes, base::RandomStream& random) const;
-    /// Applies the same operation to gene numbers instead of genes.
+    /// Applies the same operation to gene indices instead of gene values.
     bool apply(GeneOrder order, base::RandomStream& random) const;
 
     bool is_off() const { return method_ == OrderMutationMethod::None || chance_.is_never(); }

@@ -20,8 +20,8 @@ std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32
             pairs.push_back({order[i], order[i + 1]});
         }
         if (count % 2 == 1 && pairs.size() < pair_count) {
-            // The last parent mates with the first, which the shuffle has chosen from the others; a single parent mates
-            // with itself.
+            // The last parent mates with the first of the shuffled order, which is a random other parent. A single
+            // parent mates with itself.
             pairs.push_back({order[count - 1], order[0]});
         }
     }

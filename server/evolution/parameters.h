@@ -1,6 +1,6 @@
-// The parameters of the genetic algorithm: one line each, from which the struct and the registry are made.
+// The parameters of the genetic algorithm, one line each. Macros generate the struct and the registry from these lines.
 //
-// A line says: name, default, least, greatest, unit, when a change takes effect, one sentence of help.
+// A line contains: name, default, minimum, maximum, unit, when a change takes effect, one sentence of help.
 #pragma once
 
 #include "server/base/parameter.h"
@@ -92,7 +92,8 @@ using base::count_max;
 #define EVOD_FLAG_FIELD(name, value, effect, help) bool name = value;
 #define EVOD_CHOICE_FIELD(name, Type, value, effect, help) Type name = Type::value;
 
-/// Every parameter of the genetic algorithm; each within its range, and the lower bound of a gene not above its upper.
+/// Every parameter of the genetic algorithm. Each is within its range, and no lower bound of a gene is above its upper
+/// bound.
 struct Parameters {
     EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 };

@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t organisms_per_block = 8192;
 constexpr std::uint32_t parents_prefetched = 16;
 
-/// A number for each gene, two in a vector. Compilers process single numbers one by one, at twice the cost.
+/// One number per gene, stored as vectors of two. Compilers process single numbers one by one, which takes twice as
+/// long.
 class Numbers {
   public:
     Numbers() = default;
@@ -76,8 +77,8 @@ SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add&
     return total;
 }
 
-/// A number near the mean of each gene, with few digits. Differences from it are exact, or nearly, and their sums are
-/// small, so the differences of means are more precise than the means themselves.
+/// A number near the mean of each gene, with few digits. Differences from it are exact, or nearly exact, and their sums
+/// are small. The differences of means are therefore more precise than the means themselves.
 Numbers centre_of(const GeneMatrix& genes, base::Executor& executor) {
     const auto organisms = static_cast<std::size_t>(genes.cols());
     const SumsOf<1> sums =
@@ -108,7 +109,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
 
     const auto population = summed<1>(
         organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
-    // The organisms that breeding saw, and their difference from the organisms as they were born.
+    // Two sums: over the organisms that breeding used, and over their differences from the organisms as born.
     SumsOf<2> seen{population[0], {}};
     if (&before != &bred_from) {
         seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
@@ -117,7 +118,8 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
             sums[1] += z - Numbers{column(before, i)};
         });
     }
-    // The descendants; their parents, each counted once per descendant; and the differences between the two.
+    // Three sums: over the descendants; over their parents, each counted once per descendant; over the differences
+    // between descendants and parents.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
         if (i + parents_prefetched < parents.size()) {
             prefetch(bred_from, parents[i + parents_prefetched].first);

@@ -6,14 +6,14 @@
 //                           ─────────    ─────────
 //                              w̄            w̄
 //
-// The sums run over the organisms that breeding saw, migrants included. z is the gene. w is the number of an organism's
-// descendants: ½ for each child that it is one of two parents of, 1 for each place in which it survives. Δz is the mean
-// difference between the genes of these descendants and its own. Crossover, mutation (also of survivors) and bounds are
-// therefore transmission.
+// The covariance and the means are taken over the organisms that breeding used, migrants included. z is the gene. w is
+// the number of an organism's descendants: each child counts ½ for each of its two parents, and each place in which an
+// organism survives counts 1 for it. Δz is the mean difference between the gene of these descendants and that of the
+// organism. Crossover, mutation (also of survivors) and bounds are therefore part of transmission.
 //
 // Threads      none of its own; the executor processes populations in blocks.
-// Determinism  sums are taken in double by index, over blocks of fixed size, whose sums are added in order. No number
-//              of the simulation depends on them.
+// Determinism  each block of fixed size is summed in index order, in double; the sums of the blocks are added in order.
+//              The simulation does not depend on the results.
 // Source       Price 1970, Nature 227, 520–521, doi:10.1038/227520a0.
 #pragma once
 
@@ -28,8 +28,8 @@
 
 namespace evod::evolution {
 
-/// The account of one gene, in its units. Each number is summed separately, so the first three add up to the fourth
-/// except for rounding.
+/// The change of one gene's mean and its three parts, in gene units. Each number is summed separately, so the first
+/// three add up to the fourth except for rounding.
 struct GeneAccount {
     double selection = 0, transmission = 0, migration = 0, change = 0;
     friend bool operator==(const GeneAccount&, const GeneAccount&) = default;
@@ -38,13 +38,13 @@ struct GeneAccount {
 /// One account per gene, in chromosome order.
 using SelectionAccount = std::array<GeneAccount, gene_count>;
 
-/// Computes how a generation developed from the previous one.
+/// Computes how the genes changed from the previous generation to this one.
 ///
-/// before     chromosomes of the previous generation as they were born; at least one.
-/// bred_from  the same after migration: the places of replaced organisms hold the migrants' chromosomes. May be
-///            `before`.
-/// born       chromosomes of the generation; at least one; their number may differ.
-/// parents    of the organisms in `born`, as indices into bred_from; shape (born).
+/// before     chromosomes of the previous generation as born; at least one.
+/// bred_from  the same chromosomes after migration: the places of replaced organisms hold the migrants' chromosomes.
+///            May be the same object as `before`.
+/// born       chromosomes of this generation; at least one. Their number may differ from that of `before`.
+/// parents    shape (born): the parents of each organism in `born`, as indices into bred_from.
 SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_from, const GeneMatrix& born,
                              std::span<const Parents> parents, base::Executor& executor);
 
@@ -66,7 +66,7 @@ void for_each_number(const std::optional<SelectionAccount>& account, Visit&& vis
 
 /// The inverse of for_each_number(): reads an account; nullopt if any number is missing.
 ///
-/// next  called for each number in that order: std::optional<double>().
+/// next  returns the next number, a std::optional<double>; called once per number, in the order of for_each_number().
 template <class Next>
 std::optional<SelectionAccount> account_from(Next&& next) {
     SelectionAccount account;

@@ -18,7 +18,7 @@ class RareEvents {
     static constexpr unsigned trials_max = 160;
 
     /// trials  at most trials_max.
-    /// chance  of each trial, in [0, 1); rounded to 2^-53.
+    /// chance  probability that a trial succeeds, in [0, 1); rounded to 2^-53.
     RareEvents(unsigned trials, double chance) : trials_{trials} {
         EVOD_ASSERT(trials <= trials_max);
         EVOD_ASSERT(chance >= 0);
@@ -48,7 +48,8 @@ class RareEvents {
     }
 
   private:
-    /// How many trials fail first: k + 1 or more with probability all_fail_[k]; trials_ if none succeeds.
+    /// Draws how many trials fail before the first success: k + 1 or more with probability all_fail_[k]; trials_ if
+    /// none succeeds.
     unsigned skip(base::RandomStream& random) const {
         const std::uint32_t high = random.word();
         unsigned skip = guide_[high / (0xffffffffu / guides + 1)];
@@ -73,7 +74,8 @@ class RareEvents {
     static constexpr unsigned guides = 1024; // so many that most words need no search
     unsigned trials_;
     std::array<Digits, trials_max> all_fail_{}; // [k]: the probability that the first k + 1 trials all fail
-    std::array<std::uint8_t, guides> guide_{};  // the greatest skip that a word with these first digits can mean
+    std::array<std::uint8_t, guides> guide_{};  // per leading digits of a word: the greatest skip that such a word can
+                                                // give
 };
 
 } // namespace evod::evolution

@@ -1,7 +1,7 @@
 // Scaling: converts fitness into the weights of proportional selection.
 //
-// Scaling never changes the order of organisms, so tournament and truncation, which need only the order, use the
-// fitness.
+// Scaling never changes the order of organisms. Tournament and truncation selection need only the order, so they use
+// the unscaled fitness.
 // Determinism  element by element, in index or rank order.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace evod::evolution {
 
-/// Expected copies of the organism of rank `rank` (0 = fittest) of `population` when as many are drawn as there are:
-/// pressure − 2(pressure − 1) · rank/(population − 1); 1 in a population of one.
+/// The expected number of copies of the organism of rank `rank` (0 = fittest) when `population` organisms are drawn
+/// from `population`: pressure − 2(pressure − 1) · rank/(population − 1). It is 1 in a population of one.
 ///
 /// pressure  1 (all equal) to 2 (the worst is never drawn).
 /// Source    Baker 1985, "Adaptive selection methods for genetic algorithms".
@@ -22,7 +22,7 @@ double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double p
 
 /// The scaled fitness, shape (population).
 ///
-/// none                 the fitness.
+/// none                 the fitness, unchanged.
 /// windowing            the fitness minus the least fitness, so the worst gets 0; halved if that would overflow.
 /// linear_ranking       linear_rank_weight with ranking_pressure.
 /// exponential_ranking  ranking_decay^rank; 0 for ranks where this is below 2^-1022. Source: Blickle & Thiele 1996,

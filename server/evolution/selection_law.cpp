@@ -11,7 +11,7 @@
 namespace evod::evolution {
 namespace {
 
-/// x^n for a probability x, which rounding may have made negative, and n >= 0.
+/// x^n for n >= 0. x is a probability that may be slightly negative because of rounding.
 double power(double x, double n) {
     if (x < std::numeric_limits<double>::min()) {
         return n == 0 ? 1 : 0;
@@ -19,10 +19,10 @@ double power(double x, double n) {
     return base::pow(x, n);
 }
 
-/// Calls visit(x, weight) for every x in [least, greatest] that has a weight worth counting; the weights are
-/// proportional to the probabilities of x, and `mode` has weight 1.
+/// Calls visit(x, weight) for every x in [least, greatest] whose weight is not negligible. Weights are proportional to
+/// the probabilities of x; the weight of `mode` is 1.
 ///
-/// mode     the likeliest x; the probability falls to both sides of it.
+/// mode     the most probable x; the probability decreases on both sides of it.
 /// ratio    ratio(x) = P(X = x + 1) / P(X = x).
 /// returns  the sum of all weights.
 template <class Ratio, class Visit>
@@ -45,7 +45,7 @@ double visit_weights(double least, double mode, double greatest, const Ratio& ra
     return sum;
 }
 
-/// As visit_weights(), for the number of successes in `trials` independent trials.
+/// visit_weights() for the binomial distribution: the number of successes in `trials` independent trials.
 template <class Visit>
 double visit_binomial(double trials, double chance, const Visit& visit) {
     if (chance >= 1) {
@@ -57,7 +57,8 @@ double visit_binomial(double trials, double chance, const Visit& visit) {
         0, mode, trials, [=](double x) { return (trials - x) / (x + 1) * odds; }, visit);
 }
 
-/// As visit_weights(), for the number of marked items among `drawn` of `all` without replacement.
+/// visit_weights() for the hypergeometric distribution: the number of marked items among `drawn` items that are drawn
+/// from `all` without replacement.
 template <class Visit>
 double visit_hypergeometric(double all, double marked, double drawn, const Visit& visit) {
     const double least = std::max(0.0, drawn + marked - all), greatest = std::min(marked, drawn);
@@ -67,7 +68,7 @@ double visit_hypergeometric(double all, double marked, double drawn, const Visit
         [=](double x) { return (marked - x) / (x + 1) * ((drawn - x) / (all - marked - drawn + x + 1)); }, visit);
 }
 
-/// At most one win: the rank is a contestant, and fewer than `winners` of the other contestants are fitter.
+/// A rank wins at most once: if it is a contestant and fewer than `winners` of the other contestants are fitter.
 WinsLaw wins_without_replacement(double rank, double population, double size, double winners) {
     double place_left = 0;
     const double all = visit_hypergeometric(population - 1, rank, size - 1, [&](double fitter, double weight) {
@@ -77,8 +78,8 @@ WinsLaw wins_without_replacement(double rank, double population, double size, do
     return {chance, chance, 1 - chance};
 }
 
-/// The wins of a rank that, together with the fitter ones, has `contestants` of the places of a tournament. Each of
-/// them belongs to the rank with chance `own_share`.
+/// The wins of a rank if it and the fitter ranks together fill `contestants` of the places of a tournament. Each of
+/// these places belongs to the rank itself with probability `own_share`.
 WinsLaw wins_among(double contestants, double own_share, double winners) {
     if (contestants <= winners) { // each of them wins
         const double mean = contestants * own_share;
@@ -90,7 +91,7 @@ WinsLaw wins_among(double contestants, double own_share, double winners) {
     }
     WinsLaw law{.none_chance = 0};
     const double all = visit_binomial(contestants, own_share, [&](double drawn, double weight) {
-        const double won = std::max(drawn - losers, 0.0); // the losers are the rank's own contestants first
+        const double won = std::max(drawn - losers, 0.0); // of these contestants, the rank's own lose first
         law.mean += weight * won;
         law.mean_square += weight * won * won;
         law.none_chance += won > 0 ? 0 : weight;
@@ -117,7 +118,8 @@ WinsLaw wins_with_replacement(double rank, double population, double size, doubl
 /// Exactly ⌊expected⌋ or ⌈expected⌉ copies, as in universal sampling, truncation and random selection in rounds.
 CopiesLaw rounded_copies(double expected) {
     const double nearest = std::round(expected);
-    // A wheel's share is a difference of sums: a number this close to a whole one is a whole one.
+    // A share of the wheel is a difference of rounded sums, so a number this close to a whole number is treated as
+    // whole.
     const bool whole = std::abs(expected - nearest) < 1e-9 * std::max(expected, 1.0);
     const double part = whole ? 0 : expected - std::floor(expected);
     return {expected, std::sqrt(part * (1 - part)), std::max(0.0, 1 - expected)};

@@ -5,8 +5,8 @@
 // Threads      none of its own.
 // Determinism  reads no random stream.
 // Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361; Baker 1987, "Reducing bias and
-//              inefficiency in the selection algorithm". For tournaments with several winners: the number of wins is a
-//              binomial or hypergeometric count of contestants, cut off at the number of winners.
+//              inefficiency in the selection algorithm". For tournaments with several winners, the number of wins is a
+//              binomial or hypergeometric number of contestants, limited to the number of winners.
 #pragma once
 
 #include "server/evolution/parameters.h"
@@ -22,7 +22,7 @@ struct Tournament;
 struct CopiesLaw {
     double expected = 0;
     double standard_error = 0;  // standard deviation of the copies from one breeding to the next
-    double unpicked_chance = 1; // chance of no copy at all
+    double unpicked_chance = 1; // probability of no copy at all
 };
 
 class SelectionLaw {
@@ -33,7 +33,7 @@ class SelectionLaw {
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
     /// rank   0 is the fittest.
-    /// share  of the wheel, for roulette and universal sampling; the other methods ignore it.
+    /// share  its share of the wheel, for roulette and universal sampling; the other methods ignore it.
     CopiesLaw copies(std::uint32_t rank, double share) const;
 
   private:
@@ -51,8 +51,9 @@ struct WinsLaw {
     double none_chance = 1;
 };
 
-/// tournament  size, without replacement at most the population; winners at most its size.
-/// cost        grows with the root of the size; with replacement and several winners with the root squared at most.
+/// tournament  its size is at most the population if drawn without replacement; its winners are at most its size.
+/// cost        grows with the square root of the size; with replacement and several winners, at most linearly with the
+///             size.
 WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

@@ -16,8 +16,8 @@ namespace evod::evolution {
 /// Up to this many items are shuffled as a whole.
 constexpr std::size_t shuffled_whole_max = 65536;
 
-/// Shuffles `items`, drawing from `random`. More than shuffled_whole_max items draw from streams of their own, which
-/// are keyed by one number from `random`.
+/// Shuffles `items`, drawing from `random`. More than shuffled_whole_max items draw from separate streams instead,
+/// which are keyed by one number from `random`.
 void shuffle(std::span<std::uint32_t> items, base::RandomStream& random, base::Executor& executor);
 
 } // namespace evod::evolution

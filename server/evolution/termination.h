@@ -1,7 +1,7 @@
 // Termination: when a run is over, and why. Every criterion is off unless a parameter turns it on.
 //
 // Owner        World; called once at the end of each generation.
-// Determinism  a function of the generations' best fitness alone; Progress is part of a world's state.
+// Determinism  the outcome depends only on Progress, which is part of a world's state, and on the parameters.
 #pragma once
 
 #include "server/evolution/parameters.h"
@@ -35,8 +35,8 @@ struct GenerationResult {
     bool died_out;       // no organism was alive at the end, on any island
 };
 
-/// The progress after one more generation. A tie with the best so far is no improvement; the first generation always is
-/// one.
+/// The progress after one more generation. Only a fitness above the best so far is an improvement, except that the
+/// first generation always counts as one.
 Progress advance(Progress progress, const GenerationResult& result);
 
 /// The outcome after the last generation of `progress`; Running if no generation has ended yet.

@@ -11,8 +11,8 @@
 namespace evod::evolution {
 namespace {
 
-// This many contestants are drawn, and their fitness prefetched, before the first is compared: fitness is scattered
-// over memory.
+// The number of contestants that are drawn, and whose fitness is prefetched, before the first is compared. Their
+// fitness is scattered over memory.
 constexpr std::size_t contestants_at_once = 128;
 constexpr std::size_t contestants_per_piece = 4096;
 
@@ -72,8 +72,8 @@ void draw_different_contestants(std::uint32_t population, std::span<std::uint32_
     }
 }
 
-/// The ranks of the best of `size` uniform draws, best first. The least of m uniform numbers above x is 1 − (1 − x) ·
-/// U^(1/m).
+/// Draws the ranks of the winners among `size` uniform draws, best first. The least of m numbers that are uniform in
+/// (x, 1) is distributed like 1 − (1 − x) · U^(1/m).
 /// Source  Devroye 1986, Non-Uniform Random Variate Generation, V.3.1.
 void draw_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                         base::RandomStream& random) {
@@ -84,8 +84,8 @@ void draw_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<
     }
 }
 
-/// The best ranks of `size` different draws: from the best rank down, each takes part with probability (places left) /
-/// (ranks left).
+/// Draws the ranks of the winners among `size` different contestants. From the best rank down, each rank is a
+/// contestant with probability (places left) / (ranks left).
 /// Source  selection sampling, Knuth, The Art of Computer Programming 2, 3.4.2 S.
 void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                   base::RandomStream& random) {
@@ -99,7 +99,7 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
     }
 }
 
-/// How many of `population` ranks are better than the best of `size` different draws.
+/// Draws how many of `population` ranks are better than the best of `size` different contestants.
 /// Source  Vitter 1987, "An efficient algorithm for sequential random sampling", algorithm D.
 std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::RandomStream& random) {
     if (size == 1) {
@@ -131,7 +131,7 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
 }
 
-/// The same as draw_different_winning_ranks, in a time that does not depend on how many ranks are skipped.
+/// Like draw_different_winning_ranks(), in a time that does not depend on how many ranks are skipped.
 void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                      base::RandomStream& random) {
     std::uint32_t rank = 0;
@@ -141,8 +141,8 @@ void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t siz
     }
 }
 
-/// The probability of each rank to be the best of `size` different draws, down to negligible probabilities: all better
-/// ranks must be missed.
+/// The probability that each rank is the best of `size` different contestants, which means that no better rank is
+/// drawn. Negligible probabilities at the end are left out.
 std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
     std::vector<double> chances;
     double all_missed = 1;
@@ -154,7 +154,7 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
     return chances;
 }
 
-/// How the winners are found. Each method is the cheapest in its case.
+/// How the winners are found. Each method is the fastest in its case.
 enum class Method {
     Held,            // contestants are drawn and compared
     OrderStatistics, // with replacement

@@ -1,7 +1,7 @@
 // Tournaments: contestants are drawn uniformly from the population, and the fittest of them win.
 //
-// Determinism  each tournament has a stream of its own.
-// Cost         a tournament of k contestants costs O(k). The outcome of a large tournament is drawn directly from the
+// Determinism  each tournament has its own stream.
+// Cost         a tournament of k contestants costs O(k). The winners of a large tournament are drawn directly, from the
 //              same distribution, in O(winners).
 // Source       Goldberg & Deb 1991, "A comparative analysis of selection schemes used in genetic algorithms".
 #pragma once
@@ -26,8 +26,8 @@ Tournament tournament_of(const Parameters& parameters);
 
 /// Holds tournaments until `wanted` organisms are picked; surplus winners of the last one are dropped, worst first.
 ///
-/// With replacement the best of k from n has rank r (0 = fittest) with probability ((n−r)^k − (n−r−1)^k) / n^k, without
-/// replacement with C(n−r−1, k−1) / C(n, k).
+/// The best of k contestants from n organisms has rank r (0 = fittest) with probability ((n−r)^k − (n−r−1)^k) / n^k
+/// with replacement, and C(n−r−1, k−1) / C(n, k) without.
 ///
 /// ranking  of at least one organism; ties go to the lower index.
 /// key      tournament i draws from the stream of entity i.
@@ -35,14 +35,15 @@ Tournament tournament_of(const Parameters& parameters);
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor);
 
-/// The number of picks of each of those tournaments; the last one may give fewer.
+/// The number of picks that each tournament of hold_tournaments() gives; the last tournament may give fewer.
 std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted);
 
-/// The contestants of one of those tournaments, in the order drawn; empty if its outcome is drawn directly.
+/// The contestants of one tournament of hold_tournaments(), in the order drawn; empty if its winners are drawn
+/// directly.
 std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
                                           std::uint32_t wanted, const base::RandomKey& key);
 
-/// The outcome of tournaments with more contestants than this is drawn directly, unless most contestants win.
+/// The winners of tournaments with more contestants than this are drawn directly, unless most contestants win.
 constexpr std::uint32_t held_contestants_max = 64;
 
 } // namespace evod::evolution

@@ -20,7 +20,7 @@ void make_non_negative(std::vector<double>& weights) {
     }
 }
 
-/// A power of two that brings `greatest` near 1, so that sums neither overflow nor lose all their digits.
+/// A power of two that scales `greatest` to about 1, so that sums neither overflow nor lose all their digits.
 double near_one(double greatest) {
     return std::ldexp(1.0, std::clamp(-std::ilogb(greatest), -1000, 1000));
 }

@@ -14,12 +14,13 @@ namespace evod::evolution {
 
 class Wheel {
   public:
-    /// weights  shape (population), finite, population >= 1. If any weight is negative, the least is subtracted from
-    ///          all. If all are then 0, all count the same. Only their ratios matter; sums cannot overflow.
+    /// weights  shape (population), finite, population >= 1. If any weight is negative, the least weight is subtracted
+    ///          from all. If all weights are then 0, all organisms get the same weight. Only the ratios of weights
+    ///          matter, and their sum cannot overflow.
     explicit Wheel(std::vector<double> weights);
 
-    /// The organism at `turns` of a full turn, in [0, 1): the first whose slot ends beyond it. A slot of width 0 is
-    /// never hit.
+    /// The organism at the position `turns`, in [0, 1) of a full turn: the first organism whose slot ends beyond that
+    /// position. A slot of width 0 is never hit.
     std::uint32_t at(double turns) const;
 
     /// The end of each slot, in index order, shape (population); the last is the circumference.
