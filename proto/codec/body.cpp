@@ -8,7 +8,7 @@
 namespace evod::codec {
 namespace {
 
-constexpr std::uint8_t with_exceptions = 128; // in a column's width
+constexpr std::uint8_t with_exceptions = 128; // flag in the width of a column
 constexpr std::uint64_t exception_bytes = 8;
 
 std::uint32_t widened(std::int32_t value) {
@@ -49,7 +49,7 @@ void BodyWriter::planes(Numbers values, Numbers indices, std::uint32_t bytes) {
 }
 
 void BodyWriter::column(Numbers values) {
-    // The numbers that need more than 0, 1 and 2 bytes.
+    // Counts of the numbers that need more than 0, 1 and 2 bytes.
     std::uint32_t not_zero = 0, above_8_bits = 0, above_16_bits = 0;
     for (const std::uint32_t value : values) {
         not_zero += value != 0;
@@ -102,7 +102,7 @@ void BodyWriter::exceptions(Numbers values, std::uint64_t count, const Condition
     Column indices, exceptional;
     indices.reserve(count);
     exceptional.reserve(count);
-    constexpr std::size_t block = 64; // most blocks have no exception, which vector instructions detect quickly
+    constexpr std::size_t block = 64; // most blocks contain no exception, which vector instructions detect quickly
     for (std::size_t begin = 0; begin < values.size(); begin += block) {
         const Numbers some = values.subspan(begin, std::min(block, values.size() - begin));
         unsigned any = 0;

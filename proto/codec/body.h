@@ -1,6 +1,7 @@
-// Body: the numbers of a snapshot's body, one after another, in the layout of stream.proto.
+// Body: writes and reads the numbers in the body of a snapshot, one after another, in the layout that stream.proto
+// describes.
 //
-// The writer's input is valid; the reader checks everything.
+// The input of the writer must be valid. The reader checks everything.
 //
 // Threads      none; nothing here is shared.
 #pragma once
@@ -27,28 +28,28 @@ class BodyWriter {
         store(value, grow(sizeof value));
     }
 
-    /// The numbers at `indices`: the lowest byte of each, then the next byte of each, because bytes that rarely differ then
-    /// stand together. bytes: 2 or 4.
+    /// Writes the values at `indices` in planes: the lowest byte of each number, then the next byte of each number, and
+    /// so on. Bytes that rarely differ are then adjacent. bytes: 2 or 4.
     void planes(Numbers values, Numbers indices, std::uint32_t bytes);
 
-    /// Signed numbers, in the width that takes the fewest bytes.
+    /// Writes signed numbers in the width that needs the fewest bytes.
     void column(Numbers values);
 
-    /// Rising numbers.
+    /// Writes numbers in rising order.
     void rising_column(Numbers values);
 
     std::string take() { return std::move(body_); }
-    /// The offsets of all columns and planes. Call it before take().
+    /// Returns the offsets of all columns and planes. Must be called before take().
     Seams take_seams() { return std::move(seams_); }
 
   private:
     void seam() { seams_.push_back(static_cast<std::uint32_t>(body_.size())); }
-    /// Whole numbers of sizeof(Number) bytes.
+    /// Writes whole numbers of sizeof(Number) bytes each.
     template <std::unsigned_integral Number>
     void plain(Numbers values);
     template <class Condition>
     void exceptions(Numbers values, std::uint64_t count, const Condition& is_exception);
-    /// Like plain(), with 0 in place of exceptions.
+    /// Like plain(), but writes 0 in place of each exception.
     template <std::unsigned_integral Number, class Condition>
     void fitting(Numbers values, const Condition& is_exception);
     char* grow(std::size_t bytes);
@@ -57,7 +58,7 @@ class BodyWriter {
     Seams seams_;
 };
 
-/// After the first error all numbers that are read are 0 and all columns are empty.
+/// Reads a body. After the first error, all further numbers are 0 and all further columns are empty.
 class BodyReader {
   public:
     explicit BodyReader(std::string_view body) : rest_{body} {}
@@ -65,7 +66,7 @@ class BodyReader {
     const std::optional<Damage>& damage() const { return damage_; }
     std::size_t rest_bytes() const { return rest_.size(); }
 
-    /// Records an error, if there is none yet: "a snapshot's body " + why.
+    /// Records the error "a snapshot's body " + why, unless there already is one.
     void refuse(const std::string& why);
 
     template <std::unsigned_integral Number>
@@ -75,10 +76,10 @@ class BodyReader {
 
     Column planes(std::size_t count, std::uint32_t bytes);
 
-    /// The caller ensures that there is memory for `count` numbers.
+    /// Reads a column. The caller must ensure that there is memory for `count` numbers.
     Column column(std::size_t count);
 
-    /// Rising numbers below `end`.
+    /// Reads numbers in rising order, all of them below `end`.
     Column rising_column(std::size_t count, std::uint64_t end);
 
   private:

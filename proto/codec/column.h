@@ -1,4 +1,4 @@
-// Column: one number for each of many entities.
+// Column: an array with one number for each of many entities.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace evod::codec {
 
-/// Leaves numbers uninitialised where std::allocator would set them to 0.
+/// An allocator that leaves numbers uninitialised, where std::allocator would set them to 0.
 template <class T>
 struct Uninitialised : std::allocator<T> {
     template <class U>
@@ -27,8 +27,8 @@ struct Uninitialised : std::allocator<T> {
     }
 };
 
-/// Signed or unsigned; arithmetic is modulo 2^32. Column(count) and resize() leave new numbers uninitialised, because the
-/// codecs write nearly all of them at once.
+/// Signed or unsigned numbers. Arithmetic is modulo 2^32. Column(count) and resize() leave new numbers uninitialised,
+/// because the codecs overwrite nearly all of them immediately.
 using Column = std::vector<std::uint32_t, Uninitialised<std::uint32_t>>;
 using Numbers = std::span<const std::uint32_t>;
 

@@ -13,13 +13,13 @@ namespace evod::codec {
 
 namespace {
 
-// The fastest of the ordinary levels, because the network thread waits for it.
+// The fastest of the regular levels, because the network thread waits for the compression.
 constexpr int level = 1;
-// Instead of 1: a world at full speed takes a quarter less time and 1 % more bytes (snapshot_bench).
+// With 16 instead of 1, a world at full speed takes a quarter less time and 1 % more bytes (snapshot_bench).
 constexpr int bytes_between_searches = 16;
 
-constexpr std::size_t block_bytes_min = 1024; // shorter blocks cost more than they save
-constexpr std::size_t block_bytes_more = 16;  // overhead of a block
+constexpr std::size_t block_bytes_min = 1024; // a shorter block costs more bytes than it saves
+constexpr std::size_t block_bytes_more = 16;  // overhead of one block
 
 Damage not_zstd(const std::string& why) {
     return Damage{"a snapshot's body is not a zstd frame: " + why};
@@ -33,12 +33,13 @@ struct Compressor::Context {
             throw std::bad_alloc{};
         }
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_compressionLevel, level);
-        // Columns are noise or nearly constant. Short matches there are accidental and cost more than they save, and a
-        // small hash table finds the others.
+        // Columns contain noise or nearly constant numbers. In them short matches are accidental and cost more than
+        // they save. A small hash table is enough to find the long matches.
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_minMatch, 7);
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_hashLog, 8);
-        // For the same reason zstd searches for matches only every few bytes. It would then also omit entropy coding, which
-        // makes columns shorter. If this version cannot keep entropy coding on, it searches at every byte.
+        // For the same reason zstd searches for matches only every few bytes. In this mode it would also omit entropy
+        // coding, which makes columns shorter. If this version of zstd cannot keep entropy coding enabled, it searches
+        // at every byte.
         if (!ZSTD_isError(ZSTD_CCtx_setParameter(zstd, ZSTD_c_literalCompressionMode, ZSTD_ps_enable))) {
             ZSTD_CCtx_setParameter(zstd, ZSTD_c_targetLength, bytes_between_searches);
         }
@@ -46,7 +47,7 @@ struct Compressor::Context {
     ~Context() { ZSTD_freeCCtx(zstd); }
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
-    /// Uninitialised memory.
+    /// Returns uninitialised memory.
     std::span<char> room(std::size_t bytes) {
         if (room_bytes < bytes) {
             room_memory = std::make_unique_for_overwrite<char[]>(bytes);
@@ -77,7 +78,8 @@ std::string Compressor::compress(std::string_view bytes, const Seams& seams) {
         do {
             left = ZSTD_compressStream2(zstd, &out, &in, then);
         } while (!ZSTD_isError(left) && left > 0 && out.pos < out.size);
-        if (ZSTD_isError(left) || left > 0) { // the output has room for the bound, so only memory can be missing
+        // The output buffer has the maximum size of the result, so the only possible cause is a lack of memory.
+        if (ZSTD_isError(left) || left > 0) {
             throw std::bad_alloc{};
         }
         begin = end;

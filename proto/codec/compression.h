@@ -1,6 +1,6 @@
-// Compression: bodies of snapshots to zstd frames and back, and their checksum.
+// Compression: converts bodies of snapshots to zstd frames and back, and computes their checksums.
 //
-// Threads      a Compressor is used by one thread at a time; the functions by any.
+// Threads      only one thread at a time may use a Compressor. Any thread may call the functions.
 #pragma once
 
 #include "proto/codec/result.h"
@@ -13,10 +13,10 @@
 
 namespace evod::codec {
 
-/// The offsets in a body at which columns begin, rising.
+/// The offsets in a body at which columns begin, in rising order.
 using Seams = std::vector<std::uint32_t>;
 
-/// Makes independent zstd frames, and reuses its working memory.
+/// Creates independent zstd frames and reuses its working memory.
 class Compressor {
   public:
     Compressor();
@@ -24,8 +24,9 @@ class Compressor {
     Compressor(const Compressor&) = delete;
     Compressor& operator=(const Compressor&) = delete;
 
-    /// seams  where numbers of another kind begin. Each long enough part becomes a zstd block with its own entropy code.
-    ///        Otherwise a regular column beside many random bytes would hardly become shorter.
+    /// seams  offsets at which the kind of number changes. Each part that is long enough becomes a zstd block with its
+    ///        own entropy code. With one code for all parts, a regular column next to many random bytes would hardly
+    ///        shrink.
     std::string compress(std::string_view bytes, const Seams& seams = {});
 
   private:
@@ -33,10 +34,13 @@ class Compressor {
     std::unique_ptr<Context> context_;
 };
 
-/// The content of a zstd frame that contains its size. More than bytes_max is Damage, before memory is allocated.
+/// Decompresses a zstd frame that states the size of its content. If the size exceeds bytes_max, the result is Damage
+/// and no memory is allocated.
 Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max);
 
-/// CRC-32, as in zlib. before: the checksum of the bytes that precede `bytes`.
+/// CRC-32 as computed by zlib.
+///
+/// before  the checksum of the bytes that precede `bytes`.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
 
 } // namespace evod::codec

@@ -13,17 +13,17 @@ namespace evod::codec {
 
 namespace {
 
-constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // in a section's parts
-constexpr std::uint32_t size_bytes = 2;                       // of a radius, health, half width or half height
+constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // flags in the parts of a section
+constexpr std::uint32_t size_bytes = 2;                       // size of a radius, health, half width or half height
 
-/// The columns of a kind of entity, and which of them can change.
+/// Describes a kind of entity: its columns, and which of them can change.
 struct Kind {
     const char* name;
     Entities QuantisedSnapshot::*entities;
     EntitiesView QuantisedView::*seen;
-    Baseline::Displacements Baseline::*displacements; // of those that move
+    Baseline::Displacements Baseline::*displacements; // set if entities of this kind move
     BaselineView::Displacements BaselineView::*seen_displacements;
-    bool ids; // on a whole island; in a tile every kind has ids
+    bool ids; // entities have ids on a whole island; in a tile all kinds have ids
     bool sizes, health;
 };
 
@@ -37,7 +37,7 @@ const std::array<Kind, 5> kinds{{
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
-/// Predicts the movement in `ticks` of entities that moved by `displacement` in base_ticks, at constant velocity.
+/// Predicts at constant velocity how far entities move in `ticks`, if they moved by `displacement` in base_ticks.
 class Prediction {
   public:
     Prediction(std::uint16_t ticks, std::uint16_t base_ticks)
@@ -52,9 +52,10 @@ class Prediction {
         return static_cast<std::uint32_t>(rounded_down);
     }
 
-    /// The residuals of entities that are `here` and were `there`; all columns have one length.
+    /// Computes the residuals of entities at the positions `here` that were at the positions `there`. All columns have
+    /// the same length.
     void residuals(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
-        if (ticks_ == base_ticks_) { // the usual case; compiled to vector instructions
+        if (ticks_ == base_ticks_) { // the usual case; the compiler uses vector instructions
             for (std::size_t i = 0; i < here.size(); ++i) {
                 to[i] = here[i] - there[i] - displacements[i];
             }
@@ -64,8 +65,8 @@ class Prediction {
         for (const std::uint32_t displacement : displacements) {
             all_small &= unsigned{displacement + small_ <= 2 * small_};
         }
-        if (all_small) {                        // at full speed the intervals vary; compiled to vector instructions too
-            const Prediction predicted = *this; // a copy, which `to` cannot alias
+        if (all_small) { // common at full speed, where intervals vary; the compiler uses vector instructions here, too
+            const Prediction predicted = *this; // a local copy, so that the compiler knows that `to` does not alias it
             for (std::size_t i = 0; i < here.size(); ++i) {
                 to[i] = here[i] - there[i] - predicted.of_small(displacements[i]);
             }
@@ -77,49 +78,50 @@ class Prediction {
     }
 
   private:
-    /// The same for a displacement of at most small_ in either direction, by a multiplication instead of a division. The
+    /// Predicts a displacement of at most small_ in either direction with a multiplication instead of a division. The
     /// quotient is exact for numbers below 2^31 (Granlund and Montgomery, Division by Invariant Integers using
     /// Multiplication, 1994, theorem 4.2).
     std::uint32_t of_small(std::uint32_t displacement) const {
-        const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // not below 0
+        const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // never negative
         return static_cast<std::uint32_t>(std::uint64_t{product} * reciprocal_ >> shift_) - ahead_;
     }
 
-    static constexpr std::uint32_t product_max = 1U << 29; // of a small displacement and ticks
+    static constexpr std::uint32_t product_max = 1U << 29; // maximum product of a small displacement and ticks
     std::uint32_t ticks_, base_ticks_;
     std::uint32_t small_ = product_max / std::max(ticks_, 1U);
     std::uint32_t ahead_ = product_max / base_ticks_ + 1;
-    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1)); // 31 + log2, rounded up
+    // 31 + log2 of base_ticks_, rounded up.
+    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1));
     std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
 };
 
-// ---- which entities of two snapshots are the same --------------------------------------------------------------
+// ---- matching the entities of two snapshots --------------------------------------------------------------------
 
 struct Pairing {
-    Column gone; // indices in the base, rising
-    Column come; // indices in the next snapshot, rising
+    Column gone; // indices in the base, in rising order
+    Column come; // indices in the next snapshot, in rising order
 };
 
 bool have_ids(const Kind& kind, bool of_tile) {
     return kind.ids || of_tile;
 }
 
-/// Pairs entities by id, a block at a time as long as all are the same, which is the usual case. Otherwise one by one and
-/// without a branch, because the outcome is unpredictable.
+/// Pairs entities by id. Compares whole blocks as long as all entities in them are the same, which is the usual case.
+/// Otherwise it compares single entities without a branch, because the outcome is unpredictable.
 ///
-/// same  returns 1 if entities with equal ids at two indices are the same; else 0.
+/// same  takes two indices of entities with equal ids. Returns 1 if these entities are the same, otherwise 0.
 template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
-    // Room for one more: the index of an entity that stays is written there and overwritten.
+    // One extra element: the index of an entity that stays is also written, and the next index overwrites it.
     Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
     std::uint32_t i = 0, j = 0, gone = 0, come = 0;
     constexpr std::uint32_t block = 32;
     while (i < base_count && j < next_count) {
         while (base_count - i >= block && next_count - j >= block) {
             unsigned all_same = 1;
-            for (std::uint32_t k = 0; k < block; ++k) { // without a branch, for vector instructions
+            for (std::uint32_t k = 0; k < block; ++k) { // no branch, so that the compiler can use vector instructions
                 all_same &= unsigned{base.id[i + k] == next.id[j + k]} & same(i + k, j + k);
             }
             if (!all_same) {
@@ -150,8 +152,9 @@ Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Sam
     return pairing;
 }
 
-/// An organism is the same while its id and radius are, an item while its position is, a crate while its size is. Boxes of
-/// a whole island are the same if follows() holds.
+/// Two organisms are the same if their id and radius are equal; two items, if their id and position are equal; two
+/// crates in a tile, if their id and size are equal; two obstacles in a tile, if their id, size and position are equal.
+/// The boxes of a whole island are the same if follows() is true.
 Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     if (!have_ids(kind, of_tile)) {
         return {};
@@ -176,15 +179,16 @@ Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& nex
     return pair_by_id(base, next, same_place);
 }
 
-/// 0 to count - 1.
+/// Returns the numbers from 0 to count - 1.
 Column indices(std::size_t count) {
     Column all(count);
     std::iota(all.begin(), all.end(), 0U);
     return all;
 }
 
-/// Whether so few of many entities of a kind that does not move have stayed that sending all of them again takes about as
-/// many bytes and far less time. Samples the first ones, because positions are independent of ids.
+/// Whether a large number of entities that cannot move has mostly been replaced. Sending all of them again then needs
+/// about the same number of bytes and far less time. The function samples the first entities, because positions do not
+/// depend on ids.
 bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     constexpr std::size_t many = 2048, sampled = 256, stayed_max = sampled / 4;
     if (kind.displacements || base.id.size() < many) {
@@ -199,7 +203,8 @@ bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesVie
     return sampled - pairing.gone.size() <= stayed_max;
 }
 
-/// Calls stayed(base index, next index, count) for each run of `count` adjacent entities that are in both.
+/// Calls stayed(base index, next index, count) for each sequence of `count` adjacent entities that are in both
+/// snapshots.
 template <class Stayed>
 void each_that_stayed(const Pairing& pairing, std::size_t base_count, const Stayed& stayed) {
     auto gone = pairing.gone.begin();
@@ -229,8 +234,8 @@ Column at(Numbers column, Numbers indices) {
 
 // ---- encoding --------------------------------------------------------------------------------------------------
 
-/// pairing        of the base and `entities`.
-/// displacements  of `entities`; null: all are 0.
+/// pairing        the match between the entities of the base and `entities`.
+/// displacements  the displacements of `entities`; nullptr: all are 0.
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
                  const Pairing& pairing, const BaselineView::Displacements* displacements) {
     const Column& come = pairing.come;
@@ -262,7 +267,7 @@ void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entit
 
 // ---- decoding --------------------------------------------------------------------------------------------------
 
-/// `column` without the numbers at the rising `indices`.
+/// Returns `column` without the elements at `indices`, which are in rising order.
 Column without(Column column, Numbers indices) {
     if (indices.empty() || column.empty()) {
         return column;
@@ -290,13 +295,13 @@ struct Section {
     Baseline::Displacements displacements;
 };
 
-/// All columns of a section.
+/// Returns all columns of a section.
 std::array<Column*, 7> columns_of(Section& section) {
     return {&section.entities.id,     &section.entities.x,      &section.entities.y,     &section.entities.width,
             &section.entities.height, &section.displacements.x, &section.displacements.y};
 }
 
-/// Inserts `come` into `stayed`, by id or at the end.
+/// Inserts the entities `come` into `stayed`: ordered by id, or at the end if the kind has no ids.
 void merge(BodyReader& reader, Section& stayed, Section& come) {
     const std::size_t stayed_count = stayed.entities.x.size(), come_count = come.entities.x.size();
     Column order;
@@ -328,8 +333,8 @@ struct Step {
     bool of_tile;
 };
 
-/// base   the section of the baseline.
-/// count  entities of the kind in the snapshot.
+/// base   the same section of the baseline.
+/// count  number of entities of the kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
     if (parts & ~(some_are_gone | some_have_come)) {
@@ -352,7 +357,8 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
     Section come;
     if (parts & some_have_come) {
         const auto come_count = reader.number<std::uint32_t>();
-        // Each entity takes at least the bytes of its position, so the bytes that are left bound the memory.
+        // Each entity needs at least the bytes of its position, so the remaining bytes limit the memory that is
+        // allocated.
         if (come_count > count || reader.rest_bytes() / (2 * std::size_t{step.position_bytes}) < come_count) {
             reader.refuse("adds more entities than its count says");
             return {};
@@ -453,7 +459,7 @@ bool follows(const QuantisedView& next, const QuantisedView& base) {
 
 namespace {
 
-/// The displacements of a kind that moves.
+/// Returns the displacements for a kind of entity that moves.
 const AdvancedColumns::Displacements& of_kind(const AdvancedColumns& to, const Kind& kind) {
     return kind.health ? to.organisms : to.crates;
 }
@@ -597,7 +603,7 @@ Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, cons
 }
 
 std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base) {
-    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // slightly more than the longest
+    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // upper bounds of the real sizes
     const Counts base_counts = base ? counts_of(*base) : Counts{};
     std::uint64_t bytes = sizeof(std::uint16_t);
     for (std::size_t k = 0; k < kinds.size(); ++k) {

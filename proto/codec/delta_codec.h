@@ -1,16 +1,16 @@
-// Delta codec: encodes a snapshot as residuals against a baseline predicted at constant velocity, CODEC_DELTA. The layout is
-// described in stream.proto.
+// Delta codec (CODEC_DELTA): encodes a snapshot as residuals against a baseline predicted at constant velocity.
+// stream.proto describes the layout.
 //
-// Both ends keep the Baseline of the last snapshot: its entities in whole numbers, and the displacements that led there. The
-// prediction for the next snapshot continues these displacements. The body contains the residuals, which mostly take no or
-// one byte each. A keyframe contains the complete baseline, so all viewers have the same baseline, whether they received
-// keyframes or deltas.
+// Encoder and decoder both keep the Baseline of the last snapshot: its entities in whole numbers, and their
+// displacements since the snapshot before it. The prediction for the next snapshot continues these displacements. The
+// body contains the residuals, which usually need no or one byte each. A keyframe contains the complete baseline. All
+// viewers therefore have the same baseline, whether they received keyframes or deltas.
 //
-// The encoder's input is valid. The decoder checks everything: its memory is bounded by the bytes received and the counts
-// checked against them, and after damage it waits for a keyframe.
+// The input of the encoder must be valid. The decoder checks everything. The received bytes, and the counts checked
+// against them, bound its memory. After damage it waits for a keyframe.
 //
-// Threads      a QuantisedSnapshot and a Baseline are immutable once made, and shared.
-// Determinism  integers only: equal snapshots are equal bytes on every machine.
+// Threads      a QuantisedSnapshot and a Baseline do not change after their creation, so threads may share them.
+// Determinism  all arithmetic uses integers: equal snapshots give equal bytes on every machine.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -27,18 +27,18 @@
 
 namespace evod::codec {
 
-/// What the next snapshot of an island is predicted from.
+/// The data from which the next snapshot of an island is predicted.
 struct Baseline {
     struct Displacements {
-        Column x, y; // two's complement; one for each entity
+        Column x, y; // two's complement; one number for each entity
         friend bool operator==(const Displacements&, const Displacements&) = default;
     };
     std::shared_ptr<const QuantisedSnapshot> snapshot;
-    Displacements organisms, crates; // the movement that led here; 0 for entities that have just come
-    std::uint16_t ticks = 0;         // duration of that movement
+    Displacements organisms, crates; // movement since the previous snapshot; 0 for new entities
+    std::uint16_t ticks = 0;         // number of ticks in which that movement happened
 };
 
-/// Views of snapshots and baselines: of those above, or of the part of longer columns that belongs to one tile.
+/// Views of the structs above, or of the part of longer columns that belongs to one tile.
 struct EntitiesView {
     std::span<const std::uint32_t> id, x, y, width, height;
 };
@@ -60,18 +60,18 @@ struct BaselineView {
     std::uint16_t ticks = 0;
 };
 
-/// A baseline whose displacements are 0.
+/// Creates a baseline in which all displacements are 0.
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
-/// Whether `next` can be a delta against `base`: the boxes are the same except for the positions of crates.
+/// Whether `next` can be a delta against `base`. All boxes must be the same, except for the positions of crates.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
-/// The baseline `ticks` after `base`. Both ends compute it.
+/// Returns the baseline that lies `ticks` after `base`. Encoder and decoder both compute it.
 ///
-/// next  follows() base.
+/// next  follows(next, base) must be true.
 Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks);
 
-/// The same into existing columns, which have a 0 for each entity that moves.
+/// Like advanced_baseline(), but writes into existing columns. They must contain a 0 for each entity that moves.
 struct AdvancedColumns {
     struct Displacements {
         std::span<std::uint32_t> x, y;
@@ -81,45 +81,51 @@ struct AdvancedColumns {
 void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
                       const AdvancedColumns& to);
 
-/// The body of a keyframe. seams: receives the seams of the body.
+/// Encodes the body of a keyframe.
+///
+/// seams  receives the seams of the body; may be nullptr.
 std::string encode_keyframe(const BaselineView& baseline, Seams* seams = nullptr);
 
-/// The body of a delta: `next` is `ticks` after `base`, and follows() it.
+/// Encodes the body of a delta. `next` is `ticks` after `base`, and follows(next, base) must be true.
 ///
-/// to     receives what advance_baseline() would write; may be null.
-/// seams  receives the seams of the body; may be null.
+/// to     receives the displacements as from advance_baseline(); may be nullptr.
+/// seams  receives the seams of the body; may be nullptr.
 std::string encode_delta(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
                          const AdvancedColumns* to = nullptr, Seams* seams = nullptr);
 
-/// What the fields of a message say about its body.
+/// The properties of a body that other fields of its message state.
 struct BodyShape {
     Counts counts{};
     std::uint32_t position_bytes = 2;
     bool of_tile = false;
 };
 
-/// The baseline that a body describes. base: null for a keyframe.
+/// Decodes the baseline that a body describes.
+///
+/// base  nullptr for a keyframe.
 Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, const Baseline* base);
 
-/// Size of the longest body with these counts. base: null for a keyframe.
+/// The maximum size of a body with these counts.
+///
+/// base  nullptr for a keyframe.
 std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base);
 
-/// The fields that a checksum covers besides the body.
+/// The fields that the checksum covers in addition to the body.
 struct ChecksummedFields {
     std::uint64_t sequence = 0, base_sequence = 0;
     Counts counts{};
     std::uint32_t position_bytes = 2;
 };
-/// body    before compression.
-/// before  checksum of the bytes that precede these.
+/// body    the body before compression.
+/// before  the checksum of the bytes that precede the fields.
 std::uint32_t checksum_of(const ChecksummedFields& fields, std::string_view body, std::uint32_t before = 0);
-/// SnapshotFrame.checksum.
+/// Computes SnapshotFrame.checksum.
 std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body);
 
-/// Clears the fields that a delta omits.
+/// Clears the fields that a delta omits if they are unchanged.
 void clear_unchanging(evod::v1::SnapshotFrame& frame);
 
-/// Whether the fields that a delta omits are equal.
+/// Whether two frames have equal values in the fields that a delta omits.
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b);
 
 } // namespace evod::codec

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::byte, 3> prefix{std::byte{'E'}, std::byte{'V'}, std::byte{1}};
 
-/// What is wrong with the first bytes of a header, which may be incomplete.
+/// Returns the error in the first bytes of a header, if there is one. The header may be incomplete.
 std::optional<Damage> damage_of_prefix(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < std::min<std::size_t>(2, bytes.size()); ++i) {
         if (bytes[i] != prefix[i]) {
@@ -40,9 +40,10 @@ Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
     return Damage{"a frame is on channel " + std::to_string(number) + ", which is not used in this direction"};
 }
 
-/// Whether the rest of a message, up to its first damage, nests messages and groups more than `levels` deep.
+/// Whether the rest of a message nests messages and groups more than `levels` deep. Checks up to the first invalid
+/// byte.
 ///
-/// of  the type of the message; nullptr: unknown, so that only groups can be recognised in it.
+/// of  the type of the message; nullptr: the type is unknown, so only groups can be recognised.
 bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobuf::Descriptor* of, int levels) {
     using google::protobuf::internal::WireFormatLite;
     while (const std::uint32_t tag = in.ReadTag()) {
@@ -131,7 +132,7 @@ void FrameReader::feed(std::span<const std::byte> bytes) {
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
-    // One long snapshot should not occupy its memory for the rest of the connection.
+    // The memory for one long snapshot should not stay allocated until the connection ends.
     constexpr std::size_t kept_bytes = 1 << 20;
     if (buffer_.empty() && buffer_.capacity() > kept_bytes && bytes.size() < kept_bytes / 2) {
         buffer_ = std::vector<std::byte>{};

@@ -1,15 +1,15 @@
-// Framing: messages in a byte stream.
+// Framing: divides a byte stream into messages.
 //
-// A frame is an 8-byte header and a body:
+// A frame consists of an 8-byte header and a body:
 //
 //   byte 0, 1   'E' 'V'
 //   byte 2      1, the version of the framing
 //   byte 3      channel: 1 control (ClientMessage, ServerMessage), 2 stream (SnapshotFrame)
 //   byte 4..7   length of the body in bytes, unsigned, least significant byte first
 //
-// The reader checks the two letters, the version and the channel of every header, so it detects a stream that is out of
-// step at the next frame. It cannot resynchronise, so the connection ends. It checks the length against the limit of the
-// channel before it allocates memory for the body.
+// The reader checks the two letters, the version and the channel of every header. If the stream is out of step, it
+// detects this at the next frame. It cannot resynchronise, so the connection must end. It compares the length with the
+// limit of the channel before it allocates memory for the body.
 //
 // Owner        each end of a connection has its own FrameReader.
 // Threads      none; nothing here is shared.
@@ -30,7 +30,7 @@
 
 namespace evod::codec {
 
-constexpr std::uint32_t protocol_version = 1; // of Hello and Welcome
+constexpr std::uint32_t protocol_version = 1; // the version in Hello and Welcome
 constexpr std::uint16_t default_port = 7744;
 
 enum class Channel : std::uint8_t { Control = 1, Stream = 2 };
@@ -43,33 +43,33 @@ struct FrameHeader {
     friend bool operator==(const FrameHeader&, const FrameHeader&) = default;
 };
 
-/// The longest body that is accepted on each channel; nullopt: the channel is not used in this direction.
+/// The largest body that is accepted on each channel; nullopt: the channel is not used in this direction.
 struct FrameLimits {
     std::optional<std::uint32_t> control_bytes_max;
     std::optional<std::uint32_t> stream_bytes_max;
 };
 
-/// What a server accepts before the hello, and after it.
+/// The limits of a server before and after the Hello.
 constexpr FrameLimits hello_limits{.control_bytes_max = 4 << 10, .stream_bytes_max = std::nullopt};
 constexpr FrameLimits server_limits{.control_bytes_max = 1 << 20, .stream_bytes_max = std::nullopt};
-/// What a client accepts; a Description or a History can be long.
+/// The limits of a client. A Description or a History can be long.
 constexpr FrameLimits client_limits{.control_bytes_max = 64 << 20, .stream_bytes_max = 256 << 20};
 
 std::array<std::byte, header_bytes> encode_header(FrameHeader header);
 
-/// Damage names the invalid part of the header: magic, version, channel or length.
+/// Decodes a header. Damage names the invalid part: magic, version, channel or length.
 Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes, const FrameLimits& limits);
 
-/// Header and message as one string of bytes.
+/// Encodes the header and the message as one string of bytes.
 std::string encode_frame(Channel channel, const google::protobuf::MessageLite& message);
 
-/// The deepest nesting of messages that protobuf parses.
+/// Protobuf does not parse messages that are nested deeper than this.
 constexpr int message_depth_max = 100;
 
-/// Why the body of a frame could not be parsed as this message.
+/// Explains why the body of a frame could not be parsed as this message.
 Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::Descriptor& message);
 
-/// A message from the body of a frame.
+/// Parses a message from the body of a frame.
 template <class Message>
 Result<Message> parse_body(std::span<const std::byte> body) {
     Message message;
@@ -79,14 +79,14 @@ Result<Message> parse_body(std::span<const std::byte> body) {
     return message;
 }
 
-/// One frame, as a view into its reader.
+/// One frame. It points into the memory of its reader.
 struct Frame {
     Channel channel;
-    std::span<const std::byte> body; // valid until the reader is fed again
+    std::span<const std::byte> body; // valid until feed() or trim() is called
 };
 
-/// Cuts a byte stream into frames, whatever the pieces in which it arrives. Memory is bounded by the bytes received, not by
-/// the declared lengths.
+/// Divides a byte stream into frames, whatever the sizes of the pieces in which the bytes arrive. Its memory is bounded
+/// by the number of bytes received, not by the lengths that headers declare.
 ///
 ///     reader.feed(bytes);
 ///     for (;;) {
@@ -99,27 +99,28 @@ class FrameReader {
   public:
     explicit FrameReader(FrameLimits limits) : limits_{limits} {}
 
-    /// Adds bytes; ignored once the stream is damaged.
+    /// Adds received bytes. Ignores them after the stream was found to be damaged.
     void feed(std::span<const std::byte> bytes);
 
-    /// The next complete frame; nullopt if more bytes are needed. Damage is permanent.
+    /// Returns the next complete frame; nullopt if more bytes are needed. After Damage every further call returns
+    /// Damage.
     Result<std::optional<Frame>> next();
 
-    /// Frees the memory of a long frame after it has been returned completely.
+    /// Frees the memory of a long frame after all its bytes were returned.
     void trim();
 
-    /// Applies to frames that next() has not returned: the limits of a server change after the hello.
+    /// Sets limits for all frames that next() has not returned yet. A server changes its limits after the Hello.
     void set_limits(FrameLimits limits) { limits_ = limits; }
 
-    /// Bytes received and not yet returned by next().
+    /// Number of bytes that were received and that next() has not returned yet.
     std::size_t buffered_bytes() const { return buffer_.size() - begin_; }
-    /// Bytes of memory in use.
+    /// Number of bytes of memory in use.
     std::size_t capacity_bytes() const { return buffer_.capacity(); }
 
   private:
     FrameLimits limits_;
     std::vector<std::byte> buffer_;
-    std::size_t begin_ = 0; // of the bytes that next() has not returned
+    std::size_t begin_ = 0; // offset of the first byte that next() has not returned
     std::optional<Damage> damage_;
 };
 

@@ -1,4 +1,4 @@
-// Little-endian numbers in bytes, whatever the machine's own order.
+// Writes and reads little-endian numbers, whatever the byte order of the machine.
 #pragma once
 
 #include <bit>

@@ -17,7 +17,7 @@ Damage wrong_line(std::uint64_t line, const std::string& allowed, std::string_vi
             allowed};
 }
 
-/// Parses the next field of a line and removes it from the line. false: it is not a T.
+/// Parses the next field of a line and removes it from the line. Returns false if the field is not a T.
 template <class T>
 bool take(std::string_view& line, T& value) {
     const std::string_view field = line.substr(0, line.find(','));

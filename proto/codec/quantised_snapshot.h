@@ -1,5 +1,5 @@
-// Quantised snapshot: the entities of a snapshot in whole numbers of 1/16 px or 1/16 of health (steps.h). All codecs encode
-// exactly these numbers.
+// Quantised snapshot: the entities of a snapshot as whole numbers, in units of 1/16 px or 1/16 of health (steps.h). All
+// codecs encode exactly these numbers.
 #pragma once
 
 #include "proto/codec/column.h"
@@ -10,10 +10,11 @@
 
 namespace evod::codec {
 
-/// Entities of one kind, ids rising; the boxes of an island in their order. All columns that a kind has have one length; the
-/// others are empty.
+/// The entities of one kind, ordered by id. The boxes of an island have no ids and keep their order. All columns that
+/// the kind uses have the same length; the other columns are empty.
 struct Entities {
-    Column id; // organisms, food, poison; in a tile boxes too: the index on the island
+    // Organisms, food and poison have ids. In a tile boxes have ids, too: their index on the island.
+    Column id;
     Column x, y;
     Column width;  // organisms: radius; boxes: half width
     Column height; // organisms: health; boxes: half height
@@ -22,13 +23,13 @@ struct Entities {
 
 /// The entities of one snapshot, or of one of its tiles.
 struct QuantisedSnapshot {
-    std::uint32_t position_bytes = 2; // 2 or 4
-    bool of_tile = false;             // boxes have ids, because they enter and leave tiles
+    std::uint32_t position_bytes = 2; // size of a position: 2 or 4
+    bool of_tile = false;             // true: boxes have ids, because they enter and leave tiles
     Entities organisms{}, food{}, poison{}, crates{}, obstacles{};
     friend bool operator==(const QuantisedSnapshot&, const QuantisedSnapshot&) = default;
 };
 
-/// Of organisms, food, poison, crates, obstacles: the order of everything that is encoded.
+/// The numbers of organisms, food, poison, crates and obstacles. All encodings use this order.
 using Counts = std::array<std::uint32_t, 5>;
 constexpr std::array<Entities QuantisedSnapshot::*, 5> snapshot_parts{
     &QuantisedSnapshot::organisms, &QuantisedSnapshot::food, &QuantisedSnapshot::poison, &QuantisedSnapshot::crates,
@@ -39,13 +40,13 @@ inline Counts counts_of(const QuantisedSnapshot& snapshot) {
                            [&](auto part) { return static_cast<std::uint32_t>((snapshot.*part).x.size()); });
     return counts;
 }
-/// Message: SnapshotFrame or SnapshotTile.
+/// Returns the counts in a message. Message: SnapshotFrame or SnapshotTile.
 template <class Message>
 Counts counts_of(const Message& message) {
     return {message.organism_count(), message.food_count(), message.poison_count(), message.crate_count(),
             message.obstacle_count()};
 }
-/// Likewise.
+/// Sets the counts in a message. Message: SnapshotFrame or SnapshotTile.
 template <class Message>
 void set_counts(const Counts& counts, Message& message) {
     message.set_organism_count(counts[0]);

@@ -1,4 +1,4 @@
-// Result<T>: a value, or why bytes could not be decoded to one.
+// Result<T>: either a value, or the reason why bytes could not be decoded.
 #pragma once
 
 #include <boost/system/result.hpp>
@@ -7,10 +7,10 @@
 
 namespace evod::codec {
 
-/// The limit that the bytes exceed.
+/// The limit that the bytes exceed, if any.
 enum class Beyond { Nothing, FrameBytes, MessageDepth };
 
-/// Invalid bytes. `what` is one sentence without a full stop, for logs and users.
+/// Describes invalid bytes. `what` is one sentence without a full stop, for logs and users.
 struct Damage {
     std::string what;
     Beyond beyond = Beyond::Nothing;

@@ -1,4 +1,4 @@
-// SharedBytes: encoded bytes that several receivers share; immutable.
+// SharedBytes: immutable encoded bytes that several receivers share.
 #pragma once
 
 #include <memory>

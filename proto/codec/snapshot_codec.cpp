@@ -24,7 +24,7 @@ void set_ids(const Column& column, Ids& to) {
     to.Add(column.begin(), column.end());
 }
 
-/// From steps to px, or to health.
+/// Converts steps to px, or to health.
 void set_values(const Column& column, Floats& to) {
     to.Reserve(static_cast<int>(column.size()));
     for (const std::uint32_t steps : column) {
@@ -45,7 +45,7 @@ void set_boxes(const Entities& boxes, evod::v1::PlainBoxes& to) {
     set_values(boxes.height, *to.mutable_half_height_px());
 }
 
-/// Copies columns of one kind, checking each. After the first fault the columns stay empty.
+/// Copies the columns of one kind and checks each. After the first error, all further columns are empty.
 class PlainReader {
   public:
     PlainReader(const char* kind, std::uint32_t count) : kind_{kind}, count_{count} {}
@@ -93,7 +93,7 @@ void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame)
     for (const auto part : snapshot_parts) {
         const Entities& entities = snapshot.*part;
         for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height}) {
-            const bool optional = column != &entities.y; // not every kind has it
+            const bool optional = column != &entities.y; // not all kinds have this column
             if (column->size() != entities.x.size() && !(optional && column->empty())) {
                 throw std::invalid_argument{"a snapshot has columns of different lengths"};
             }
@@ -194,7 +194,7 @@ Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
         return *std::move(damage);
     }
     frame.clear_plain();
-    frame.clear_body(); // meaningless with this codec, as are the tiles
+    frame.clear_body(); // the body has no meaning with this codec, nor have the tiles
     frame.clear_tiles();
     snapshot.about = std::move(frame);
     return snapshot;

@@ -14,7 +14,7 @@ namespace evod::codec {
 
 namespace {
 
-/// The uncompressed body. bytes_max: more is Damage.
+/// Returns the uncompressed body, or Damage if it is longer than bytes_max.
 Result<std::string> content_of(std::string body, evod::v1::Compression compression, std::uint64_t bytes_max) {
     switch (compression) {
     case evod::v1::COMPRESSION_ZSTD:
@@ -86,7 +86,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
     if (frame.codec() != evod::v1::CODEC_DELTA) {
         return decode_plain(std::move(frame));
     }
-    frame.clear_plain(); // meaningless with this codec
+    frame.clear_plain(); // has no meaning with this codec
     auto decoded = frame.tile_px() > 0 ? decode_tiles(std::move(frame)) : decode_whole(std::move(frame));
     if (!decoded) {
         forget();
@@ -124,7 +124,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
     const auto content = content_of(std::move(*frame.mutable_body()), frame.compression(),
                                     body_bytes_max(counts, base ? base->snapshot.get() : nullptr));
     frame.clear_body();
-    frame.clear_tiles(); // meaningless without tile_px
+    frame.clear_tiles(); // tiles have no meaning without tile_px
     if (!content) {
         return content.error();
     }
@@ -153,7 +153,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
     Tiles next{.layout = *layout, .bases = {}};
     std::vector<DecodedTile> visible;
     std::vector<const QuantisedSnapshot*> snapshots;
-    std::uint64_t content_bytes_left = *client_limits.stream_bytes_max; // of all tiles together
+    std::uint64_t content_bytes_left = *client_limits.stream_bytes_max; // for all tiles together
     for (evod::v1::SnapshotTile& tile : *frame.mutable_tiles()) {
         if (tile.tile() >= layout->count()) {
             return Damage{"a tile's index is " + std::to_string(tile.tile()) + ", not one of " +

@@ -1,9 +1,10 @@
-// Snapshot decoder: a sequence of SnapshotFrames of any codec, whole or in tiles → snapshots to draw.
+// Snapshot decoder: converts a sequence of SnapshotFrames into snapshots for drawing. It decodes every codec, with and
+// without tiles.
 //
-// It checks everything: memory is bounded by the bytes received and the counts checked against them. Damage in any part
-// refuses the whole snapshot, and every delta up to the next keyframe.
+// It checks everything. The received bytes, and the counts checked against them, bound its memory. If any part of a
+// snapshot is damaged, the decoder refuses the whole snapshot and all deltas before the next keyframe.
 //
-// Threads      a decoder is used by one thread.
+// Threads      only one thread uses a decoder.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -25,19 +26,20 @@ bool is_keyframe(const evod::v1::SnapshotFrame& frame);
 /// Decodes the snapshots of one island of one subscription.
 class SnapshotDecoder {
   public:
-    /// After Damage every delta is refused up to the next keyframe.
+    /// Decodes a frame. After Damage, all deltas before the next keyframe are refused.
     Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
-    /// Deltas cannot be decoded: there has been no keyframe yet, or damage after it.
+    /// Whether the decoder needs a keyframe, because it has received none or because of damage.
     bool needs_keyframe() const { return !snapshot_; }
 
-    /// The entities of the last snapshot of CODEC_DELTA; null before a keyframe. With a View, those of tiles of DETAIL_FULL.
+    /// The entities of the last snapshot with CODEC_DELTA; nullptr before the first keyframe. With a View, only the
+    /// entities of tiles at DETAIL_FULL.
     const QuantisedSnapshot* snapshot() const { return snapshot_.get(); }
 
   private:
     struct Whole {
         Baseline baseline;
-        evod::v1::SnapshotFrame about; // the fields that deltas omit, and sequence
+        evod::v1::SnapshotFrame about; // the fields that deltas omit, and the sequence
     };
     struct Tiles {
         struct Base {
@@ -45,7 +47,7 @@ class SnapshotDecoder {
             Baseline baseline;
         };
         TileLayout layout;
-        std::map<std::uint32_t, Base> bases; // by index, of the tiles at DETAIL_FULL in the last snapshot
+        std::map<std::uint32_t, Base> bases; // key: index of a tile that was at DETAIL_FULL in the last snapshot
     };
     Result<DecodedSnapshot> decode_whole(evod::v1::SnapshotFrame frame);
     Result<DecodedSnapshot> decode_tiles(evod::v1::SnapshotFrame frame);

@@ -1,4 +1,4 @@
-// Steps: lengths and health in whole numbers of 1/16, as snapshots contain them.
+// Steps: the unit of lengths and health in snapshots. One step is 1/16 px, or 1/16 of health.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,20 @@ namespace evod::codec {
 constexpr unsigned steps_per_px_log2 = 4;
 constexpr float steps_per_px = 1 << steps_per_px_log2;
 
-/// Bytes of a position on an island of this size: 2 or 4.
+/// The number of bytes that a position needs on an island of this size: 2 or 4.
 inline std::uint32_t position_bytes_of(double width_px, double height_px) {
     return std::max(width_px, height_px) * steps_per_px <= 65535.0 ? 2 : 4;
 }
 
-/// From fixed point to steps: rounded to the nearest, half a step upward, and clamped to the range.
+/// Converts fixed point to steps. The result is rounded to the nearest step, half a step upward, and limited to the
+/// range.
 class PositionInSteps {
   public:
     /// fraction_bits  4 to 30; the unit of positions is 2^-fraction_bits px.
     PositionInSteps(unsigned fraction_bits, std::uint32_t position_bytes)
         : shift_{fraction_bits - steps_per_px_log2}
         , half_{shift_ == 0 ? 0 : std::int32_t{1} << (shift_ - 1)}
-        , largest_{std::numeric_limits<std::int32_t>::max() - half_} // the largest that can be rounded up
+        , largest_{std::numeric_limits<std::int32_t>::max() - half_} // the largest position that can be rounded up
         , top_{position_bytes == 2 ? std::int32_t{0xffff} : std::numeric_limits<std::int32_t>::max()} {}
 
     std::uint32_t operator()(std::int32_t position) const {
@@ -36,7 +37,7 @@ class PositionInSteps {
 };
 
 inline std::uint16_t size_in_steps(float size) {
-    // The comparisons turn NaN into 0.
+    // If `steps` is NaN, the first comparison is false, so the result is 0.
     const float steps = size * steps_per_px + 0.5F;
     const float not_negative = steps > 0.F ? steps : 0.F;
     return static_cast<std::uint16_t>(static_cast<std::int32_t>(not_negative < 65535.F ? not_negative : 65535.F));

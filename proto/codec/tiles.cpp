@@ -14,21 +14,21 @@ namespace evod::codec {
 
 namespace {
 
-constexpr unsigned place_bits = 8; // of a position within a tile
+constexpr unsigned place_bits = 8; // number of bits for a position within a tile
 constexpr unsigned cells_per_side_log2_max = 4;
-constexpr std::size_t counted_parts = 3; // organisms, food and poison, which a density counts
+constexpr std::size_t counted_parts = 3; // a density counts organisms, food and poison
 
 /// The number of tiles from wall to wall.
 double tiles_along(double length_px, std::uint32_t tile_px) {
     return std::max(1.0, std::ceil(length_px / tile_px));
 }
 
-/// The first of `count` tiles that begins at or after `px`.
+/// Returns the index of the first of `count` tiles that begins at or after `px`.
 std::uint32_t first_from(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::ceil(px / tile_px), 0.0, double{1} * count));
 }
 
-/// The last of `count` tiles that begins at or before `px`.
+/// Returns the index of the last of `count` tiles that begins at or before `px`.
 std::uint32_t last_up_to(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(px / tile_px), 0.0, double{1} * count));
 }
@@ -49,7 +49,7 @@ TileLayout tile_layout(double width_px, double height_px) {
 
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame) {
     const std::uint32_t tile_px = frame.tile_px();
-    // Accepts more than this version of the server sends: whatever indices can hold.
+    // Accepts more tiles than this version of the server sends. The limit is the range of the indices.
     constexpr double count_max = 1 << 24;
     if (!std::has_single_bit(tile_px)) {
         return Damage{"a snapshot's tile_px is " + std::to_string(tile_px) + ", not a power of two"};
@@ -98,7 +98,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, 
             continue;
         }
         tiles.resize(size);
-        for (std::size_t i = 0; i < size; ++i) { // an entity on a wall is in the last tile before it
+        for (std::size_t i = 0; i < size; ++i) { // an entity on a wall belongs to the last tile before the wall
             const std::uint32_t column = std::min(entities.x[i] >> side_log2_, layout_.columns - 1);
             const std::uint32_t row = std::min(entities.y[i] >> side_log2_, layout_.rows - 1);
             tiles[i] = static_cast<std::uint16_t>(row * layout_.columns + column);
@@ -114,7 +114,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, 
         }
         counted += p < counted_parts ? size : 0;
     }
-    // One cell per two entities on average: then a density takes about half the bytes of the dots.
+    // There are on average two entities per cell. A density then needs about half as many bytes as dots.
     while (cells_per_side_log2_ < cells_per_side_log2_max &&
            (std::uint64_t{count} << (2 * (cells_per_side_log2_ + 1))) <= counted / 2) {
         ++cells_per_side_log2_;
@@ -240,7 +240,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
         const auto gather = [&](Column Entities::*column) {
             for (const Found& one : found) {
                 const Column& from = tiles[one.tile]->*part.*column;
-                if (!from.empty()) { // the kind has this column
+                if (!from.empty()) { // this kind has the column
                     (to.*column).push_back(from[one.index]);
                 }
             }

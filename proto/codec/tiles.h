@@ -1,10 +1,10 @@
-// Tiles: an island cut into squares, for viewers of a region or of less detail. The layout of a tile's body is described in
-// stream.proto.
+// Tiles: the squares into which an island is divided, for viewers that show only a region or less detail. stream.proto
+// describes the body of a tile.
 //
-// A tile at DETAIL_FULL is a QuantisedSnapshot, which the delta codec encodes like a whole island. Dots and densities have
-// no baseline. All tiles together are the island: each entity is in the tile that contains its centre.
+// A tile at DETAIL_FULL is a QuantisedSnapshot, which the delta codec encodes in the same way as a whole island. Dots
+// and densities have no baseline. Each entity is in exactly one tile: the one that contains its centre.
 //
-// Determinism  integers only, as for all snapshots.
+// Determinism  all arithmetic uses integers, as for all snapshots.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -23,26 +23,26 @@
 
 namespace evod::codec {
 
-constexpr std::uint32_t tiles_max = 1024;  // of an island
-constexpr std::uint32_t tile_px_min = 512; // side
+constexpr std::uint32_t tiles_max = 1024;  // maximum number of tiles of an island
+constexpr std::uint32_t tile_px_min = 512; // minimum side of a tile
 
-/// The tiles of an island, numbered row after row.
+/// Describes the tiles of an island. They are numbered row after row.
 struct TileLayout {
-    double width_px = 0, height_px = 0;  // of the island
-    std::uint32_t tile_px = tile_px_min; // side, a power of two
+    double width_px = 0, height_px = 0;  // size of the island
+    std::uint32_t tile_px = tile_px_min; // side of a tile; a power of two
     std::uint32_t columns = 1, rows = 1;
 
     std::uint32_t count() const { return columns * rows; }
     friend bool operator==(const TileLayout&, const TileLayout&) = default;
 };
 
-/// The layout with the smallest tiles that gives at most tiles_max of them.
+/// Returns the layout with the smallest tiles that has at most tiles_max tiles.
 TileLayout tile_layout(double width_px, double height_px);
 
-/// The layout in a frame. The caller has checked the size of the island.
+/// Returns the layout that a frame states. The caller must have checked the size of the island.
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame);
 
-/// The tiles of a rectangle; the ends are exclusive.
+/// A rectangle of tiles. The ends are exclusive.
 struct TileRange {
     std::uint32_t column_begin = 0, column_end = 0, row_begin = 0, row_end = 0;
 
@@ -50,7 +50,7 @@ struct TileRange {
         const std::uint32_t column = tile % layout.columns, row = tile / layout.columns;
         return column >= column_begin && column < column_end && row >= row_begin && row < row_end;
     }
-    /// Calls what(tile) for each tile, indices rising.
+    /// Calls what(tile) for each tile, in order of the indices.
     template <class Do>
     void each(const TileLayout& layout, const Do& what) const {
         for (std::uint32_t row = row_begin; row < row_end; ++row) {
@@ -62,13 +62,13 @@ struct TileRange {
     friend bool operator==(const TileRange&, const TileRange&) = default;
 };
 
-/// The tiles that a region touches. The region is finite and its size positive.
+/// Returns the tiles that a region touches. The region must be finite and its size positive.
 TileRange tiles_of(const evod::v1::Region& region, const TileLayout& layout);
-/// All tiles.
+/// Returns all tiles.
 TileRange tiles_of(const TileLayout& layout);
 
-/// A snapshot sorted into tiles. The constructor sorts the indices; the columns of a tile are gathered on its first use.
-/// Used by one thread.
+/// Sorts the entities of a snapshot into tiles. The constructor sorts only their indices. The columns of a tile are
+/// copied when the tile is used for the first time. Only one thread may use it.
 class SnapshotTiles {
   public:
     SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, const TileLayout& layout);
@@ -76,24 +76,25 @@ class SnapshotTiles {
     const TileLayout& layout() const { return layout_; }
 
     Counts counts(std::uint32_t tile) const;
-    /// Counts of all tiles before `tile`, which may be layout().count().
+    /// Sums of the counts of all tiles with an index below `tile`; `tile` may equal layout().count().
     Counts counts_before(std::uint32_t tile) const;
-    /// The entities of a tile; boxes have ids. Valid as long as this object.
+    /// The entities of a tile. In a tile boxes have ids. The view is valid as long as this object exists.
     QuantisedView full(std::uint32_t tile);
-    /// The body of a tile of DETAIL_DOTS.
+    /// Encodes the body of a tile at DETAIL_DOTS.
     std::string dots(std::uint32_t tile) const;
-    /// The body of a tile of DETAIL_DENSITY.
+    /// Encodes the body of a tile at DETAIL_DENSITY.
     std::string density(std::uint32_t tile) const;
 
   private:
     struct Part {
-        std::vector<std::uint32_t> order; // indices of entities, tile after tile, rising within each
-        std::vector<std::uint32_t> begin; // offset of each tile in `order`, and the end of the last
-        // The snapshot's columns in that order, filled for the gathered tiles; null before, and if the kind has no such column.
+        std::vector<std::uint32_t> order; // indices of entities, grouped by tile and rising within each tile
+        std::vector<std::uint32_t> begin; // for each tile its first position in `order`, then the end of the last tile
+        // The columns of the snapshot in the order of `order`. Only the parts of gathered tiles are filled. nullptr:
+        // not allocated yet, or the kind does not have the column.
         std::array<std::unique_ptr<std::uint32_t[]>, 5> columns;
     };
     std::span<const std::uint32_t> of(std::size_t part, std::uint32_t tile) const;
-    /// The position of an entity within a tile, in 1/256 of its side.
+    /// The position of an entity within its tile, in 1/256 of the tile's side.
     struct Place {
         std::uint8_t x, y;
     };
@@ -101,26 +102,26 @@ class SnapshotTiles {
 
     std::shared_ptr<const QuantisedSnapshot> snapshot_;
     TileLayout layout_;
-    unsigned side_log2_;               // of a tile, in steps
-    unsigned cells_per_side_log2_ = 0; // of a density grid
+    unsigned side_log2_;               // log2 of the side of a tile in steps
+    unsigned cells_per_side_log2_ = 0; // log2 of the number of cells per side of a density
     std::array<Part, snapshot_parts.size()> parts_;
-    std::vector<bool> gathered_; // by tile
+    std::vector<bool> gathered_; // index: tile
 };
 
-/// Merges tiles. Damage if an entity is in two of them.
+/// Merges tiles into one snapshot. Returns Damage if two tiles contain the same entity.
 Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const QuantisedSnapshot* const> tiles);
 
 Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, const TileLayout& layout,
                                 std::uint32_t tile);
 Result<DecodedDensity> decode_density(std::string_view body, const Counts& counts);
 
-/// Size of the longest body of a tile of DETAIL_DENSITY.
+/// Maximum size of the body of a tile at DETAIL_DENSITY.
 constexpr std::uint64_t density_bytes_max = 16 << 10;
 
-/// SnapshotTile.checksum.
+/// Computes SnapshotTile.checksum.
 ///
-/// tile_px, position_bytes  of the frame.
-/// body                     before compression.
+/// tile_px, position_bytes  the fields of the frame.
+/// body                     the body before compression.
 std::uint32_t checksum_of(std::uint32_t tile_px, std::uint32_t position_bytes, const evod::v1::SnapshotTile& tile,
                           std::string_view body);
 

@@ -38,7 +38,7 @@ bool is_host_name(const std::string& host) {
     });
 }
 
-/// "IP:10.0.0.7" or "DNS:lab.example"; empty if it is neither.
+/// Returns "IP:10.0.0.7" or "DNS:lab.example"; empty if the host is neither an IP address nor a name.
 std::string alternative_name(const std::string& host) {
     boost::system::error_code error;
     const auto address = boost::asio::ip::make_address(host, error);
@@ -60,11 +60,12 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
     Certificate certificate{X509_new()};
     unsigned char serial[16];
     bool good = certificate && RAND_bytes(serial, sizeof serial) == 1;
-    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // positive, and of full length
+    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // makes the number positive and of full length
     constexpr long day_s = 24 * 60 * 60;
     good = good && X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
            ASN1_STRING_set(X509_get_serialNumber(certificate.get()), serial, sizeof serial) == 1 &&
-           X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr && // allows for wrong clocks
+           // A day in the past, because clocks may be wrong.
+           X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr &&
            X509_gmtime_adj(X509_getm_notAfter(certificate.get()), certificate_days * day_s) != nullptr &&
            X509_set_pubkey(certificate.get(), key) == 1;
     if (!good) {

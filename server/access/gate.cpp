@@ -40,7 +40,7 @@ Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
 }
 
 bool Gate::refresh() {
-    // Taken before reading, so that a later change is detected the next time.
+    // The stamp is taken before the file is read, so that a later change is detected at the next check.
     const Stamp now = stamp();
     if (now == stamp_) {
         return false;

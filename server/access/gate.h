@@ -1,7 +1,7 @@
 // Gate: authenticates sessions by their tokens.
 //
 // Owner        the server, on the network thread.
-// Full         remembers failed logins of addresses_max addresses; beyond that it forgets the oldest.
+// Full         stores failed logins of at most addresses_max addresses. Beyond that it drops the oldest address.
 #pragma once
 
 #include "server/access/token_file.h"
@@ -17,7 +17,7 @@ namespace evod::access {
 
 /// The user behind a session.
 struct Visitor {
-    std::string name; // of the token; empty: no token
+    std::string name; // name of the token; empty: no token
     Role role = Role::Admin;
     Digest token{};
 };
@@ -25,31 +25,32 @@ struct Visitor {
 class Gate {
   public:
     using Clock = std::chrono::steady_clock;
-    // After a failed login the gate refuses unknown tokens from that address for this long, and twice as long after
-    // each further failure. A known token is always admitted: tokens cannot be guessed, so it needs no rate limit.
+    // After a failed login the gate refuses unknown tokens from the same address for this time. Each further failure
+    // doubles the time. A known token is always admitted. Tokens cannot be guessed, so known tokens need no rate limit.
     static constexpr std::chrono::milliseconds delay_min{500};
     static constexpr std::chrono::milliseconds delay_max{30'000};
-    static constexpr std::chrono::minutes forgotten_after{10}; // without another failure
+    // Time without a failure after which earlier failures no longer count.
+    static constexpr std::chrono::minutes forgotten_after{10};
     static constexpr std::size_t addresses_max = 10'000;
 
-    /// folder        of the token file; empty: there are no tokens.
-    /// token_needed  false: a client without a token is an admin; true: it is refused.
+    /// folder        folder of the token file; empty: there are no tokens.
+    /// token_needed  true: a client without a token is refused; false: it is an admin.
     ///
-    /// Refused if the token file is not trustworthy, or if a token is needed and there is none.
+    /// Refused if the token file is not trustworthy, or if a token is needed and the file contains none.
     static base::Result<Gate> open(const std::string& folder, bool token_needed);
 
-    /// UNAUTHENTICATED for an unknown or missing token; RESOURCE_EXHAUSTED for an unknown token while the address must
-    /// wait.
+    /// Authenticates a client. Refuses with UNAUTHENTICATED if the token is missing or unknown, and with
+    /// RESOURCE_EXHAUSTED if the token is unknown and the address must wait.
     ///
-    /// address  the key of the rate limit: an IPv4 address or an IPv6 /64.
+    /// address  key of the rate limit: the IPv4 address, or the /64 prefix of the IPv6 address.
     base::Result<Visitor> admit(const std::string& token, const std::string& address, Clock::time_point now);
 
-    /// Reads the token file again if it has changed, and returns whether it has. While the file is not trustworthy, new
-    /// sessions are refused and existing ones continue.
+    /// Reads the token file again if it has changed, and returns whether it has changed. While the file is not
+    /// trustworthy, new sessions are refused and existing sessions continue.
     bool refresh();
-    /// Whether the token of an admitted session is still valid.
+    /// Whether the token with which a session was admitted is still valid.
     bool knows(const Visitor& visitor) const;
-    /// Why the token file is currently not usable; nullopt: it is.
+    /// The reason why the token file cannot be used at present; nullopt: it can be used.
     const std::optional<base::Refusal>& trouble() const { return trouble_; }
 
     std::uint64_t failed_login_count() const { return failed_login_count_; }
@@ -59,7 +60,7 @@ class Gate {
         int count = 0;
         Clock::time_point last, not_before;
     };
-    /// Identifies a version of the file.
+    /// Identifies one version of the token file.
     struct Stamp {
         bool there = false;
         ino_t inode = 0;
@@ -79,7 +80,7 @@ class Gate {
     Tokens tokens_;
     std::optional<base::Refusal> trouble_;
     Stamp stamp_;
-    std::map<std::string, Failures> failures_; // by address
+    std::map<std::string, Failures> failures_; // key: address
     std::uint64_t failed_login_count_ = 0;
 };
 

@@ -10,21 +10,21 @@
 
 namespace evod::access {
 
-/// Each role includes those before it.
+/// Each role includes the permissions of the roles before it.
 enum class Role {
-    Viewer,     // queries, subscriptions, exports and replays
-    Controller, // also run control and parameters
-    Admin,      // also creates and deletes worlds, and ends the server
+    Viewer,     // may send queries, subscriptions, exports and requests for replays
+    Controller, // may also control worlds and set parameters
+    Admin,      // may also create and delete worlds and shut the server down
 };
 
-/// "viewer", "controller", "admin".
+/// Returns "viewer", "controller" or "admin".
 const char* name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
 v1::Role to_proto(Role role);
 
-/// The lowest role that may send a request with these rules. A request without a role needs Admin.
+/// The lowest role that may send a request with these rules. If the rules state no role, an admin is needed.
 ///
-/// in_own_replay  the request names a replay that its session has opened.
+/// in_own_replay  true: the request names a replay that its session has opened.
 Role role_needed(const v1::RequestRules& rules, bool in_own_replay);
 
 } // namespace evod::access

@@ -19,7 +19,8 @@ using base::Result;
 
 namespace {
 
-constexpr std::size_t pem_bytes_max = 4 << 20; // all authorities of a usual system are about 200 KiB
+// The certificates of all authorities of a usual system take about 200 KiB.
+constexpr std::size_t pem_bytes_max = 4 << 20;
 
 Refusal refusal(std::string message) {
     return {.code = RefusalCode::FailedPrecondition, .message = std::move(message), .violations = {}};
@@ -45,7 +46,7 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
     auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
     SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
-    // Passes the contents of a file to `use`.
+    // Reads a file and passes its contents to `use`.
     const auto load = [](const char* option, const std::string& file, const auto& use) -> Result<void> {
         const auto text = files::read_file(file, "a PEM file", pem_bytes_max);
         if (!text) {

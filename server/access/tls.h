@@ -1,4 +1,4 @@
-// TLS: the server's certificate, and the authorities for client certificates. TLS 1.2 and newer.
+// TLS: loads the server's certificate and the authorities that sign client certificates. Requires TLS 1.2 or newer.
 #pragma once
 
 #include "server/base/result.h"
@@ -11,12 +11,13 @@
 namespace evod::access {
 
 struct TlsFiles {
-    std::string certificate; // PEM with its chain; empty: no TLS
-    std::string key;         // PEM; only owner and group may be able to read it
-    std::string client_ca;   // PEM; not empty: clients need a certificate signed by one of these
+    std::string certificate; // PEM file with the certificate chain; empty: no TLS
+    std::string key;         // PEM file; only its owner and group may be able to read it
+    // PEM file; if it is set, clients need a certificate that one of these authorities has signed.
+    std::string client_ca;
 };
 
-/// nullptr without a certificate. A refusal names the option, the file and the problem.
+/// Returns nullptr if there is no certificate. A refusal names the option, the file and the problem.
 base::Result<std::unique_ptr<boost::asio::ssl::context>> server_context(const TlsFiles& files);
 
 } // namespace evod::access

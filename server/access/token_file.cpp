@@ -67,7 +67,7 @@ std::optional<Digest> from_hex(std::string_view text) {
     return bytes;
 }
 
-/// A file descriptor that closes with its owner; -1: none.
+/// Owns a file descriptor and closes it; -1: none.
 class Descriptor {
   public:
     explicit Descriptor(int number) : number_{number} {}
@@ -85,7 +85,7 @@ class Descriptor {
     int number_;
 };
 
-/// "2026-11-22"
+/// Returns the date in the form "2026-11-22".
 std::string today() {
     const std::time_t now = std::time(nullptr);
     std::tm day{};
@@ -95,17 +95,17 @@ std::string today() {
     return text;
 }
 
-/// folder_descriptor: the folder of `path`.
+/// folder_descriptor  an open descriptor of the folder that contains `path`.
 Result<void> write_tokens(const std::string& folder, int folder_descriptor, const Tokens& tokens) {
     const std::string path = token_file_of(folder), next = path + "-next";
     const std::string text = to_text(tokens);
     {
-        ::unlink(next.c_str()); // left by an interrupted process
+        ::unlink(next.c_str()); // an interrupted process may have left this file
         const Descriptor file{::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
         if (!file.open()) {
             return cannot("written", next);
         }
-        errno = ENOSPC; // write() wrote only a part
+        errno = ENOSPC; // write() wrote only a part of the data
         if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0) {
             return cannot("written", next);
         }
@@ -113,14 +113,14 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
     if (::rename(next.c_str(), path.c_str()) != 0) {
         return cannot("replaced", path);
     }
-    // Otherwise a revoked token could reappear after a power failure.
+    // Without this a revoked token could be valid again after a power failure.
     if (::fsync(folder_descriptor) != 0) {
         return cannot("written", folder);
     }
     return {};
 }
 
-/// Reads the file, applies `change` and writes it, while a lock excludes other processes.
+/// Reads the file, applies `change` and writes the file again. A lock excludes other processes meanwhile.
 template <class Change>
 Result<void> change_tokens(const std::string& folder, const Change& change) {
     std::error_code error;

@@ -1,13 +1,13 @@
-// Token file: users and their roles. The file is called `tokens`, is stored in the data folder and has a line per
-// token:
+// Token file: stores users and their roles. The file is called `tokens` and is in the data folder. It contains a line
+// for each token:
 //
 //   # evod tokens 1
 //   NAME ROLE SHA256 DATE
 //
-// A token is 256 random bits of the system. The server prints it once and stores only its SHA-256. Guessing it is
-// impossible, so a fast hash is enough.
+// A token consists of 256 random bits from the operating system. evod prints it once and stores only its SHA-256. Such
+// a token cannot be guessed, so a fast hash is sufficient.
 //
-// Safety  the file must be accessible to its owner only (mode 0600), otherwise it is refused. It is replaced
+// Safety  only the owner may be able to access the file (mode 0600), otherwise it is refused. It is replaced
 //         atomically.
 #pragma once
 
@@ -28,31 +28,32 @@ constexpr std::size_t tokens_max = 10'000;
 using Digest = std::array<unsigned char, 32>;
 
 struct Token {
-    std::string name; // 1 to 64 of a-z A-Z 0-9 _ - .
+    std::string name; // 1 to 64 characters of a-z A-Z 0-9 _ - .
     Role role = Role::Viewer;
     Digest digest{};
-    std::string made_on; // "2026-11-22"
+    std::string made_on; // date in the form "2026-11-22"
 
     friend bool operator==(const Token&, const Token&) = default;
 };
 
-/// In order of creation; each name once.
+/// The tokens in the order of their creation. Names are unique.
 using Tokens = std::vector<Token>;
 
-/// The SHA-256 of a token.
+/// Computes the SHA-256 of a token.
 Digest digest_of(std::string_view secret);
-/// Compares in constant time. nullptr: the token is unknown.
+/// Finds a token by its digest. Compares in constant time. Returns nullptr if there is no such token.
 const Token* find(const Tokens& tokens, const Digest& digest);
 
-/// A refusal names the invalid line.
+/// Parses the text of a token file. A refusal names the invalid line.
 base::Result<Tokens> parse_tokens(std::string_view text);
 std::string to_text(const Tokens& tokens);
 
 std::string token_file_of(const std::string& folder);
 
-/// Empty if there is no file. Refused if the file cannot be read, is damaged, or is accessible to other users.
+/// Returns no tokens if the file does not exist. Refused if it is damaged, cannot be read, or is accessible to other
+/// users.
 base::Result<Tokens> read_tokens(const std::string& folder);
-/// Creates a token. Returns its secret: "evod_" and 64 hexadecimal digits. It cannot be read again later.
+/// Creates a token and returns its secret: "evod_" and 64 hexadecimal digits. The secret is not stored.
 base::Result<std::string> add_token(const std::string& folder, const std::string& name, Role role);
 base::Result<void> revoke_token(const std::string& folder, const std::string& name);
 

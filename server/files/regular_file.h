@@ -1,7 +1,7 @@
-// Regular file: opens and reads files that a user names or that another user may have created. It refuses a pipe, which
-// would block, and a device, which may have no end. Reading is bounded.
+// Regular file: opens and reads files that a user names or that another user may have created. It refuses pipes,
+// because reading would block, and devices, because they may have no end. The size of a read is limited.
 //
-// Threads  any; one object per thread.
+// Threads  any thread; an object must be used by one thread at a time.
 #pragma once
 
 #include "server/base/result.h"
@@ -20,10 +20,10 @@ enum class Links { Followed, Refused };
 
 class RegularFile {
   public:
-    /// kind  what the file should be, for messages: "an experiment file".
+    /// kind  what the file should contain, for messages: "an experiment file".
     ///
-    /// A refusal names the path. NotFound: no such file. InvalidArgument: a folder, pipe, device or socket.
-    /// Unavailable: other errors.
+    /// A refusal names the path. NotFound: the file does not exist. InvalidArgument: the path is a folder, pipe, device
+    /// or socket. Unavailable: all other errors.
     static base::Result<RegularFile> open(const std::string& path, std::string_view kind,
                                           Links links = Links::Followed);
 
@@ -31,11 +31,12 @@ class RegularFile {
     RegularFile& operator=(RegularFile&&) = delete;
     ~RegularFile();
 
-    /// The size when the file was opened.
+    /// The file's state when it was opened, including its size.
     const struct stat& about() const { return about_; }
-    /// The whole file. InvalidArgument if it has more than bytes_max bytes.
+    /// Returns the contents of the file. Refused with InvalidArgument if it has more than bytes_max bytes.
     base::Result<std::string> read(std::size_t bytes_max) const;
-    /// Reads into `bytes` from that offset. Returns how many bytes there were before the end of the file.
+    /// Reads bytes from the given offset. Returns the number of bytes read, which is smaller than requested at the end
+    /// of the file.
     std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
 
   private:
@@ -47,11 +48,11 @@ class RegularFile {
     struct stat about_;
 };
 
-/// Opens and reads in one step.
+/// Opens a file and returns its contents.
 base::Result<std::string> read_file(const std::string& path, std::string_view kind, std::size_t bytes_max);
 
-/// The kind of a path that is not a regular file: "a folder", "a pipe", "a device", "a socket", "a link"; empty for a
-/// regular file.
+/// Returns what a path is if it is not a regular file: "a folder", "a pipe", "a device", "a socket", "a link". Returns
+/// an empty string for a regular file.
 std::string_view other_than_file(mode_t mode);
 
 } // namespace evod::files

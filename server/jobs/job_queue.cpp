@@ -50,7 +50,8 @@ void JobQueue::start_thread() {
 void JobQueue::work() {
     pthread_setname_np(pthread_self(), options_.name.c_str());
     if (options_.niceness != 0) {
-        // Linux has a niceness for each thread. If the call fails, the thread only competes more.
+        // On Linux each thread has its own niceness. If the call fails, the thread only competes more with other
+        // threads.
         (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), options_.niceness);
     }
     std::unique_lock lock{mutex_};

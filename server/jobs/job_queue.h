@@ -1,10 +1,10 @@
-// Job queue: runs background jobs, first in, first out, on at most so many threads.
+// Job queue: runs background jobs in the order of their arrival, on at most threads_max threads.
 //
-// Each kind of work has a queue of its own, so that a kind with slow jobs cannot block another one.
+// Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
-// Owner        the object whose jobs it runs. A job owns what it works on, and hands over its result by itself.
-// Threads      its own; each starts when a job finds no idle one. add() may be called on any thread.
-// Full         never: the caller bounds how many jobs it adds.
+// Owner        the object whose jobs it runs. A job owns its data and delivers its result itself.
+// Threads      the queue starts a thread when a job finds no idle one. Any thread may call add().
+// Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 
 #include <pthread.h>
@@ -22,24 +22,27 @@ namespace evod::jobs {
 
 class JobQueue {
   public:
-    /// stop  requested by the caller, and when the queue is destroyed.
+    /// stop  is requested by the caller, and when the queue is destroyed.
     using Job = std::function<void(const std::stop_token& stop)>;
 
     struct Options {
-        std::string name; // of its threads, as `top -H` shows it; at most 15 characters
+        std::string name; // name of the threads in `top -H`; at most 15 characters
         std::size_t threads_max = 1;
-        int niceness = 0;       // 10: about a tenth of a processor beside a busy thread of the simulation
-        bool start_now = false; // start the first thread at once, so that handle() is valid
+        // With 10, a job gets about a tenth of a processor beside a busy thread of the simulation.
+        int niceness = 0;
+        bool start_now = false; // start the first thread in the constructor, so that handle() is valid
     };
     explicit JobQueue(Options options);
-    /// Requests all jobs to stop, waits for the running ones and drops the others.
+    /// Requests all jobs to stop, waits for the running jobs and drops the waiting ones.
     ~JobQueue();
     JobQueue(const JobQueue&) = delete;
     JobQueue& operator=(const JobQueue&) = delete;
 
-    /// returns  cancels the job: a waiting one runs with `stop` requested.
+    /// Adds a job.
+    ///
+    /// returns  cancels the job. A job that still waits is run with `stop` already requested.
     std::stop_source add(Job job);
-    /// The first thread, for reading its processor time; only with Options::start_now.
+    /// The first thread, for reading its CPU time. Only valid with Options::start_now.
     pthread_t handle() { return threads_.front().native_handle(); }
 
   private:
@@ -51,13 +54,13 @@ class JobQueue {
     void start_thread();
 
     const Options options_;
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::deque<Waiting> waiting_;
     std::vector<std::stop_source> running_;
     std::size_t idle_threads_ = 0;
     bool stopping_ = false;
-    std::vector<std::thread> threads_; // last: they use the rest
+    std::vector<std::thread> threads_; // last member, because the threads use the others
 };
 
 } // namespace evod::jobs

@@ -1,9 +1,9 @@
-// Log: messages for the operator on standard output, as sentences or as one JSON object per line.
+// Log: prints messages for the operator on standard output, either as sentences or as one JSON object per line.
 //
 //   log::info({.session = 3, .client = "anna"}, "session {}: {} connected", 3, "anna");
 //
 // Threads      any.
-// Untrusted    text from clients is sanitised here: no byte of it ends a line or controls a terminal.
+// Untrusted    this module sanitises text from clients: it cannot end a line or control a terminal.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -22,24 +22,24 @@ enum class Level { Trace, Debug, Info, Warn, Error };
 constexpr std::array<const char*, 5> level_names{"trace", "debug", "info", "warn", "error"};
 enum class Format { Text, Json };
 
-/// The subject of a message, as far as it is known. The sentence contains it, too.
+/// The subject of a message; unknown fields are empty. The sentence also contains the subject.
 struct Fields {
     std::optional<std::uint64_t> session = {};
     std::string client = {}, world = {}, code = {}; // empty: unknown
 };
 
-/// Applies from now on. Before the first call: text from Level::Info.
+/// Sets the level and format of all later messages. Before the first call, messages are text from Level::Info on.
 void begin(Level least, Format format);
-Level level_named(std::string_view name); // one of level_names
+Level level_named(std::string_view name); // name: one of level_names
 
 bool wanted(Level level);
 void write(Level level, const Fields& fields, std::string_view message);
 
-/// {"time":"2025-01-31T23:59:59.123Z","level":"info","message":"…","session":3,…}: the time in UTC and the known
-/// fields. Invalid UTF-8 becomes U+FFFD.
+/// Formats {"time":"2025-01-31T23:59:59.123Z","level":"info","message":"…","session":3,…}. The time is in UTC. Unknown
+/// fields are omitted. Invalid UTF-8 becomes U+FFFD.
 std::string json_line(std::chrono::system_clock::time_point time, Level level, const Fields& fields,
                       std::string_view message);
-/// Control characters except line ends become '?'.
+/// Replaces control characters, except line ends, by '?'.
 std::string plain_line(std::string_view message);
 
 template <Level level>

@@ -1,7 +1,7 @@
-// Counters: numbers that one thread writes and any thread reads, at the cost of a plain store.
+// Counters: numbers that one thread writes and any thread may read. Writing costs no more than a plain store.
 //
-// Threads      each counter has one writing thread, and any number of readers. Two counters read together may be of
-//              different instants.
+// Threads      each counter has exactly one writing thread and any number of readers. The values of two counters may
+//              belong to different moments.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace evod::metrics {
 
-/// Rises from 0.
+/// A number that starts at 0 and only increases.
 class Counter {
   public:
-    // With a single writer no locked instruction is needed, which would cost more than the counted work.
+    // There is only one writer, so an atomic increment is not needed. It would cost more than the counted work.
     void add(std::uint64_t count = 1) { value_.store(value() + count, std::memory_order_relaxed); }
     std::uint64_t value() const { return value_.load(std::memory_order_relaxed); }
 
@@ -25,7 +25,7 @@ class Counter {
     std::atomic<std::uint64_t> value_ = 0;
 };
 
-/// A current value.
+/// A value that may increase and decrease.
 class Gauge {
   public:
     void set(double value) { value_.store(value, std::memory_order_relaxed); }
@@ -40,7 +40,8 @@ class TimeHistogram {
   public:
     using duration = std::chrono::nanoseconds;
 
-    /// Inclusive upper bounds: 1, 2 and 5 of every decade from 0.1 µs to 1 s. The last bucket has no bound.
+    /// Inclusive upper bounds of the buckets: 1, 2 and 5 in every decade from 0.1 µs to 1 s. The last bucket has no
+    /// bound.
     static constexpr std::array<duration, 22> bounds = [] {
         std::array<duration, 22> made{};
         duration decade{100};
@@ -53,14 +54,14 @@ class TimeHistogram {
         return made;
     }();
 
-    /// times: the number of measurements with this duration.
+    /// times  number of measurements with this duration.
     void add(duration took, std::uint64_t times = 1) {
         const auto ns = static_cast<std::uint64_t>(std::max(took, duration{0}).count());
         counts_[bucket_of(ns)].add(times);
         sum_ns_.add(ns * times);
     }
 
-    /// bucket: 0 to bounds.size().
+    /// bucket  0 to bounds.size().
     std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
     std::uint64_t count() const {
         std::uint64_t all = 0;
@@ -72,8 +73,8 @@ class TimeHistogram {
     double sum_s() const { return static_cast<double>(sum_ns_.value()) * 1e-9; }
 
   private:
-    /// Branch-free, because the bucket is unpredictable. Numbers of equal bit width differ by less than a factor of 2,
-    /// so at most one bound lies between them.
+    /// Finds the bucket without a branch, because the bucket is unpredictable. Numbers of equal bit width differ by
+    /// less than a factor of 2, so at most one bound lies between them.
     static std::size_t bucket_of(std::uint64_t ns) {
         const std::size_t bucket = first_bucket[static_cast<std::size_t>(std::bit_width(ns))];
         return bucket + (ns > bounds_ns[bucket] ? 1 : 0);
@@ -84,7 +85,7 @@ class TimeHistogram {
         made.back() = ~std::uint64_t{0};
         return made;
     }();
-    /// By bit width: the bucket of the smallest number of that width.
+    /// index: bit width; value: the bucket of the smallest number with that bit width.
     static constexpr std::array<std::size_t, 65> first_bucket = [] {
         std::array<std::size_t, 65> made{};
         for (std::size_t width = 1; width < made.size(); ++width) {

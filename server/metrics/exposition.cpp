@@ -9,7 +9,7 @@
 namespace evod::metrics {
 namespace {
 
-/// Escapes backslashes and line ends, and quotes in label values.
+/// Escapes backslashes and line ends. In label values it also escapes quotes.
 std::string escaped(std::string_view text, bool quotes) {
     std::string safe;
     for (const char c : text) {
@@ -25,7 +25,7 @@ std::string escaped(std::string_view text, bool quotes) {
     return safe;
 }
 
-/// A number in the format of Prometheus. Whole numbers have no exponent as long as a double holds them exactly.
+/// Formats a number for Prometheus. Whole numbers have no exponent as long as a double represents them exactly.
 std::string sample_text(double value) {
     if (std::isnan(value)) {
         return "NaN";
@@ -38,7 +38,7 @@ std::string sample_text(double value) {
                                                                       : base::number_text(value);
 }
 
-/// {world="default",le="0.1"}; empty without labels.
+/// Formats labels: {world="default",le="0.1"}. Returns an empty string if there are none.
 std::string labels_text(const v1::MetricSample& sample, const std::string& bound = {}) {
     std::string text;
     const auto add = [&text](std::string_view name, std::string_view value) {
@@ -84,7 +84,7 @@ std::string to_prometheus(const v1::Metrics& metrics) {
                 continue;
             }
             const v1::MetricHistogram& histogram = sample.histogram();
-            std::uint64_t so_far = 0; // buckets of this format are cumulative
+            std::uint64_t so_far = 0; // in this format each bucket includes the counts of all lower buckets
             for (int i = 0; i < histogram.counts_size(); ++i) {
                 so_far += histogram.counts(i);
                 const bool bounded = i < histogram.bounds_size();

@@ -1,4 +1,4 @@
-// Exposition: metrics in the text format of Prometheus.
+// Exposition: formats metrics in the text format of Prometheus.
 //
 // Source  prometheus.io/docs/instrumenting/exposition_formats, "Text-based format", version 0.0.4.
 #pragma once
@@ -11,7 +11,7 @@ namespace evod::metrics {
 
 constexpr const char* prometheus_content_type = "text/plain; version=0.0.4; charset=utf-8";
 
-/// Each family with a help line, a type line and one line per sample.
+/// Formats each family as a help line, a type line and one line per sample.
 std::string to_prometheus(const v1::Metrics& metrics);
 
 } // namespace evod::metrics

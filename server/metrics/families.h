@@ -1,4 +1,4 @@
-// Families: metrics as the message that clients read.
+// Families: fills in the message from which clients read metrics.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -12,7 +12,7 @@ namespace evod::metrics {
 
 using Labels = std::initializer_list<std::pair<const char*, std::string>>;
 
-/// Fills in one family: samples that differ in their labels.
+/// One family of metrics: samples that differ in their labels.
 class Family {
   public:
     explicit Family(v1::MetricFamily& family) : family_{&family} {}
@@ -24,7 +24,8 @@ class Family {
     v1::MetricFamily* family_;
 };
 
-/// Names follow Prometheus: a counter ends in _total, a metric with a unit ends in the unit.
+/// Names follow the rules of Prometheus: the name of a counter ends in _total, the name of a metric with a unit ends in
+/// the unit.
 ///
 /// help  one sentence without a full stop.
 Family add_counter(v1::Metrics& to, const char* name, const char* help);

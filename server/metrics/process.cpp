@@ -20,11 +20,11 @@ double seconds_on(clockid_t clock) {
                : 0;
 }
 
-/// proc(5): field 22 of /proc/self/stat is the start time of the process, in clock ticks since boot.
+/// Field 22 of /proc/self/stat is the start time of the process in clock ticks since boot, see proc(5).
 double start_time_s() {
     std::ifstream file{"/proc/self/stat"};
     std::string text{std::istreambuf_iterator<char>{file}, {}};
-    const auto name_end = text.rfind(')'); // of field 2, which may contain any character
+    const auto name_end = text.rfind(')'); // end of field 2, which may contain any character
     if (name_end == std::string::npos) {
         return 0;
     }
@@ -44,7 +44,7 @@ double start_time_s() {
 } // namespace
 
 Process read_process() {
-    // Computed once: computing it again would make it jitter with the clock.
+    // Computed only once, because each calculation would give a slightly different result as the clock is adjusted.
     static const double started = start_time_s();
     Process process{.start_time_s = started, .cpu_s = seconds_on(CLOCK_PROCESS_CPUTIME_ID)};
     std::uint64_t virtual_pages = 0, resident_pages = 0;

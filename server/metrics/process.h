@@ -1,4 +1,4 @@
-// Process: what the operating system reports about this process.
+// Process: reads the operating system's statistics about this process.
 #pragma once
 
 #include <pthread.h>
@@ -10,15 +10,15 @@ namespace evod::metrics {
 
 struct Process {
     double start_time_s = 0; // seconds since 1970
-    double cpu_s = 0;        // all threads, including ended ones
+    double cpu_s = 0;        // CPU time of all threads, including threads that have ended
     std::uint64_t resident_bytes = 0, virtual_bytes = 0;
     std::uint64_t open_files = 0, open_files_max = 0;
 };
 
-/// Unknown values are 0.
+/// Values that the system does not report are 0.
 Process read_process();
 
-/// CPU time of a thread that is not yet joined; nullopt if the system does not report it.
+/// CPU time of a thread that was not joined yet; nullopt if the system does not report it.
 std::optional<double> cpu_s_of(pthread_t thread);
 
 } // namespace evod::metrics

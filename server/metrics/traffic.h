@@ -1,6 +1,6 @@
-// Traffic: counters of all sessions of a server.
+// Traffic: counters for all sessions of a server together.
 //
-// Threads      counted on the network thread.
+// Threads      the network thread increments them.
 #pragma once
 
 #include "server/metrics/counters.h"
@@ -8,12 +8,12 @@
 namespace evod::metrics {
 
 struct Traffic {
-    Counter connections;                                           // accepted connections
-    Counter requests;                                              // readable requests, including refused ones
+    Counter connections; // accepted connections
+    Counter requests;    // readable requests, including those that were refused
     Counter received_bytes, sent_control_bytes, sent_stream_bytes; // without the overhead of TLS
-    Counter snapshots_sent;                                        // of one island to one subscription
-    Counter snapshots_dropped;                                     // replaced by newer ones before they were sent
-    Counter events_dropped;                                        // not sent to a session, because it was too slow
+    Counter snapshots_sent;                                        // one for each island and subscription
+    Counter snapshots_dropped; // snapshots that newer ones replaced before they were sent
+    Counter events_dropped;    // events that were not sent because a session was too slow
 };
 
 } // namespace evod::metrics

@@ -1,7 +1,7 @@
-// Worlds: metrics of each world while it exists.
+// Worlds: the metrics of each world that exists.
 //
-// Threads      the simulation thread adds worlds and counts; any thread calls list().
-// Full         bounded by the number of worlds.
+// Threads      the simulation thread adds worlds and updates the metrics. Any thread may call list().
+// Full         the number of worlds bounds the size.
 #pragma once
 
 #include "server/metrics/counters.h"
@@ -15,16 +15,17 @@ namespace evod::metrics {
 
 struct World {
     std::string name;
-    TimeHistogram tick_time;     // per tick, with journal and snapshots; for ticks timed together, their mean
-    TimeHistogram snapshot_time; // of the simulation thread, to copy a snapshot
+    // Time per tick, including journal and snapshots; if several ticks are timed together, their mean.
+    TimeHistogram tick_time;
+    TimeHistogram snapshot_time; // time for which the simulation thread copies a snapshot
     Gauge ticks_per_s;           // measured; 0 while the world does not run
 };
 
 class Worlds {
   public:
-    /// Listed as long as the caller holds it.
+    /// Adds a world. list() contains it as long as the caller keeps the result.
     std::shared_ptr<World> add(std::string name);
-    /// Sorted by name.
+    /// Returns all worlds, sorted by name.
     std::vector<std::shared_ptr<const World>> list() const;
 
   private:

@@ -12,7 +12,7 @@
 namespace evod::network {
 namespace {
 
-// An estimate of the bytes of an answer, with a margin.
+// A generous estimate of the size of an answer.
 constexpr std::ptrdiff_t answer_bytes = 2 << 20;
 
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
@@ -35,7 +35,7 @@ base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const run
     return replay::breeding_of(**file, wanted, *executor, stop);
 }
 
-/// Whether the answer was cut.
+/// Whether the answer omits rows because of a limit.
 bool is_cut(const v1::GetBreeding& request, const v1::Breeding& answer) {
     const auto more = [](std::uint64_t first, int rows, std::uint32_t count) {
         return first + static_cast<std::uint64_t>(rows) < count;

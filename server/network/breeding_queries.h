@@ -1,9 +1,9 @@
-// BreedingQueries: answers GetBreeding. A job queue recomputes the breeding from the run file, while the storage
-// thread may write to it.
+// BreedingQueries: answers GetBreeding. A job queue recomputes the breeding from the run file. Meanwhile the storage
+// thread may write to that file.
 //
 // Owner        the dispatcher, on the network thread.
-// Full         `at_once` queries run at a time, one per session; the others wait. The unanswered requests of sessions
-//              bound them.
+// Full         `at_once` queries run at the same time, at most one per session. The others wait in a queue. Its length
+//              is bounded because the number of unanswered requests of each session is limited.
 #pragma once
 
 #include "server/jobs/job_queue.h"
@@ -24,13 +24,13 @@ class BreedingQueries {
   public:
     static constexpr std::size_t at_once = 2;
 
-    /// Everything handed in outlives this object.
+    /// All arguments must outlive this object.
     BreedingQueries(runtime::Outbox& outbox, LimitCounters& limit_counters)
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
-    /// Answers the request later.
+    /// Starts or queues the query. The session receives the answer later.
     void ask(Session& session, std::uint64_t request_id, const v1::GetBreeding& request, runtime::FoundRun run);
-    /// Call when the session has ended.
+    /// Must be called when a session has ended.
     void forget(const Session& session);
 
   private:
@@ -55,7 +55,7 @@ class BreedingQueries {
     LimitCounters& limit_counters_;
     std::deque<Asked> waiting_;
     std::list<Work> under_way_;
-    jobs::JobQueue jobs_{{.name = "breeding", .threads_max = at_once}}; // last: its jobs use the rest
+    jobs::JobQueue jobs_{{.name = "breeding", .threads_max = at_once}}; // last member, because its jobs use the others
 };
 
 } // namespace evod::network

@@ -1,5 +1,6 @@
-// Detached: the completion token of a coroutine without a caller. If the coroutine runs out of memory, its work is
-// incomplete, so std::bad_alloc leaves the network thread's loop and ends the program. asio::detached would hide it.
+// Detached: the completion token for a coroutine that has no caller. If the coroutine runs out of memory, its work is
+// incomplete. std::bad_alloc then leaves the loop of the network thread and ends the program. asio::detached would
+// swallow the exception.
 #pragma once
 
 #include <exception>

@@ -33,7 +33,7 @@ base::Refusal no_such_subscription(const char* field, std::uint32_t subscription
             .reason = base::Reason::SubscriptionNotFound};
 }
 
-/// Equal bytes for equal requests.
+/// Serialises a request deterministically: equal requests give equal bytes.
 std::string bytes_of(const v1::Request& request) {
     std::string bytes;
     google::protobuf::io::StringOutputStream stream{&bytes};
@@ -61,7 +61,7 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
     return to;
 }
 
-/// request  of REQUEST_KIND_REPLAY.
+/// request  its kind is REQUEST_KIND_REPLAY.
 runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t owner, runtime::ReplayReply reply) {
     if (request.has_open_replay()) {
         return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
@@ -78,7 +78,7 @@ runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t owner,
     return {runtime::CloseReplay{protocol::lookup_name(request.close_replay().world())}, std::move(reply)};
 }
 
-/// request  valid.
+/// request  must be valid.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
     to.only_users = role < access::Role::Admin;
@@ -94,7 +94,7 @@ replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     return to;
 }
 
-/// Counts the limits that an invalid command has reached.
+/// Increments the counter of each limit that an invalid command exceeds.
 void count_limits_met(const v1::Request& request, LimitCounters& counters) {
     if (request.client_key().size() > protocol::client_key_bytes_max) {
         counters.met(Limit::ClientKeyBytes);
@@ -105,7 +105,7 @@ void count_limits_met(const v1::Request& request, LimitCounters& counters) {
     }
 }
 
-/// Counts the limits that have shortened an answer.
+/// Increments the counter of each limit that shortened an answer.
 void count_cuts(const protocol::QueryRows& rows, LimitCounters& counters) {
     if (const auto* part = std::get_if<protocol::HistoryPart>(&rows)) {
         if (part->begins_late) {
@@ -240,7 +240,7 @@ void Dispatcher::serve(Session& session, v1::Request request) {
         session.answer(response_to(request.request_id()));
         return shut_down_();
     default:
-        return; // handle() has refused it
+        return; // handle() has already refused this request
     }
 }
 
@@ -329,7 +329,8 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
         if (auto* done = std::get_if<runtime::CommandDone>(&delivery)) {
             on_done(std::move(*done));
         } else {
-            std::exchange(std::get<runtime::Call>(delivery), nullptr)(); // frees what it captured before the next
+            // Destroys the call and its captured data before the next delivery.
+            std::exchange(std::get<runtime::Call>(delivery), nullptr)();
         }
     }
 }
@@ -370,7 +371,7 @@ void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusa
     } else if (why.reason == base::Reason::WorldsMax) {
         limit_counters_.met(Limit::Worlds);
     }
-    // A temporary refusal is not cached: the same request, sent again, may be applied.
+    // A temporary refusal is not cached, so the same request may succeed when the client sends it again.
     if (why.code == base::RefusalCode::Unavailable || why.code == base::RefusalCode::ResourceExhausted) {
         reply_cache_.forget(key, mail.origin.request_id, frame);
     } else {
@@ -429,7 +430,7 @@ void Dispatcher::query(Session& session, v1::Request request) {
     default:
         break;
     }
-    // The simulation thread only copies the rows of a long answer. This thread converts them into a message.
+    // For a long answer the simulation thread only copies the rows. The network thread converts them into a message.
     const auto bytes = static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request));
     const auto rows = std::make_shared<protocol::QueryRows>();
     const bool users_only = session.visitor().role < access::Role::Controller;
@@ -465,7 +466,7 @@ void Dispatcher::set_view(Session& session, const v1::Request& request) {
     v1::Response response = response_to(id);
     response.mutable_subscription()->set_subscription_id(subscription_id);
     response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
-    session.answer(encode_response(std::move(response))); // before the first snapshot of the new view
+    session.answer(encode_response(std::move(response))); // the answer must precede the first snapshot of the new view
     return streams_.set_view(session, subscription_id, request.set_view().view());
 }
 
@@ -493,7 +494,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         return set_view(session, request);
     }
 
-    // The world is looked up by the simulation; the subscription begins back here.
+    // The simulation thread finds the world. The subscription then begins here, on the network thread.
     const auto full = [this](const Session& s) {
         const bool is = s.snapshots.subscriptions.size() + s.events.size() >= subscriptions_max;
         if (is) {
@@ -653,7 +654,7 @@ void Dispatcher::find_run(Session& session, const v1::Request& request, const st
 }
 
 void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
-    // The simulation resolves an empty name.
+    // The simulation thread replaces an empty name by the name of the world.
     const auto world = std::make_shared<std::string>();
     ask(
         session, request.request_id(),

@@ -1,9 +1,9 @@
-// Dispatcher: takes a request to its answer. Checks the role, sends commands and queries to the simulation, and makes
-// commands idempotent through the reply cache.
+// Dispatcher: handles each request and sends its answer. It checks the role, passes commands and queries to the
+// simulation thread, and uses the reply cache to make commands idempotent.
 //
 // Owner        the server.
 // Threads      the network thread. The simulation thread runs only the functions given to ask(), which read the
-//              laboratory. Commands travel as data (server/runtime/commands.h).
+//              laboratory. Commands are passed between the threads as data (server/runtime/commands.h).
 #pragma once
 
 #include "server/network/breeding_queries.h"
@@ -20,41 +20,42 @@ namespace evod::network {
 
 class Dispatcher {
   public:
-    /// Everything handed in outlives the dispatcher. The simulation thread ends before it.
+    /// All arguments must outlive the dispatcher. The simulation thread must end before the dispatcher is destroyed.
     ///
-    /// shut_down  ends the server.
+    /// shut_down  shuts the server down.
     /// metrics    returns the current metrics.
     Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
                runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
                std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
-    /// Handles the deliveries of the outbox in order.
+    /// Handles deliveries from the outbox in order.
     void deliver(std::vector<runtime::Delivery> deliveries);
 
-    /// Sends a command of the server itself. A refusal is logged. If the mailbox is full, the command is dropped.
+    /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
+    /// is full, the command is dropped.
     ///
     /// lease  for ReleaseLease: the number of the lease.
     void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
-    /// A world whose lease is older than this server: it continues unless the lease is renewed.
+    /// Starts a lease that was granted before the server started. When it expires, the world continues.
     void lend_again(const std::string& world) { leases_.begin(world, 0, {}); }
 
-    /// Puts answers given before this server started into the reply cache.
+    /// Adds to the reply cache the answers that were given before this server started.
     void restore(const std::vector<run_file::JournalEntry>& answers);
 
-    /// The session has ended: closes its exports, breeding queries and replays.
+    /// Must be called when a session has ended. Cancels its exports and breeding queries, and closes its replays.
     void forget(const Session& session);
 
-    /// From now on refuses every request: the server is shutting down.
+    /// Makes the dispatcher refuse all further requests, because the server is shutting down.
     void refuse_all() {
         going_away_ = true;
         leases_.end_all();
     }
 
   private:
-    /// Handles an admitted request.
+    /// Handles a request that the session has admitted.
     void serve(Session& session, v1::Request request);
-    /// Handles the requests that waited for the query just answered.
+    /// Handles the requests that were held back until the session's query was answered.
     void serve_held_back(Session& session);
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
@@ -64,32 +65,33 @@ class Dispatcher {
     void replay(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
     void breeding(Session& session, const v1::Request& request);
-    /// Finds the run file of a world and calls `then` on this thread, if the session still exists. A refusal becomes
-    /// the answer.
+    /// Finds the run file of a world, then calls `then` on the network thread if the session still exists. If the
+    /// search is refused, the session receives the refusal as its answer.
     using Found = std::function<void(Session&, runtime::FoundRun)>;
     void find_run(Session& session, const v1::Request& request, const std::string& world, Found then);
     void renew_lease(Session& session, const v1::Request& request);
 
-    /// Puts a command into the mailbox. false: the mailbox is full.
+    /// Puts a command into the mailbox. Returns false if the mailbox is full.
     ///
     /// bytes    the serialised request.
-    /// by       the sender, as protocol::actor_of() reads it.
+    /// by       the sender, in the text format that protocol::actor_of() parses.
     /// session  number of the sender's session; 0: the server itself.
     bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
               std::uint64_t session);
-    /// A command was applied or refused, and cannot be lost any more: answers it and reports it to subscribers.
+    /// Called after a command was refused, or was applied and stored. Sends the answer and reports the change to
+    /// subscribers.
     void on_done(runtime::CommandDone done);
-    /// key  of the reply cache.
+    /// key  the sender's key in the reply cache.
     void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
                     const SharedBytes& frame);
 
-    /// The refusal for a full mailbox.
+    /// Returns the refusal for a full mailbox.
     base::Refusal busy();
     /// Sends a query to the simulation thread, which calls `answer` to fill in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
     void ask(Session& session, std::uint64_t request_id, Answer answer);
-    /// Likewise; then `then` completes the response on this thread. The session still exists when it is called. false:
-    /// the mailbox is full, and the request has been refused.
+    /// Like the function above; afterwards `then` completes the response on the network thread. `then` is called only
+    /// if the session still exists. Returns false if the mailbox is full; the request has then been refused.
     using Then = std::function<void(Session&, v1::Response&)>;
     bool ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
 
@@ -104,7 +106,7 @@ class Dispatcher {
     BreedingQueries breeding_queries_;
     Leases leases_;
     ReplyCache reply_cache_;
-    const std::string own_key_; // client_key of the server's own commands
+    const std::string own_key_; // client_key for commands of the server itself
     std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };

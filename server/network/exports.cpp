@@ -88,7 +88,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
 void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
     if (found == exports_.end() || found->second.id != id) {
-        return; // the session has started another export
+        return; // the session has started another export in the meantime
     }
     found->second.asked = false;
     if (last) {

@@ -1,7 +1,7 @@
-// Exports: sends tables of stored runs to clients, at most one export per session.
+// Exports: sends tables of stored runs to clients, at most one export per session at a time.
 //
-// Owner        the dispatcher, on the network thread. A job queue writes the parts (runtime/export_job.h).
-// Full         beyond exports_max the next export is refused.
+// Owner        the dispatcher, on the network thread. A job queue produces the parts (runtime/export_job.h).
+// Full         while exports_max exports are running, a new one is refused.
 #pragma once
 
 #include "server/network/session.h"
@@ -16,23 +16,23 @@ namespace evod::network {
 
 class Exports {
   public:
-    /// Everything handed in outlives this object.
+    /// All arguments must outlive this object.
     Exports(runtime::Outbox& outbox, LimitCounters& limit_counters)
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
-    /// Answers the request with the first part. Cancels the session's previous export.
+    /// Starts an export and answers the request with the first part. Cancels the session's previous export.
     void begin(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                const replay::WantedTable& wanted);
     /// Answers the request with the next part.
     void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
-    /// Call when the session has ended.
+    /// Must be called when a session has ended.
     void forget(const Session& session);
 
   private:
     struct Export {
         std::uint64_t id;
         std::unique_ptr<runtime::ExportJob> job;
-        bool asked = false; // an answer is due once the next part exists
+        bool asked = false; // the client has requested the next part and has not received it yet
     };
 
     void ask(Session& session, std::uint64_t request_id, Export& from);
@@ -44,7 +44,7 @@ class Exports {
     std::uint64_t last_id_ = 0;
     jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // outlives the exports
     std::map<std::uint64_t, Export> exports_;                             // by session number
-    std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_;          // may still simulate a tick
+    std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_; // cancelled exports whose jobs are still finishing
 };
 
 } // namespace evod::network

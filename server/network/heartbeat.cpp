@@ -16,7 +16,7 @@ asio::awaitable<bool> Heartbeat::answers_within(std::chrono::milliseconds patien
     }
     asio::steady_timer timer{co_await asio::this_coro::executor, patience};
     waiting_.insert(&timer);
-    // push() ignores the mailbox's capacity; this is at most one entry.
+    // push() ignores the capacity of the mailbox. The heartbeat adds at most one entry at a time.
     if (!std::exchange(asked_, true)) {
         mailbox_.push(runtime::CallMail{[this] { outbox_.answer([this] { answered(); }); }});
     }

@@ -1,7 +1,7 @@
-// Heartbeat: checks that the simulation thread responds, for /healthz.
+// Heartbeat: checks for /healthz whether the simulation thread responds.
 //
 // Owner        the server, on the network thread.
-// Full         at most one call is in the mailbox, however many callers wait for it.
+// Full         the mailbox contains at most one call of the heartbeat. All callers wait for the same call.
 #pragma once
 
 #include "server/runtime/mailbox.h"
@@ -18,12 +18,12 @@ namespace evod::network {
 
 class Heartbeat {
   public:
-    /// Mailbox and outbox outlive the heartbeat. The simulation thread ends before it.
+    /// The mailbox and the outbox must outlive the heartbeat. The simulation thread must end before it is destroyed.
     Heartbeat(runtime::Mailbox& mailbox, runtime::Outbox& outbox) : mailbox_{mailbox}, outbox_{outbox} {}
 
-    /// Whether the simulation thread responds within `patience`.
+    /// Returns whether the simulation thread responds within `patience`.
     boost::asio::awaitable<bool> answers_within(std::chrono::milliseconds patience);
-    /// The simulation has stopped: fails all pending checks.
+    /// Makes all pending checks fail. Called when the simulation thread has stopped.
     void stop();
 
   private:
@@ -32,7 +32,7 @@ class Heartbeat {
     runtime::Mailbox& mailbox_;
     runtime::Outbox& outbox_;
     bool asked_ = false, stopped_ = false;
-    std::set<boost::asio::steady_timer*> waiting_; // cancelled by the response
+    std::set<boost::asio::steady_timer*> waiting_; // timers of the waiting callers; the response cancels them
 };
 
 } // namespace evod::network

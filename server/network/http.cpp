@@ -33,7 +33,7 @@ bool is_too_long(boost::system::error_code error) {
     return error == http::error::header_limit || error == http::error::buffer_overflow;
 }
 
-/// The error page for an invalid request, regardless of its path; nullopt: the request is valid.
+/// Returns the error page if the request is invalid, whatever its path; nullopt if the request is valid.
 std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
     if (is_too_long(error)) {
         return Http::Page{.status = http::status::request_header_fields_too_large,
@@ -67,7 +67,8 @@ http::response<http::string_body> response_of(Http::Page page, unsigned version,
     return response;
 }
 
-/// Reads and discards further input for a while: closing with unread bytes would discard the answer.
+/// Reads and discards input for a limited time before the connection is closed. If unread bytes remained, closing would
+/// discard the answer before the client receives it.
 asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
     boost::system::error_code ignored; // the peer may have closed the connection
     stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -117,12 +118,13 @@ void Http::close() {
 asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
     boost::beast::tcp_stream stream{std::move(socket)};
     connections_.insert(&stream);
-    // a request may arrive together with the start of the next
+    // may contain a complete request and the start of the next one
     boost::beast::flat_buffer buffer{2 * http_header_bytes_max};
     boost::system::error_code error;
     for (bool goes_on = true; goes_on && !closed_;) {
         Parser request;
-        request.header_limit(2 * http_header_bytes_max); // a rough bound; the exact check follows
+        // An approximate limit for the parser; the exact limit is checked below.
+        request.header_limit(2 * http_header_bytes_max);
         stream.expires_after(http_request_timeout);
         std::size_t header_bytes = 0;
         std::tie(error, header_bytes) = co_await http::async_read_header(stream, buffer, request, no_throw);
@@ -131,7 +133,7 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
         }
         if (closed_ || (error && error.category() != make_error_code(http::error::bad_method).category()) ||
             error == http::error::end_of_stream) {
-            break; // disconnected, or too slow
+            break; // the client has disconnected or is too slow
         }
         if (is_too_long(error)) {
             counters_.met(Limit::HttpHeaderBytes);

@@ -1,8 +1,8 @@
-// HTTP: read-only pages for monitoring. Any client that reaches the port may read them.
+// HTTP: read-only pages for monitoring. Every client that can connect to the port may read them.
 //
-// Owner        the server, on the network thread; one coroutine per connection.
-// Full         limits.h bounds the connections, the header of a request and the time for it.
-// Source       RFC 9110 and 9112; Boost.Beast parses and writes.
+// Owner        the server, on the network thread. Each connection has one coroutine.
+// Full         limits.h bounds the number of connections, the size of a request's header and the time for a request.
+// Source       RFC 9110 and RFC 9112. Boost.Beast parses requests and writes answers.
 #pragma once
 
 #include "server/network/limits.h"
@@ -28,16 +28,16 @@ class Http {
         std::string text;
         std::string type = "text/plain; charset=utf-8";
     };
-    /// Pages by path: "/metrics".
+    /// The key is the path of a page, such as "/metrics".
     using Pages = std::map<std::string, std::function<boost::asio::awaitable<Page>()>, std::less<>>;
 
-    /// Opens the port; port 0 is any free port. The counters outlive it.
+    /// Opens the port; 0 selects any free port. The counters must outlive the object.
     static base::Result<std::unique_ptr<Http>> open(boost::asio::io_context& context, const std::string& address,
                                                     std::uint16_t port, Pages pages, LimitCounters& counters);
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
 
-    /// Accepts connections until close().
+    /// Accepts connections until close() is called.
     void start();
     void close();
 
@@ -45,7 +45,7 @@ class Http {
     Http(boost::asio::io_context& context, Listener listener, Pages pages, LimitCounters& counters)
         : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)}, counters_{counters} {}
 
-    /// full: the connection only receives a 503.
+    /// full  true: there are too many connections, so the client only receives a 503.
     boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
     boost::asio::awaitable<Page> page(std::string target);
 

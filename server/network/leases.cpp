@@ -28,7 +28,7 @@ void Leases::await_end(const std::string& world, Lease& lease) {
         const auto ended = leases_.find(world);
         if (error || ended == leases_.end() ||
             ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now()) {
-            return; // renewed at the last moment
+            return; // the lease was renewed just before the timer expired
         }
         ended->second.client_key.clear();
         await_end(world, ended->second);

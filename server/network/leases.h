@@ -1,7 +1,7 @@
-// Leases: how long a client may hold a world that it steps with RunUntilTick. If a client disconnects or forgets its
-// world, the lease expires and the world continues for the other clients.
+// Leases: limit the time for which a client may hold a world that it steps with RunUntilTick. If the client disconnects
+// or stops renewing the lease, the lease expires and the world continues for the other clients.
 //
-// Owner        the dispatcher, on the network thread. The simulation decides whether a world is leased at all.
+// Owner        the dispatcher, on the network thread. The simulation decides whether a world has a lease.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -15,15 +15,16 @@ namespace evod::network {
 
 class Leases {
   public:
-    /// expired  called every lease_time after a lease has expired, until end() or begin() for that world.
+    /// expired  called when a lease expires, then again every lease_time until end() or begin() is called for that
+    ///          world.
     Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> expired)
         : context_{context}, expired_{std::move(expired)} {}
 
-    /// Starts a lease and replaces an earlier one of the world.
+    /// Starts a lease. If the world already has a lease, the new one replaces it.
     ///
-    /// lease  the number of the lease in its world (simulation::RunControl).
+    /// lease  number of the lease within its world (simulation::RunControl).
     void begin(const std::string& world, std::uint64_t lease, const std::string& client_key);
-    /// Extends the lease. false: the client_key has no lease of the world.
+    /// Extends the lease. Returns false if this client_key does not hold the lease of the world.
     bool renew(const std::string& world, const std::string& client_key);
     void end(const std::string& world) { leases_.erase(world); }
     void end_all() { leases_.clear(); }
@@ -38,7 +39,7 @@ class Leases {
 
     boost::asio::io_context& context_;
     const std::function<void(const std::string& world, std::uint64_t lease)> expired_;
-    std::map<std::string, Lease> leases_; // by world
+    std::map<std::string, Lease> leases_; // key: name of the world
 };
 
 } // namespace evod::network

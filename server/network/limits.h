@@ -1,6 +1,7 @@
-// Limits: all bounds of the network in one table, with the message that clients read and a counter for each.
+// Limits: a table of all limits that apply to clients, the message from which clients read them, and a counter per
+// limit.
 //
-// Threads      the table is constant. Any thread may raise and read a counter.
+// Threads      the table is constant. Any thread may increment or read a counter.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -16,12 +17,13 @@
 
 namespace evod::network {
 
-// The table in limits.cpp says what each bounds and what happens at the bound.
+// The table in limits.cpp states what each limit bounds and what happens when it is reached.
 constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
 constexpr std::size_t watched_islands_max = 16'384; // four times the islands of the largest world
 constexpr double snapshot_rate_hz_max = 120;
-constexpr double snapshot_rate_hz_min = 1e-6; // slower rates are raised to it, since a clock overflows at the period
+// Lower rates are raised to this one, because the period of a much lower rate would overflow the clock.
+constexpr double snapshot_rate_hz_min = 1e-6;
 constexpr std::uint32_t retries_kept = 1000;
 constexpr std::uint32_t client_keys_max = 256;
 constexpr std::uint32_t exports_max = 8;
@@ -29,11 +31,12 @@ constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
 constexpr std::chrono::seconds stalled_timeout{10};
 constexpr std::chrono::seconds lease_time{5};
-constexpr std::uint32_t requests_per_s_max = 50'000; // more than a client reaches that waits for each answer
+constexpr std::uint32_t requests_per_s_max = 50'000; // higher than the rate of a client that waits for each answer
 constexpr std::uint32_t request_burst_max = 5'000;
-// A long frame counts as several, in proportion to the cost of reading and answering it.
+// A long frame counts as several frames, in proportion to the cost of reading and answering it.
 constexpr std::size_t bytes_per_turn = 64, answer_bytes_per_turn = 1 << 10;
-constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10; // only CreateWorld, which needs admin, may be longer
+// Only CreateWorld, which requires an admin, needs longer frames.
+constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
@@ -41,10 +44,10 @@ constexpr std::size_t http_connections_max = 16;
 constexpr std::size_t http_header_bytes_max = 8 << 10;
 constexpr std::chrono::seconds http_request_timeout{5};
 
-/// The bounds that the options of the server set.
+/// Limits that the options of the server can change.
 struct SessionBounds {
     std::uint32_t sessions_max = 256;
-    std::uint32_t sessions_per_address_max = 128; // leaves sessions for other machines
+    std::uint32_t sessions_per_address_max = 128; // so that one address cannot use all sessions
 };
 
 enum class Limit : std::uint8_t {
@@ -89,8 +92,8 @@ enum class Limit : std::uint8_t {
 
 struct LimitRow {
     Limit limit;
-    std::string_view name; // the field of v1::Limits
-    std::uint64_t value;   // the default
+    std::string_view name; // name of the field in v1::Limits
+    std::uint64_t value;   // default value
     std::string_view of;   // what is bounded
     std::string_view then; // what happens at the bound
 };
@@ -98,13 +101,13 @@ struct LimitRow {
 /// One row per Limit, in the order of the enum.
 std::span<const LimitRow> limit_table();
 
-/// The table as docs/OPERATIONS.md contains it and `evod limits` prints it.
+/// The table in Markdown, as `evod limits` prints it and docs/OPERATIONS.md contains it.
 std::string limit_list();
 
-/// The table as the message that clients read.
+/// The limits as the message that the server sends to clients.
 v1::Limits limits_message(const SessionBounds& bounds);
 
-/// How often each limit was reached since the server started.
+/// Counts how often each limit was reached since the server started.
 class LimitCounters {
   public:
     static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::HttpRequestTimeout) + 1;
@@ -119,41 +122,43 @@ class LimitCounters {
     std::array<std::atomic<std::uint64_t>, limit_count> counters_{};
 };
 
-// ---- tuning of connections, not limits of a client -------------------------------------------------------------
+// ---- constants that tune connections but do not limit clients --------------------------------------------------
 
-// log lines about sessions that ended without a Hello
+// Rate limit of log lines about sessions that ended without a Hello.
 constexpr double ungreeted_lines_per_s = 1, ungreeted_lines_burst = 20;
 
-// in the kernel; small, so that a slow viewer receives new snapshots instead of old ones
+// Maximum of unsent bytes in the kernel. It is small so that a slow viewer receives new snapshots instead of old ones.
 constexpr int unsent_bytes_max = 128 << 10;
 
-// TCP keepalive finds dead peers; the client program need not react, so a busy or idle client stays connected. The
-// first probe follows silence_max, further ones every probe_every. Sent data must be acknowledged within untaken_max.
+// TCP keepalive detects a peer whose machine no longer responds. The client program takes no part in it, so a busy or
+// idle client stays connected. The first probe is sent after silence_max without data, further probes every
+// probe_every. The peer must acknowledge sent data within untaken_max.
 constexpr std::chrono::seconds silence_max{10}, probe_every{5};
 constexpr int probes_max = 4;
 constexpr std::chrono::milliseconds untaken_max{30'000};
 
-// The bytes of all cached answers together; the least recently used keys are evicted first.
+// Maximum size of all cached answers together. Beyond it the least recently used keys are evicted first.
 constexpr std::size_t retry_bytes_max = 64 << 20;
-// Evicted keys for which the highest request_id is remembered.
+// Number of evicted keys for which the cache remembers the highest request_id.
 constexpr std::size_t evicted_keys_max = 100'000;
 
-// between checks of the token file and of stalled clients
+// Time between two checks of the token file and of stalled clients.
 constexpr std::chrono::milliseconds housekeeping_interval{500};
-// The server returns free memory to the system at most so often, and only after sessions have ended or so many bytes
-// were answered.
+// The server returns free memory to the system at most once per trim_every. It does so only after sessions have ended
+// or after at least answered_to_trim_bytes of answers were sent.
 constexpr std::chrono::seconds trim_every{2};
 constexpr std::uint64_t answered_to_trim_bytes = 1 << 20;
-constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
-constexpr std::chrono::milliseconds accept_pause{100}; // after accept() failed for want of file descriptors
-// reserved for run files; an eighth of all descriptors if the system allows few
+constexpr std::chrono::seconds farewell_timeout{1}; // time to send the last bytes of a session
+// Pause after accept() failed because no file descriptor was free.
+constexpr std::chrono::milliseconds accept_pause{100};
+// File descriptors reserved for run files. If the system allows only few, an eighth of them is reserved instead.
 constexpr std::uint64_t descriptors_kept = 32;
-// refused connections that receive a Goodbye at the same time; others are closed without one
+// Number of refused connections that may receive a Goodbye at the same time. Further ones are closed without a Goodbye.
 constexpr std::size_t farewells_max = 64;
 
 // HTTP.
-constexpr std::chrono::seconds http_farewell_timeout{1}; // for the last bytes of a connection that ends
-// for the simulation thread to respond; then /healthz answers 503
+constexpr std::chrono::seconds http_farewell_timeout{1}; // time to send the last bytes of a connection
+// If the simulation thread does not respond within this time, /healthz answers 503.
 constexpr std::chrono::seconds simulation_patience{3};
 
 } // namespace evod::network

@@ -46,7 +46,7 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     acceptor.open(endpoint.protocol(), error);
     if (!error) {
         acceptor.set_option(tcp::acceptor::reuse_address{true},
-                            error); // bind although old connections linger
+                            error); // allows binding while connections of an earlier server are still closing
     }
     if (!error) {
         acceptor.bind(endpoint, error);
@@ -70,13 +70,14 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
 
 namespace {
 
-/// The file descriptors that the system allows this process.
+/// The number of file descriptors that the system allows this process to open.
 rlim_t descriptors_max() {
     rlimit limit{};
     return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
-/// Whether only the descriptors reserved for run files are left. The system always assigns the lowest free number.
+/// Whether this descriptor is one of those reserved for run files. The system always assigns the lowest free number, so
+/// a high number means that few descriptors are free.
 bool is_among_the_last(int descriptor) {
     const rlim_t most = descriptors_max();
     return static_cast<rlim_t>(descriptor) + std::min(descriptors_kept, most / 8) >= most;
@@ -98,7 +99,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
             reported = false;
             accepted(std::move(socket));
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
-            // Accepting would fail again at once. The pause lets sessions end.
+            // accept() would fail again immediately. During the pause sessions may end and free descriptors.
             if (!std::exchange(reported, true)) {
                 log::warn("cannot accept a connection: {}; new connections wait{}", error.message(),
                           error == asio::error::no_descriptors

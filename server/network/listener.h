@@ -17,16 +17,18 @@ namespace evod::network {
 
 class Listener {
   public:
-    /// Opens the port. A refusal says what to do about it.
+    /// Opens the port. If that fails, the refusal states how to solve the problem.
     ///
-    /// address   of an interface: "127.0.0.1", "0.0.0.0", "::1".
+    /// address   the address of an interface: "127.0.0.1", "0.0.0.0", "::1".
     /// port      0: any free port.
-    /// names     the command-line options for address and port, for refusals.
+    /// names     the command-line options for address and port, as refusals name them.
     struct Names {
         const char* address = "--bind";
         const char* port = "--port";
     };
-    /// Refuses text that is not an IP address; opens nothing. option: the command-line option, for the refusal.
+    /// Checks that the text is an IP address, without opening a port.
+    ///
+    /// option  the command-line option, as the refusal names it.
     static base::Result<void> check(const std::string& address, const char* option);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address, std::uint16_t port,
                                        const Names& names);
@@ -37,7 +39,7 @@ class Listener {
 
     boost::asio::ip::tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
-    /// Accepts connections until close() and calls `accepted` for each.
+    /// Calls `accepted` for each new connection until close() is called.
     boost::asio::awaitable<void> accept(std::function<void(boost::asio::ip::tcp::socket)> accepted);
 
     void close();

@@ -1,4 +1,4 @@
-// Messages: the frames that the network thread sends, and the log lines of refusals.
+// Messages: encodes the frames that the network thread sends, and logs refusals.
 //
 // Threads      any; no state.
 #pragma once
@@ -16,11 +16,11 @@ using codec::SharedBytes;
 
 SharedBytes encode_control(const v1::ServerMessage& message);
 SharedBytes encode_response(v1::Response response);
-/// Sets the time of the event to now.
+/// Encodes the event after setting its time to the current time.
 SharedBytes encode_event(v1::Event event);
 SharedBytes encode_goodbye(const base::Refusal& why);
 
-/// Logs a refusal at Level::Debug; an accepted response logs nothing.
+/// Logs a refusal at Level::Debug. Logs nothing if the response is not a refusal.
 ///
 /// by  the client whose request is refused.
 void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response);

@@ -1,4 +1,4 @@
-// no_throw: an Asio completion token that returns the error beside the result and never throws.
+// no_throw: an Asio completion token. The operation returns its error as a value and never throws.
 #pragma once
 
 #include <boost/asio/as_tuple.hpp>

@@ -1,4 +1,4 @@
-// Random seeds and ids that the server draws: seeds without a client's choice, run ids, instance ids.
+// Random numbers of the server: ids of runs, ids of server instances, and seeds that the client did not choose.
 #pragma once
 
 #include "server/base/random.h"

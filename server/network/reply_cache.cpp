@@ -7,7 +7,7 @@
 namespace evod::network {
 namespace {
 
-/// 128 bits of the request, to recognise a different request with the same id.
+/// A 128-bit hash of a request. It reveals whether the same id is used for a different request.
 base::StateHash fingerprint(std::string_view bytes) {
     base::EntityHash hash{0, bytes.size()};
     while (!bytes.empty()) {
@@ -118,7 +118,7 @@ ReplyCache::Key& ReplyCache::touch(const std::string& client_key, std::uint64_t 
 }
 
 void ReplyCache::trim(Key& key) {
-    // Pending commands stay. There are at most as many as the mailbox holds.
+    // Pending commands are not evicted. The capacity of the mailbox bounds their number.
     for (auto oldest = key.commands.begin();
          key.commands.size() > bounds_.kept_per_key && oldest != key.commands.end();) {
         if (!oldest->second.answer) {

@@ -1,10 +1,11 @@
-// ReplyCache: the answers to commands, which make commands idempotent: a repeated command gets the first answer and is
-// not applied again.
+// ReplyCache: caches the answers to commands to make commands idempotent. A repeated command receives the cached answer
+// and is not applied again.
 //
-// The key of a command is (user, client_key, request_id), so commands of different users never collide. The cache keeps
-// the newest `kept_per_key` answers of each client_key, for `keys_max` keys and `bytes_max` bytes. Beyond that it
-// evicts the keys with a single command first, then the least recently used keys. For `evicted_max` evicted keys it
-// remembers the highest request_id, so that a command whose answer is gone is refused and not applied again.
+// A command is identified by (user, client_key, request_id), so commands of different users never collide. The cache
+// keeps the newest `kept_per_key` answers of each client_key, for `keys_max` keys and `bytes_max` bytes. Beyond these
+// limits it first evicts keys with a single command, then the least recently used keys. It remembers the highest
+// request_id of the last `evicted_max` evicted keys. It can therefore refuse a command whose answer it no longer has,
+// instead of applying the command again.
 //
 // Owner        the dispatcher, on the network thread.
 #pragma once
@@ -33,39 +34,39 @@ class ReplyCache {
     struct Bounds {
         std::size_t kept_per_key, keys_max, bytes_max, evicted_max;
     };
-    /// Called with the answer once it exists.
+    /// The function that receives the answer once it exists.
     using Waiter = std::function<void(const SharedBytes&)>;
 
-    /// key_forgotten  called for each evicted key.
+    /// key_forgotten  called for each key that the cache evicts.
     explicit ReplyCache(
         Bounds bounds, std::function<void()> key_forgotten = [] {})
         : bounds_{bounds}, key_forgotten_{std::move(key_forgotten)} {}
 
     enum class Verdict {
-        New,       // apply it, then call finish() or forget(); the cache keeps the waiter
-        Known,     // the cache has called the waiter, or will call it
-        Different, // the id belongs to another request; the cache drops the waiter
-        TooOld,    // its answer is no longer cached; the cache drops the waiter
+        New,       // the caller must apply the command, then call finish() or forget(); the cache keeps the waiter
+        Known,     // the command is known: the cache has called the waiter, or will call it
+        Different, // another request has used this id; the cache drops the waiter
+        TooOld,    // the answer is no longer cached; the cache drops the waiter
     };
-    /// The key that the other functions take; it differs for any two users.
+    /// The key for the other functions. Two users never have the same key.
     ///
-    /// user  name of the session's token; empty: it has none.
+    /// user  name of the session's token; empty: the session has no token.
     static std::string key_of(const std::string& user, const std::string& client_key);
 
-    /// Looks a command up and marks a new one as pending.
+    /// Looks up a command. A new command is marked as pending.
     ///
-    /// request  the request serialised deterministically, so that equal requests have equal bytes.
+    /// request  the deterministically serialised request, so that equal requests have equal bytes.
     Verdict begin(const std::string& client_key, std::uint64_t request_id, std::string_view request, Waiter waiter);
 
-    /// Stores the answer to a pending command and passes it to all waiters.
+    /// Stores the answer to a pending command and passes the answer to all waiters.
     void finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 
-    /// A command applied before this server started, with its answer.
+    /// Adds a command that was applied before this server started, with its answer.
     void restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
                  const SharedBytes& answer);
 
-    /// Drops a pending command that cannot be applied now and passes `answer` to all waiters. The client may send it
-    /// again.
+    /// Drops a pending command that cannot be applied now, and passes `answer` to all waiters. The client may send the
+    /// same command again.
     void forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 
     std::size_t key_count() const { return keys_.size(); }
@@ -74,15 +75,15 @@ class ReplyCache {
   private:
     struct Command {
         base::StateHash request;
-        SharedBytes answer; // nullptr: pending
+        SharedBytes answer; // nullptr: the command is pending
         std::vector<Waiter> waiters;
     };
     struct Key {
         std::map<std::uint64_t, Command> commands;
-        std::uint64_t forgotten_up_to = 0; // these ids are too old unless they are in `commands`
+        std::uint64_t forgotten_up_to = 0; // smaller ids are too old, too, unless `commands` contains them
         std::size_t pending_count = 0;
-        bool used_again = false;              // more than one command was sent
-        std::list<std::string>::iterator use; // position in used_once_ or used_again_
+        bool used_again = false;              // the key has sent more than one command
+        std::list<std::string>::iterator use; // position of this key in used_once_ or used_again_
     };
     struct HashOfHash {
         std::size_t operator()(const base::StateHash& hash) const { return hash.low; }
@@ -90,7 +91,8 @@ class ReplyCache {
     Key& touch(const std::string& client_key, std::uint64_t request_id);
     void trim(Key& key);
     void trim_keys();
-    /// Evicts the least recently used keys of a list until the bounds hold, except `spared`, which was just used.
+    /// Evicts the least recently used keys of a list until the limits hold. Does not evict `spared`, which was just
+    /// used.
     void trim_keys(std::list<std::string>& used, const std::string& spared);
     bool too_much() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
     void remember_evicted(const std::string& client_key, const Key& key);
@@ -99,7 +101,7 @@ class ReplyCache {
     const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
     std::list<std::string> used_once_, used_again_;                          // keys, most recently used first
-    const std::string* last_used_ = nullptr;                                 // in one of the two lists
+    const std::string* last_used_ = nullptr;                                 // points into one of the two lists
     std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of the key → its highest request_id
     std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;

@@ -1,10 +1,10 @@
-// SendMemory: accounts for the memory of everything that waits to be sent to clients, so that one bound covers all
-// sessions.
+// SendMemory: counts the memory of all data that waits to be sent to clients, so that one limit applies to all sessions
+// together.
 //
-// Bytes shared by several sessions exist once and count once.
+// If several sessions share the same bytes, these bytes exist once and are counted once.
 //
-// Owner        the server; its sessions use it on the network thread.
-// Full         above `bytes_max` it calls `exceeded`, which has to close sessions until the memory is released.
+// Owner        the server. The sessions use it on the network thread.
+// Full         above `bytes_max` it calls `exceeded`, which must close sessions until enough memory is released.
 #pragma once
 
 #include "proto/codec/shared_bytes.h"
@@ -19,12 +19,12 @@ using codec::SharedBytes;
 
 class SendMemory {
   public:
-    /// exceeded  called once when the bound is exceeded, and again only after rearm(). It must not release memory
-    ///           itself.
+    /// exceeded  called once when the limit is exceeded. It is called again only after rearm(). It must not release
+    ///           memory before it returns.
     SendMemory(std::size_t bytes_max, std::function<void()> exceeded)
         : bytes_max_{bytes_max}, exceeded_{std::move(exceeded)} {}
 
-    /// Shared bytes, accounted for as long as this object lives.
+    /// Shared bytes. They are counted as long as this object exists.
     class Counted {
       public:
         Counted() = default;
@@ -37,7 +37,7 @@ class SendMemory {
         const std::string& operator*() const { return *bytes_; }
         const std::string* operator->() const { return bytes_.get(); }
 
-        /// The bytes divided by the number of their holders.
+        /// The number of bytes divided by the number of objects that share them.
         std::size_t share() const;
 
       private:
@@ -46,7 +46,7 @@ class SendMemory {
         SharedBytes bytes_;
     };
 
-    /// Memory that a session uses for itself, as large as the last set().
+    /// Memory that only one session uses. set() changes its size.
     class Reservation {
       public:
         explicit Reservation(SendMemory& owner) : owner_{owner} {}
@@ -61,9 +61,9 @@ class SendMemory {
     };
 
     std::size_t bytes() const { return bytes_; }
-    /// Bytes above the bound.
+    /// Number of bytes above the limit.
     std::size_t excess() const { return bytes_ > bytes_max_ ? bytes_ - bytes_max_ : 0; }
-    /// Allows the next call of `exceeded`.
+    /// Allows `exceeded` to be called again.
     void rearm() { reported_ = false; }
 
   private:

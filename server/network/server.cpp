@@ -25,7 +25,7 @@ namespace evod::network {
 
 namespace {
 
-/// "population_size (50, not 60), selection (roulette, not tournament)".
+/// Lists the parameters that differ: "population_size (50, not 60), selection (roulette, not tournament)".
 std::string differences_of(const parameters::Parameters& there, const parameters::Parameters& wanted) {
     std::string text;
     for (const parameters::ParameterDescription* parameter : parameters::parameters_that_differ(there, wanted)) {
@@ -40,11 +40,11 @@ std::string differences_of(const parameters::Parameters& there, const parameters
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
-    // From here on signals are queued, also while worlds are restored. run() handles them.
+    // From here on signals are queued, even while worlds are being restored. run() handles them.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         server->signals_.add(signal);
     }
-    // Check the command line before opening files and restoring worlds.
+    // Check the command line before files are opened and worlds are restored.
     if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound) {
         return sound.error();
     }
@@ -77,7 +77,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     } else if (auto begun = server->world_to_begin(); !begun) {
         return begun.error();
     }
-    boost::system::error_code no_address; // Listener::check() has reported it
+    boost::system::error_code no_address; // Listener::check() has already reported it
     const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
     auto gate = access::Gate::open(server->options_.token_folder,
                                    server->options_.token_needed || (!no_address && !address.is_loopback()));
@@ -93,7 +93,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (auto opened = server->open_http(); !opened) {
         return opened.error();
     }
-    std::signal(SIGPIPE, SIG_IGN); // a closed log pipe must not end the server
+    std::signal(SIGPIPE, SIG_IGN); // if the log's pipe is closed, writing to it must not end the server
     return server;
 }
 
@@ -233,7 +233,7 @@ void Server::begin_first_world() {
         protocol::add_population(create, world.first_population);
         dispatcher_.handle_own(std::move(request));
     }
-    const std::string begun = *world_to_begin(); // open() has checked it
+    const std::string begun = *world_to_begin(); // open() has already checked that there is such a world
     const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
     if ((options_.first_speed || options_.first_run) && others > 0) {
         log::info({.world = begun}, "--speed and --start apply to world \"{}\" only; {} others continue as before",
@@ -278,8 +278,8 @@ bool Server::run() {
             .done = [this](runtime::CommandDone done) { outbox_.done(std::move(done)); },
             .storage =
                 [this](const simulation::Storage& storage) {
-                    // Sent like an answer, because events may be dropped. Sessions that connect later read
-                    // host_.storage.
+                    // Passed like an answer, because the outbox may drop events. Sessions that connect later read the
+                    // state from host_.storage.
                     outbox_.answer([this, event = protocol::event_of(storage)] {
                         host_.storage = event.storage_changed().storage();
                         streams_.publish(event);
@@ -315,7 +315,7 @@ void Server::wait_for_signal() {
             go_away();
         } else {
             log::warn("{} again: ending at once; after a restart worlds continue from what is on the disk", name);
-            signals_.remove(signal); // restores the default action, which ends the process
+            signals_.remove(signal); // restores the default action: the next signal ends the process
             std::raise(signal);
         }
         wait_for_signal();
@@ -329,7 +329,7 @@ void Server::reread_certificate() {
     } else if (!*tls) {
         log::info("SIGHUP: no certificate to reload; a changed token file is reloaded without a signal");
     } else {
-        tls_ = *std::move(tls); // existing connections keep the old one
+        tls_ = *std::move(tls); // existing connections keep the old certificate
         host_.tls = tls_.get();
         log::info("SIGHUP: certificate reloaded for new connections");
     }
@@ -351,7 +351,7 @@ void Server::schedule_housekeeping() {
             return;
         }
         check_tokens();
-        // After a late timer the server itself was busy, so the clients are not to blame for all of that time.
+        // If the timer fired late, the server itself was busy. Clients must not be blamed for that time.
         const auto now = clock_.now();
         const auto watched =
             std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * housekeeping_interval);
@@ -364,7 +364,8 @@ void Server::schedule_housekeeping() {
 }
 
 void Server::trim_heap(runtime::Clock::time_point now) {
-    // Answers and sessions leave fragmented free memory that malloc does not return by itself.
+    // Answered requests and ended sessions leave fragmented free memory, which malloc does not return to the system by
+    // itself.
     const std::uint64_t answered = host_.traffic.sent_control_bytes.value();
     if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes)) {
         return;
@@ -382,7 +383,7 @@ void Server::check_tokens() {
     if (gate_->trouble()) {
         log::error("{}; new connections are refused until this is fixed", gate_->trouble()->message);
     }
-    // fail() may remove sessions from the table, so this loop needs a copy.
+    // fail() may remove sessions from the table, so the loop iterates over a copy.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions) {
         if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor())) {
@@ -407,7 +408,7 @@ void Server::evict_sessions() {
         session->evict();
         excess -= std::min(excess, bytes);
     }
-    // The sessions release their memory in handlers that are already posted; rearm() runs after them.
+    // The closed sessions release their memory in handlers that are already posted. rearm() runs after these handlers.
     asio::post(context_, [this] { send_memory_.rearm(); });
 }
 
@@ -428,7 +429,7 @@ void Server::accepted(tcp::socket socket) {
     const bool address_full = std::ranges::count_if(sessions_, is_neighbour) >= bounds.sessions_per_address_max;
     if (all_full || address_full) {
         limit_counters_.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
-        // A silent connection must not keep others out: the oldest session without a Hello makes room.
+        // A silent connection must not keep other clients out: the oldest session without a Hello is closed.
         const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
             return !other.second->greeted() && (!address_full || is_neighbour(other));
         });
@@ -442,7 +443,7 @@ void Server::accepted(tcp::socket socket) {
                                                           " sessions: try again when one has ended",
                                        base::Reason::SessionsMax));
             } else {
-                --connections_; // closed without a Goodbye
+                --connections_; // the connection was closed without a Goodbye
             }
             return;
         }
@@ -496,7 +497,7 @@ void Server::go_away() {
     }
     dispatcher_.refuse_all();
     streams_.announce_end();
-    // A thread of its own stops the simulation, so that this thread continues to send pending answers.
+    // A separate thread stops the simulation, so that the network thread can send pending answers in the meantime.
     stopping_ = std::thread{[this, work = asio::make_work_guard(context_)] {
         simulation_->stop();
         const bool all_written = !archive_ || archive_->close();
@@ -505,7 +506,7 @@ void Server::go_away() {
             signals_.cancel();
             deliver();
             while (streams_.send_some(clock_.now())) {
-                // Sends the newest snapshots.
+                // Send the newest snapshots before the sessions end.
             }
             streams_.end_sessions();
         });

@@ -22,8 +22,8 @@ namespace evod::network {
 namespace {
 
 constexpr std::size_t batch_frames_max = 64;
-constexpr std::size_t snapshots_at_once = 32; // of one session, before other sessions are served
-// A frame of many parts, or of a few short ones, is copied together before it is passed to the kernel.
+constexpr std::size_t snapshots_at_once = 32; // snapshots that one session sends before other sessions are served
+// A frame of many parts, or of short parts, is copied into one buffer before it is passed to the kernel.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
 static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a header and a tail, too");
 
@@ -45,7 +45,7 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , turn_timer_{transport_.socket().get_executor()}
     , farewell_timer_{transport_.socket().get_executor()}
     , writer_signal_{transport_.socket().get_executor(), asio::steady_timer::time_point::max()} {
-    boost::system::error_code ignored; // the session also works without these options, but less well
+    boost::system::error_code ignored; // if an option cannot be set, the session still works, but less well
     transport_.socket().set_option(tcp::no_delay{true}, ignored);
     transport_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
     const auto set = [&](int option, std::int64_t value) {
@@ -78,7 +78,7 @@ void Session::start(const std::optional<base::Refusal>& refused) {
                                    " s: connect again and send one first",
                                base::Reason::HelloMissing));
             if (!self->begun_) {
-                self->close(); // without TLS no Goodbye is possible
+                self->close(); // a Goodbye cannot be sent, because the client does not use TLS
             }
         }
     });
@@ -108,7 +108,7 @@ asio::awaitable<void> Session::read() {
                      "this server requires TLS: use --ca FILE or --tls with evoctl and evoview",
                      base::Reason::TlsRequired));
     } else if (error) {
-        if (!ended_) { // otherwise the reason is already logged
+        if (!ended_) { // if the session has ended, the reason is already logged
             log_closed({}, "TLS: " + error.message());
         }
         close();
@@ -119,7 +119,7 @@ asio::awaitable<void> Session::read() {
         const auto [error, count] = co_await transport_.read_some(asio::buffer(bytes));
         const bool more_to_say = in_flight_ + queue_.size() + sending_.size() > 0;
         if (error == asio::error::eof && more_to_say && !finishing_ && !ended_) {
-            // A half-closed client may still read, so it gets its answers.
+            // The client closed its sending side but may still read. It therefore receives the pending answers.
             input_over_ = true;
             wake_writer();
             end();
@@ -154,7 +154,7 @@ asio::awaitable<void> Session::read() {
                 break;
             }
             on_frame(**frame);
-            // Serve other sessions before the next frame.
+            // Let the thread serve other sessions before the next frame is read.
             co_await asio::post(transport_.socket().get_executor(), no_throw);
         }
         update_frame_timer(one_came);
@@ -195,7 +195,7 @@ void Session::update_frame_timer(bool one_came) {
 asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
-    // Input is not late while the session does not read.
+    // A frame cannot be late while the session does not read.
     within_frame_ = false;
     frame_timer_.cancel();
     do {
@@ -216,7 +216,7 @@ asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     fail(refused);
 }
 
-/// Reads and discards further input: closing with unread bytes would discard the last answer.
+/// Reads and discards further input. If unread bytes remained, closing the connection would discard the last answer.
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
     for (;;) {
@@ -310,7 +310,7 @@ void Session::on_hello(const v1::Hello& hello) {
 }
 
 void Session::log_connection(const std::string& what) const {
-    // On the server's machine every call of evoctl opens a session, so log these at Debug only.
+    // On the server's own machine every call of evoctl opens a session. These are logged only at Debug.
     const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
     if (log::wanted(level)) {
         log::write(level, {.session = number_, .client = by()},
@@ -321,7 +321,7 @@ void Session::log_connection(const std::string& what) const {
 void Session::log_closed(std::string_view code, const std::string& why) {
     const std::string who = greeted_ ? by() : to_text(peer_);
     std::string left_out;
-    if (!greeted_) { // connections without a Hello must not fill the disk
+    if (!greeted_) { // connections without a Hello must not fill the disk with log lines
         SessionHost::UngreetedLog& ungreeted = host_.ungreeted_log;
         const auto now = host_.clock->now();
         if (!ungreeted.lines) {
@@ -348,7 +348,7 @@ void Session::fail(const base::Refusal& refused) {
     finish();
 }
 
-// ---- what is sent ----------------------------------------------------------------------------------------------
+// ---- sending ---------------------------------------------------------------------------------------------------
 
 bool Session::admit_request() {
     if (in_flight_ >= requests_in_flight_max) {
@@ -410,7 +410,7 @@ void Session::send_unasked(const v1::Response& response) {
 }
 
 void Session::event(const SharedBytes& frame) {
-    // After a drop, drop all events until EventsDropped is sent, so that it marks the gap.
+    // After an event was dropped, all further events are dropped until EventsDropped is sent. It thus marks the gap.
     if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size())) {
         return enqueue(frame, Kind::Event);
     }
@@ -433,7 +433,8 @@ void Session::send_snapshots() {
     if (!idle_ || !may_send_snapshots()) {
         return wake_writer();
     }
-    // Without waking the writer: with many viewers that would cost as much as all the rest.
+    // The snapshots are sent directly. With many viewers, waking the writers would cost as much as the rest of the
+    // work.
     std::size_t sent = 0;
     for (; sent < snapshots_at_once && may_send_snapshots(); ++sent) {
         const streaming::OutgoingFrame* const frame = snapshots.next();
@@ -487,7 +488,7 @@ void Session::send_frame(const streaming::OutgoingFrame& frame) {
         rest_.buffers.push_back(asio::buffer(*rest));
         return;
     }
-    // The parts are not copied: all sessions that are sent them share them.
+    // The parts are not copied, because all sessions that receive them share them.
     rest_.header = header;
     rest_.tail = tail;
     rest_.buffers.push_back(asio::buffer(rest_.header));
@@ -531,7 +532,7 @@ void Session::wake_writer() {
 }
 
 asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
-    // wake_writer() cancels the timer. It runs on this thread, too, so no wake-up gets lost before the wait.
+    // wake_writer() cancels the timer. It runs on the same thread, so no wake-up can be lost before the wait begins.
     idle_ = true;
     writer_signal_.expires_at(until);
     co_await writer_signal_.async_wait(no_throw);
@@ -551,13 +552,14 @@ asio::awaitable<void> Session::write() {
             if (error) {
                 break;
             }
-            sending_.clear(); // releases the accounted bytes
+            sending_.clear(); // the bytes are no longer counted
             rest_ = {};
             host_.traffic.snapshots_sent.add();
         } else if (!queue_.empty()) {
-            // Answers and events first: they are small, and clients wait for them.
+            // Answers and events are sent first, because they are small and clients wait for them.
             while (!queue_.empty() && sending_.size() < batch_frames_max) {
-                // A client may send its next request before the write has completed.
+                // The request counts as answered now, because the client may send its next request before the write has
+                // completed.
                 in_flight_ -= queue_.front().kind == Kind::Answer;
                 sending_.push_back(std::move(queue_.front()));
                 queue_.pop_front();
@@ -576,7 +578,7 @@ asio::awaitable<void> Session::write() {
             if (in_flight_ > 0) {
                 co_await wait_for_work();
             } else if (turn_timer_.cancel() > 0) {
-                co_await asio::post(transport_.socket().get_executor(), no_throw); // fail_when_answered() continues
+                co_await asio::post(transport_.socket().get_executor(), no_throw); // lets fail_when_answered() continue
             } else {
                 finish();
             }
@@ -586,7 +588,7 @@ asio::awaitable<void> Session::write() {
             enqueue(encode_event(std::move(event)), Kind::Event);
         } else if (const auto* frame = finishing_ ? nullptr : snapshots.next()) {
             send_frame(*frame);
-            // Other sessions are served in between.
+            // Let the thread serve other sessions.
             if (++sent_at_once == snapshots_at_once) {
                 sent_at_once = 0;
                 co_await asio::post(transport_.socket().get_executor(), no_throw);
@@ -607,7 +609,7 @@ asio::awaitable<void> Session::write() {
     end();
 }
 
-// ---- the end ---------------------------------------------------------------------------------------------------
+// ---- closing ---------------------------------------------------------------------------------------------------
 
 void Session::check_progress(runtime::Clock::duration watched) {
     const Transport::Progress progress = sending_.empty() ? Transport::Progress{} : transport_.progress();
@@ -671,7 +673,7 @@ void Session::close() {
     frame_timer_.cancel();
     turn_timer_.cancel();
     farewell_timer_.cancel();
-    // sending_ stays until the write has ended.
+    // sending_ is kept until the current write has ended.
     queue_.clear();
     snapshots.clear();
     reader_bytes_.set(0);

@@ -1,11 +1,15 @@
-// Session: one TCP connection. Reads requests and writes answers, events and snapshots.
+// Session: one TCP connection. It reads requests and writes answers, events and snapshots.
 //
-// Owner        the server's table of sessions; its two coroutines keep it alive until the connection has ended.
+// Owner        the server's table of sessions. The two coroutines of a session keep it alive until the connection has
+//              ended.
 // Threads      the network thread.
-// Full         backpressure per kind. Requests: reading pauses above requests_per_s_max. Responses: the session closes
-//              when more than queued_response_bytes_max are unread. Events: dropped, counted and reported with
-//              EventsDropped. Snapshots: of each subscription and island only the newest waits, until earlier ones are
-//              acknowledged and the bandwidth allows it. A client that receives nothing for a while is closed.
+// Full         backpressure differs by kind of message.
+//              Requests: above requests_per_s_max the session pauses reading.
+//              Responses: if more than queued_response_bytes_max are unread, the session is closed.
+//              Events: they are dropped and counted, and EventsDropped reports their number.
+//              Snapshots: of each subscription and island only the newest waits, until earlier ones are acknowledged
+//              and the bandwidth limit allows it.
+//              A session whose client receives nothing for stalled_timeout is closed.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -39,123 +43,128 @@ namespace evod::network {
 class Session;
 using SessionPtr = std::shared_ptr<Session>;
 
-/// What a session needs from the rest of the server.
+/// The interface of the server that a session uses.
 struct SessionHost {
     LimitCounters& limit_counters;
     SendMemory& send_memory;
     v1::Limits limits = {};
     std::string instance_id = {}; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
-    std::optional<v1::Storage> storage = {}; // the current state of the disk; nullopt: runs are not stored
-    asio::ssl::context* tls = nullptr;       // nullptr: without TLS
+    std::optional<v1::Storage> storage = {}; // current state of the disk; nullopt: runs are not stored
+    asio::ssl::context* tls = nullptr;       // nullptr: no TLS
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
-    /// The rate limit of log lines about sessions that ended without a Hello.
+    /// Limits the rate of log lines about sessions that ended without a Hello.
     struct UngreetedLog {
-        std::optional<TokenBucket> lines = {}; // created with the first line
-        std::uint64_t left_out = 0;            // lines left out since the last one
+        std::optional<TokenBucket> lines = {}; // created when the first line is logged
+        std::uint64_t left_out = 0;            // number of lines omitted since the last logged line
     } ungreeted_log = {};
-    std::string frame = {}; // working memory to assemble frames of snapshots
+    std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
     std::function<void(Session&, v1::Request)> handle = {};
-    std::function<void(Session&)> ended = {}; // called once
+    std::function<void(Session&)> ended = {}; // called once, when the session has ended
 };
 
 struct EventSubscription {
-    std::optional<std::string> world; // nullopt: all
+    std::optional<std::string> world; // nullopt: all worlds
 };
 
 class Session : public std::enable_shared_from_this<Session>, private streaming::SnapshotSender {
   public:
     Session(tcp::socket socket, SessionHost& host, std::uint64_t number);
 
-    /// Starts reading and writing. refusal: send only this as a Goodbye.
+    /// Starts reading and writing.
+    ///
+    /// refusal  if set, the session only sends it as a Goodbye.
     void start(const std::optional<base::Refusal>& refusal = {});
 
     std::uint64_t number() const { return number_; }
     bool greeted() const { return greeted_; }
     /// User, client name and address: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
-    /// The limits of this session's role.
+    /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     const access::Visitor& visitor() const { return visitor_; }
-    /// The key of limits per address: the IPv4 address or the IPv6 /64.
+    /// The key for the limits per address: the IPv4 address, or the /64 prefix of the IPv6 address.
     const std::string& neighbourhood() const { return neighbourhood_; }
 
-    /// Counts one more unanswered request. false: too many; refuse it with send_unasked().
+    /// Counts one more unanswered request. Returns false if there are too many; the caller then refuses the request
+    /// with send_unasked().
     bool admit_request();
-    /// Adds to the memory reserved for answers in preparation; negative when an answer is ready.
+    /// Reserves memory for answers in preparation. A negative number releases it when the answer is ready.
     void expect(std::ptrdiff_t bytes);
     /// Sends the answer to an admitted request.
     void answer(SharedBytes frame);
-    /// Likewise; logs a refusal.
+    /// Sends the answer to an admitted request, and logs it if it is a refusal.
     void answer(v1::Response response);
-    /// Sends a response to a message that was not admitted.
+    /// Sends a response to a message that was not admitted as a request.
     void send_unasked(const v1::Response& response);
     void event(const SharedBytes& frame);
     void count_dropped_events(std::uint64_t count);
     /// Sends a Goodbye with the refusal and ends the session.
     void fail(const base::Refusal& refusal);
-    /// Reads no more requests, writes what waits, then closes.
+    /// Stops reading, writes the queued data, then closes the connection.
     void finish();
-    /// Closes at once.
+    /// Closes the connection at once.
     void close();
 
-    /// Closes the session if its client has received nothing for stalled_timeout. Call it periodically.
+    /// Closes the session if its client has received nothing for stalled_timeout. Must be called periodically.
     ///
-    /// watched  how long the server could observe the client since the last call.
+    /// watched  time since the last call during which the server could observe the client.
     void check_progress(runtime::Clock::duration watched);
-    /// Bytes that closing the session would release.
+    /// Number of bytes that closing this session would release.
     std::size_t held_bytes() const;
-    /// Closes the session because the memory of all sessions is exhausted.
+    /// Closes the session because all sessions together use too much memory.
     void evict();
 
     std::uint32_t next_subscription_id() { return ++subscription_id_; }
-    streaming::SnapshotQueue snapshots; // its subscriptions to snapshots, and what waits of them
+    streaming::SnapshotQueue snapshots; // the subscriptions to snapshots, and the snapshots that wait to be sent
     std::map<std::uint32_t, EventSubscription> events;
     std::set<std::string> replays; // names of the replays that the session has opened
 
-    // The simulation has at most one query per session, so that sessions share its time evenly. Further requests are held
-    // back, so that they keep their order.
+    // The simulation thread processes at most one query per session at a time, so that all sessions get an equal share
+    // of its time. Meanwhile all further requests of the session are held back to keep their order.
     bool query_under_way = false;
     void hold_back(v1::Request request);
-    /// The oldest request held back; nullopt: none.
+    /// Removes and returns the oldest request that was held back; nullopt if there is none.
     std::optional<v1::Request> take_held_back();
 
   private:
     enum class Kind { Answer, Unasked, Event, Snapshot };
     struct Queued {
-        SendMemory::Counted bytes; // a frame, or a part of a snapshot
+        SendMemory::Counted bytes; // a frame or a part of a snapshot
         Kind kind;
     };
 
     asio::awaitable<void> read();
-    /// Bounds the time for a started frame to arrive. one_came: a frame was completed since the last call.
+    /// Limits the time from the first to the last byte of a frame.
+    ///
+    /// one_came  a frame was completed since the last call.
     void update_frame_timer(bool one_came);
     asio::awaitable<void> write();
-    /// Waits until the rate limit allows `cost`.
+    /// Waits until the rate limit allows a frame of this cost.
     asio::awaitable<void> wait_for_turn(double cost);
-    /// Reads no more, and calls fail() once all requests are answered.
+    /// Stops reading, and calls fail() once all requests are answered.
     asio::awaitable<void> fail_when_answered(base::Refusal refused);
     asio::awaitable<void> discard_input();
     asio::awaitable<void> wait_for_work(runtime::Clock::time_point until = runtime::Clock::time_point::max());
     void on_frame(const codec::Frame& frame);
-    /// The bound of the client's frames after the Hello.
+    /// The largest frame body that this client may send after its Hello.
     std::uint32_t control_frame_bytes_max() const;
     void on_hello(const v1::Hello& hello);
     void send_snapshots() override;
     void send_snapshots_later() override { wake_writer(); }
-    /// Writes a frame as far as the connection accepts it at once. The rest goes into sending_ and rest_ for the writer.
+    /// Writes as much of a frame as the connection accepts at once. The writer sends the rest from sending_ and rest_.
     void send_frame(const streaming::OutgoingFrame& frame);
     bool may_send_snapshots() const;
     void enqueue(SharedBytes frame, Kind kind);
-    /// Whether the client accepts a frame of that size, header included.
+    /// Whether the client accepts a frame of this size. The size includes the header.
     bool takes(std::size_t frame_bytes) const { return frame_bytes - codec::header_bytes <= frame_bytes_max_; }
     void written(const Queued& queued);
     void wake_writer();
     void log_connection(const std::string& what) const;
-    /// code: may be empty.
+    /// code  may be empty.
     void log_closed(std::string_view code, const std::string& why);
     void end();
 
@@ -173,28 +182,28 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
         v1::Request request;
         std::size_t bytes;
     };
-    std::deque<HeldBack> held_back_; // at most requests_in_flight_max
+    std::deque<HeldBack> held_back_; // at most requests_in_flight_max entries
     TokenBucket turns_to_send_;
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
-    bool within_frame_ = false; // a frame has begun to arrive
-    bool begun_ = false;        // the transport can be written to
-    bool idle_ = false;         // the writer waits for work
+    bool within_frame_ = false; // a part of a frame has arrived
+    bool begun_ = false;        // the transport is ready for writing
+    bool idle_ = false;         // the writer is waiting for data to send
     bool greeted_ = false, finishing_ = false, ended_ = false;
-    bool input_over_ = false; // the client sends nothing more
-    int coroutines_ = 0;      // still running
+    bool input_over_ = false; // the client has closed its sending side
+    int coroutines_ = 0;      // number of running coroutines
 
     std::deque<Queued> queue_;
-    std::vector<Queued> sending_; // not empty: a write is in progress or due
+    std::vector<Queued> sending_; // not empty: a write is in progress or about to start
     struct Rest {
         std::array<std::byte, codec::header_bytes> header;
         std::string tail;
-        std::vector<asio::const_buffer> buffers;       // of these, and of what is in sending_
-    } rest_;                                           // of a snapshot that the connection did not accept at once
-    std::size_t response_bytes_ = 0, event_bytes_ = 0; // in queue_ and sending_
+        std::vector<asio::const_buffer> buffers; // point to `header`, `tail` and the bytes in sending_
+    } rest_;                                     // the rest of a snapshot that the connection did not accept at once
+    std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in queue_ and sending_
     Transport::Progress progress_;
     runtime::Clock::duration stalled_{}; // observed time without progress
-    std::size_t in_flight_ = 0;          // requests whose answer is not being written yet
-    std::uint64_t dropped_events_ = 0;   // not reported yet
+    std::size_t in_flight_ = 0;          // number of requests whose answer is not being written yet
+    std::uint64_t dropped_events_ = 0;   // number of dropped events that were not reported yet
     std::uint32_t subscription_id_ = 0;
 };
 

@@ -70,7 +70,8 @@ void Streams::publish(v1::Event event) {
     const std::string world = event.world();
     SharedBytes frame, for_viewers;
     for (const auto& [number, session] : sessions_) {
-        // "All worlds" excludes replays: only a subscription that names a replay receives its events.
+        // A subscription to all worlds does not include replays. A session receives events of a replay only if its
+        // subscription names that replay.
         const bool wanted = std::any_of(session->events.begin(), session->events.end(), [&](const auto& item) {
             return item.second.world ? world.empty() || *item.second.world == world
                                      : simulation::is_world_name(world) || world.empty();

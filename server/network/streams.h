@@ -1,4 +1,4 @@
-// Streams: the subscriptions of all sessions, and the path of snapshots and events from the simulation to them.
+// Streams: manages the subscriptions of all sessions, and passes snapshots and events from the simulation to them.
 //
 // Owner        the server.
 // Threads      the network thread.
@@ -18,41 +18,43 @@
 
 namespace evod::network {
 
-/// By session number.
+/// The key is the number of the session.
 using Sessions = std::map<std::uint64_t, SessionPtr>;
 
 class Streams {
   public:
-    /// The arguments must outlive the streams.
+    /// All arguments must outlive this object.
     Streams(const Sessions& sessions, runtime::StreamDemand& demand, runtime::Mailbox& mailbox)
         : sessions_{sessions}, demand_{demand}, mailbox_{mailbox} {}
 
     /// Returns the id of the new subscription.
     std::uint32_t subscribe(Session& session, streaming::SnapshotSubscription subscription);
     std::uint32_t subscribe(Session& session, EventSubscription subscription);
-    /// false: the session has no such subscription.
+    /// Ends a subscription. Returns false if the session has no such subscription.
     bool unsubscribe(Session& session, std::uint32_t subscription_id);
-    /// Sends the newest snapshots of a subscription as keyframes. false: the session has no such subscription.
+    /// Sends the newest snapshots of a subscription as keyframes. Returns false if the session has no such
+    /// subscription.
     bool send_keyframes(Session& session, std::uint32_t subscription_id);
-    /// Changes the view of a subscription that has one, for the newest snapshots and those that follow.
+    /// Changes the view of a subscription that has one. The newest snapshots are sent again with the new view.
     void set_view(Session& session, std::uint32_t subscription_id, const v1::View& view);
 
-    /// The session has been removed from the table.
+    /// Must be called after a session was removed from the table.
     void forget(const Session& session);
-    /// The world has been deleted: nothing more of it is sent.
+    /// Must be called when a world was deleted. Its snapshots and events are no longer sent.
     void forget_world(const std::string& world);
 
-    /// Called by the simulation thread with its events: puts them into the outbox if a session is subscribed to events.
+    /// Returns the function to which the simulation thread passes its events. The function puts the events into the
+    /// outbox if any session is subscribed to events.
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
-    /// Keeps the snapshots for send_some(), and counts dropped events.
+    /// Stores the snapshots for send_some(), and counts dropped events.
     void deliver(runtime::Outbox::Taken taken);
-    /// Distributes the next islands of snapshots to the sessions. true: more are left for another call.
+    /// Distributes the next islands of snapshots to the sessions. Returns true if islands remain for another call.
     bool send_some(runtime::Clock::time_point now) { return snapshots_.distribute(now); }
     /// Sends an event to the sessions that are subscribed to it.
     void publish(v1::Event event);
-    /// Sends the event that the server is shutting down to all sessions.
+    /// Sends all sessions the event that the server is shutting down.
     void announce_end();
-    /// Ends all sessions after they have received what is queued.
+    /// Ends all sessions after their queued data was sent.
     void end_sessions();
 
   private:

@@ -1,6 +1,6 @@
-// Token bucket: a rate limit with an average rate and a burst.
+// Token bucket: a rate limit with an average rate and a maximum burst.
 //
-// Owner        a session, for what its client sends.
+// Owner        a session, which limits the rate of its client's frames.
 #pragma once
 
 #include "server/runtime/clock.h"
@@ -18,8 +18,8 @@ class TokenBucket {
     TokenBucket(double per_s, double burst, Clock::time_point now)
         : per_s_{per_s}, burst_{burst}, tokens_{burst}, filled_{now} {}
 
-    /// Takes so many tokens. A request above `burst` takes the whole burst and leaves a debt. false: too few tokens,
-    /// none was taken.
+    /// Takes this number of tokens. A request for more than `burst` tokens takes the whole burst and leaves a debt.
+    /// Returns false if there are too few tokens; none is taken then.
     bool take(double tokens, Clock::time_point now) {
         tokens_ = std::min(burst_, tokens_ + per_s_ * std::chrono::duration<double>{now - filled_}.count());
         filled_ = now;
@@ -29,10 +29,10 @@ class TokenBucket {
         tokens_ -= tokens;
         return true;
     }
-    /// Takes tokens even if there are too few.
+    /// Takes tokens even if there are too few, which leaves a debt.
     void charge(double tokens) { tokens_ -= tokens; }
 
-    /// The time until so many tokens are available. A waiting session should wait for several tokens at once.
+    /// The time until this number of tokens is available. A waiting session should wait for several tokens at once.
     Clock::duration time_for(double tokens) const {
         return std::chrono::ceil<Clock::duration>(std::chrono::duration<double>{tokens / per_s_});
     }

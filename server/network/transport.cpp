@@ -18,7 +18,7 @@
 namespace evod::network {
 namespace {
 
-constexpr unsigned char tls_handshake = 22; // the type of TLS's first record, RFC 8446 §5.1
+constexpr unsigned char tls_handshake = 22; // the type of the first record of TLS, RFC 8446 section 5.1
 
 } // namespace
 
@@ -99,7 +99,7 @@ Transport::Progress Transport::progress() {
 }
 
 asio::awaitable<void> Transport::finish() {
-    if (tls_) { // close_notify, RFC 8446 §6.1: marks the complete end of the stream
+    if (tls_) { // sends close_notify, which marks the complete end of the stream (RFC 8446 section 6.1)
         co_await tls_->async_shutdown(no_throw);
     }
     boost::system::error_code ignored; // the peer may have closed the connection
@@ -107,7 +107,7 @@ asio::awaitable<void> Transport::finish() {
 }
 
 void Transport::abort() {
-    boost::system::error_code ignored; // without the option, close() sends the remaining bytes first
+    boost::system::error_code ignored; // if the option cannot be set, close() sends the remaining bytes first
     socket_.set_option(asio::socket_base::linger{true, 0}, ignored);
     close();
 }

@@ -1,4 +1,4 @@
-// Transport: the bytes of one connection, plain or through TLS.
+// Transport: sends and receives the bytes of one connection, either plain or through TLS.
 //
 // Owner        a session, on the network thread. At most one read and one write are in progress.
 #pragma once
@@ -25,38 +25,38 @@ class Transport {
   public:
     using Transferred = std::tuple<boost::system::error_code, std::size_t>;
 
-    /// tls  outlives the transport; nullptr: without TLS.
+    /// tls  must outlive the transport; nullptr: no TLS.
     Transport(tcp::socket socket, asio::ssl::context* tls);
 
-    /// Call first: performs the TLS handshake. Returns not_tls() for a client that sends plain bytes to a TLS server.
-    /// The connection then continues without TLS, so that the server can send its refusal.
+    /// Must be called first. Performs the TLS handshake. Returns not_tls() if a client sends plain bytes to a TLS
+    /// server; the connection then continues without TLS, so that the server can send its refusal.
     asio::awaitable<boost::system::error_code> begin();
     static boost::system::error_code not_tls();
 
     asio::awaitable<Transferred> read_some(asio::mutable_buffer buffer);
-    /// Writes as much as the system accepts without waiting, which may be nothing. Accepts at most buffers_at_once
+    /// Writes the bytes that the system accepts without waiting, which may be none. Accepts at most buffers_at_once
     /// buffers. With TLS it writes nothing.
     Transferred write_now(std::span<const asio::const_buffer> buffers);
     static constexpr std::size_t buffers_at_once = 16;
     /// Writes all buffers.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 
-    /// Changes whenever the peer has received something.
+    /// Differs from an earlier value if the peer has received data in between.
     struct Progress {
-        std::uint64_t given = 0;     // bytes handed to the system
-        std::uint64_t not_taken = 0; // bytes of these that the peer's system has not acknowledged
+        std::uint64_t given = 0;     // number of bytes passed to the system
+        std::uint64_t not_taken = 0; // number of these bytes that the peer's system has not acknowledged
         bool operator==(const Progress&) const = default;
     };
     Progress progress();
 
     tcp::socket& socket() { return socket_; }
-    /// The peer's address; unspecified if it has disconnected.
+    /// The peer's address; the unspecified address if the peer has disconnected.
     tcp::endpoint peer() const;
-    /// Ends the writing side. With TLS it waits for the peer's close_notify, which a concurrent read_some() must
-    /// receive.
+    /// Closes the sending side. With TLS it waits for the peer's close_notify, so a concurrent read_some() must be in
+    /// progress to receive it.
     asio::awaitable<void> finish();
     void close();
-    /// Closes the connection and discards what the peer has not received.
+    /// Closes the connection at once and discards all data that the peer has not received.
     void abort();
 
   private:
@@ -68,7 +68,7 @@ class Transport {
 /// "127.0.0.1:51234"
 std::string to_text(const tcp::endpoint& endpoint);
 
-/// The part of an address that belongs to one user: the IPv4 address, or the IPv6 /64.
+/// The part of an address that identifies one user: the IPv4 address, or the /64 prefix of the IPv6 address.
 std::string address_key(const asio::ip::address& address);
 
 } // namespace evod::network

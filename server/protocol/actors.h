@@ -1,7 +1,7 @@
-// Actors: the cause of a change, as a message.
+// Actors: converts the cause of a change from text to a message.
 //
-// Simulation and run files store it as text: "user: client address", "client address" for a client without a token,
-// "evod" for the server itself.
+// The simulation and run files store the cause as text: "user: client address", "client address" for a client without a
+// token, and "evod" for the server itself.
 #pragma once
 
 #include "evod/v1/world.pb.h"
@@ -12,12 +12,12 @@ namespace evod::protocol {
 
 constexpr std::string_view by_the_server = "evod";
 
-/// by  in the text form above.
+/// by  the cause in the text form above.
 v1::Actor actor_of(std::string_view by);
 v1::Actor actor_of_kind(v1::ActorKind kind);
 
-/// Removes client and address from every Actor in the message, at any depth. Viewers must not see other clients'
-/// programs and addresses.
+/// Removes client and address from every Actor in the message, at any depth. Viewers must not see which programs and
+/// addresses other clients use.
 void keep_users_only(google::protobuf::Message& message);
 
 } // namespace evod::protocol

@@ -22,7 +22,7 @@ v1::Response answer_of(std::uint64_t request_id, const std::string& request_name
         *response.mutable_planned_change() = to_proto(*applied->planned);
     } else if (applied->parameters) {
         *response.mutable_parameters() = to_proto(*applied->parameters);
-    } else if (const auto entry = laboratory.find(applied->world)) { // a deleted world is gone
+    } else if (const auto entry = laboratory.find(applied->world)) { // a deleted world is not found
         *response.mutable_world() = to_proto(**entry);
     }
     return response;

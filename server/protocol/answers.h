@@ -1,6 +1,6 @@
-// Answers to commands, and responses as frames.
+// Answers: builds the answers to commands and encodes responses as frames.
 //
-// Threads      any; no state. answer_of() reads the laboratory, so only the simulation thread calls it.
+// Threads      any; no state. answer_of() reads the laboratory, so only the simulation thread may call it.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -12,14 +12,14 @@
 
 namespace evod::protocol {
 
-/// The answer to a command that was applied or refused.
+/// Builds the answer to a command that was applied or refused.
 ///
-/// request_name  the field of the request: "set_parameters".
-/// laboratory    in the state from which the command holds.
+/// request_name  name of the field in the request: "set_parameters".
+/// laboratory    its state right after the command.
 v1::Response answer_of(std::uint64_t request_id, const std::string& request_name,
                        const simulation::Laboratory& laboratory, const base::Result<simulation::Applied>& applied);
 
-/// The response as a control frame: what the server sends, and what the journal stores.
+/// Encodes the response as a control frame. The server sends this frame, and the journal stores it.
 std::string frame_of(v1::Response response);
 
 } // namespace evod::protocol

@@ -1,4 +1,4 @@
-// Breeding records as messages.
+// Converts records of a breeding into messages.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -7,12 +7,12 @@
 
 namespace evod::protocol {
 
-/// Rows per list of a Breeding.
+/// Maximum number of rows in each list of a Breeding.
 constexpr std::uint32_t breeding_rows_max = 1000;
 
 evolution::WantedRows wanted_rows(const v1::GetBreeding& request);
 
-/// parameters  as they were when the generation bred.
+/// parameters  the parameters that were active when the generation bred.
 v1::Breeding to_proto(const evolution::BreedingRecord& record, const parameters::Parameters& parameters);
 
 } // namespace evod::protocol

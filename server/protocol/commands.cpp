@@ -24,8 +24,8 @@ using RequestCase = v1::Request::KindCase;
 
 constexpr const char* least_1 = "at least 1";
 
-/// More assignments than parameters must repeat a name, which is invalid anyway. This bound keeps the longest request
-/// from blocking the simulation.
+/// Whether a request contains more assignments than there are parameters. It must then repeat a name, which is invalid
+/// anyway. Without this check, a very long request could block the simulation.
 bool too_many(int assignments, std::string field, Violations& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
@@ -64,7 +64,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
     return command;
 }
 
-/// A destructive command must name its world: the client may have forgotten the field.
+/// Requires that a destructive command names its world, because a client may have forgotten the field.
 void need_world(const std::string& world, const char* field, Violations& violations) {
     if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});
@@ -117,7 +117,7 @@ simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violat
     switch (request.speed().kind_case()) {
     case v1::Speed::kRealTimeFactor: {
         const double factor = request.speed().real_time_factor();
-        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) { // false for NaN
+        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) { // also true if the factor is NaN
             violations.push_back({"set_speed.speed.real_time_factor",
                                   number_text(simulation::speed_min) + " to " + number_text(simulation::speed_max),
                                   number_text(factor)});
@@ -180,7 +180,7 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
 }
 
 void add_faults(const v1::View& view, const std::string& path, Violations& violations) {
-    const v1::Region& region = view.region(); // all fields 0 if absent
+    const v1::Region& region = view.region(); // if it is absent, all its fields are 0
     const auto finite = [&](const char* field, double value) {
         if (!std::isfinite(value)) {
             violations.push_back({path + ".region." + field, "a finite number", number_text(value)});

@@ -14,7 +14,7 @@ using base::Overloaded;
 
 namespace {
 
-/// planned  PlannedChange::id; 0: a change of the schedule.
+/// planned  PlannedChange::id; 0: the change is part of the schedule.
 v1::Actor planner(std::uint64_t planned, const std::string& by) {
     return planned == 0 ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(by);
 }

@@ -1,4 +1,4 @@
-// Events as messages: events of the laboratory, of commands, and of the disk.
+// Events: converts events of the laboratory, of commands, and of the disk into messages.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -10,16 +10,16 @@
 
 namespace evod::protocol {
 
-/// laboratory  in the state right after the event.
+/// laboratory  its state right after the event.
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory);
 
-/// The event for subscribers after a command was applied; nullopt for a dry run.
+/// Returns the event that reports an applied command to subscribers; nullopt for a dry run.
 ///
-/// by  the sender, as actor_of() takes it.
+/// by  the sender, in the text format that actor_of() parses.
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory);
 
-/// The event for a new state of the disk.
+/// Returns the event that reports a new state of the disk.
 v1::Event event_of(const simulation::Storage& storage);
 
 } // namespace evod::protocol

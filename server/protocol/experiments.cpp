@@ -19,7 +19,7 @@ void append(Violations& violations, const base::Refusal& refused, const std::str
     }
 }
 
-/// The experiment of the file; a default, with violations, if it is invalid.
+/// Reads the experiment in the file's text. If it is invalid, adds violations and returns the default experiment.
 parameters::Experiment experiment_of_file(const v1::CreateWorld& request, Violations& violations) {
     const std::string field = prefix + "experiment_json";
     if (request.schedule_size() > 0) {

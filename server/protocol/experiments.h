@@ -1,5 +1,5 @@
-// Experiments in requests: the parameters and the schedule of a new world, from the fields of CreateWorld or from the
-// text of an experiment file.
+// Experiments in requests: reads the parameters and the schedule of a new world, either from the fields of CreateWorld
+// or from the text of an experiment file.
 //
 // Threads  none.
 #pragma once
@@ -11,9 +11,10 @@
 
 namespace evod::protocol {
 
-/// What a request gives a new world. Adds violations, named as the sender spells the fields, and then returns a default.
+/// Reads the experiment in a request. For each invalid field it adds a violation, which names the field as the sender
+/// spells it. If there is a violation, it returns the default experiment.
 ///
-/// With experiment_json, `parameters` are changes to the experiment for all generations, and `schedule` must be empty.
+/// With experiment_json, `parameters` change the experiment for all generations, and `schedule` must be empty.
 parameters::Experiment experiment_of(const v1::CreateWorld& request, std::vector<base::Violation>& violations);
 
 } // namespace evod::protocol

@@ -1,4 +1,4 @@
-// The checks of a Hello that depend on nothing else.
+// Hello: checks the fields of a Hello that can be checked without other data.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -9,10 +9,11 @@
 
 namespace evod::protocol {
 
-/// Why the server cannot serve this client: invalid fields, or no common protocol version; nullopt: it can.
+/// Why the server cannot serve this client: invalid fields, or no common protocol version. nullopt: the Hello is valid.
 std::optional<base::Refusal> refusal_of(const v1::Hello& hello);
 
-/// The client's name for logs and actors, never empty. It contains no ": ", which ends the user's name in an actor.
+/// The client's name for logs and actors. It is never empty. It does not contain ": ", because these characters
+/// separate the user from the client in an actor's text.
 std::string client_name_of(const v1::Hello& hello);
 
 } // namespace evod::protocol

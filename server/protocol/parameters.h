@@ -18,22 +18,22 @@ v1::ParameterValue to_proto(const parameters::ParameterValue& value);
 v1::ParameterDescription to_proto(const parameters::ParameterDescription& description);
 v1::ParameterSet to_proto(const parameters::ParameterSet& set);
 
-/// The scheduled values of later generations.
+/// Returns the scheduled values of future generations.
 google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters::Schedule& schedule,
                                                                 std::uint64_t after_generation);
 
 v1::PlannedChange to_proto(const parameters::PlannedChange& change);
 
-/// The current and the pending value of one parameter.
+/// Returns the current and the pending value of one parameter.
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);
 
-/// The assignments that have a value. Those without a value are added to `violations`; then all other assignments are
-/// checked on their own, too. parameters::assign checks what depends on the world.
+/// Returns the assignments that have a value. The assignments without a value are added to `violations`. If there are
+/// any, the other assignments are checked here, too. Otherwise parameters::assign checks them together with the world.
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations);
 
-/// The schedule of a world that begins with these valid parameters. Invalid values are added to `violations`.
+/// Returns the schedule of a world that begins with these valid parameters. Adds invalid values to `violations`.
 parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,
                                  const parameters::Parameters& parameters, std::string_view field_prefix,
                                  std::vector<base::Violation>& violations);

@@ -1,4 +1,4 @@
-// Converts first populations to messages and back.
+// Converts the population of a first generation to a message and back.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -8,8 +8,8 @@
 
 namespace evod::protocol {
 
-/// nullptr if the request has none, or if the numbers of an island are not a whole number of chromosomes; the latter is
-/// added to `violations`.
+/// Returns nullptr if the request has no population. Also returns nullptr, and adds a violation, if the genes of an
+/// island are not a whole number of chromosomes.
 simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
                                                 std::vector<base::Violation>& violations);
 

@@ -25,7 +25,7 @@ base::Refusal no_such(const char* what, std::string field, std::uint64_t count, 
             .reason = reason};
 }
 
-/// Finds world and island of a query.
+/// The world and the island of a query.
 struct Found {
     const simulation::World& world;
     const simulation::Island& island;
@@ -43,7 +43,7 @@ base::Result<Found> find_island(const simulation::Laboratory& laboratory, const 
     return Found{(*entry)->world, islands[island]};
 }
 
-/// Appends one little-endian 4-byte number per row.
+/// Appends one little-endian number of 4 bytes for each row.
 template <class Rows, class Of>
 void append_column(std::string& bytes, const Rows& rows, Of&& of) {
     std::size_t at = bytes.size();
@@ -63,7 +63,7 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
             *list.add_worlds() = to_proto(*entry);
         }
     }
-    // The order of creation is not known after a restart.
+    // Sorted by name, because the order of creation is not known after a restart.
     std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
               [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
     return list;

@@ -1,4 +1,4 @@
-// Answers to queries, read from the laboratory between two ticks.
+// Answers to queries. They read the laboratory between two ticks.
 //
 // Threads      get_…() and find_…() run on the simulation thread, to_proto() on the network thread.
 #pragma once
@@ -14,10 +14,10 @@
 
 namespace evod::protocol {
 
-/// The most GenerationStatistics in an answer, but at least one whole generation.
+/// Maximum number of GenerationStatistics in an answer. One whole generation is always allowed.
 constexpr std::size_t history_statistics_max = 1000;
 
-/// The most organisms in an answer.
+/// Maximum number of organisms in an answer.
 constexpr std::size_t population_rows_max = 10'000;
 
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory);
@@ -25,23 +25,24 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query);
 base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query);
 
-/// A part of a world's history that shares its memory, so that the simulation does not wait for the conversion.
+/// A part of a world's history. It shares the memory of the history, so the simulation does not wait for the
+/// conversion.
 struct HistoryPart {
     std::vector<simulation::GenerationRows> generations;
-    std::optional<std::uint32_t> island; // nullopt: all
+    std::optional<std::uint32_t> island; // nullopt: all islands
     std::optional<std::uint64_t> next_generation;
-    bool begins_late = false; // some requested generations are no longer kept
+    bool begins_late = false; // some of the requested generations are no longer stored
 };
 base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
 v1::History to_proto(const HistoryPart& part);
 
-/// Copied columns of an island's organisms, so that the simulation does not wait for the conversion.
+/// A copy of the columns of an island's organisms, so the simulation does not wait for the conversion.
 struct PopulationRows {
     std::uint64_t generation, generation_tick;
     std::uint32_t organism_count, first;
     std::vector<evolution::Chromosome> genes;
     std::vector<evolution::Parents> parents; // empty in the first generation
-    std::vector<std::uint32_t> founders;     // empty if the world does not know them
+    std::vector<std::uint32_t> founders;     // empty if the founders are unknown
     std::vector<simulation::Intention> intentions;
 };
 constexpr std::size_t population_row_bytes =
@@ -51,20 +52,20 @@ v1::Population to_proto(const PopulationRows& rows);
 
 base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query);
 
-/// The copied rows of an answer that is converted later; monostate: the answer is complete.
+/// The copied rows of an answer that will be converted later; monostate: the answer is already complete.
 using QueryRows = std::variant<std::monostate, HistoryPart, PopulationRows>;
 
-/// Answers a query that reads the laboratory. A refusal goes into the response.
+/// Answers a query that reads the laboratory. If the query is refused, the response contains the refusal.
 ///
-/// users_only  the client may not see other clients' programs and addresses.
+/// users_only  true: the client may not see the programs and addresses of other clients.
 QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
                        v1::Response& response);
 /// Converts the rows and adds them to the response.
 void put_rows(const QueryRows& rows, v1::Response& response);
-/// The most bytes of the rows that answer_query() copies.
+/// Maximum size in bytes of the rows that answer_query() copies for this request.
 std::size_t row_bytes_max(const v1::Request& request);
 
-/// The world of a subscription, found by name.
+/// The world that a subscription names.
 struct Watched {
     std::string world;
     std::uint32_t island_count;

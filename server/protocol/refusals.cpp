@@ -5,10 +5,10 @@
 namespace evod::protocol {
 namespace {
 
-// Enough to correct a request; a hostile request must not get megabytes in return.
+// Enough violations to correct a request. A hostile request must not cause an answer of megabytes.
 constexpr std::size_t violations_listed_max = 200;
 
-/// The default reason of a code, for refusals without a reason.
+/// Returns the reason of a refusal, or the default reason of its code.
 base::Reason reason_of(const base::Refusal& refusal) {
     if (refusal.reason != base::Reason::Unspecified) {
         return refusal.reason;
@@ -58,8 +58,8 @@ v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal) {
 
 namespace {
 
-/// The bytes of the first character of `text` if it controls a terminal, ends a line or changes the text direction;
-/// else 0.
+/// If the first character of `text` controls a terminal, ends a line or changes the direction of text, returns its
+/// length in bytes; otherwise 0.
 std::size_t steering_bytes(std::string_view text) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
     const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
@@ -84,7 +84,7 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
     if (cut) {
         std::size_t end = bytes_max;
         while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
-            --end; // not within a character
+            --end; // do not cut within a character
         }
         text = text.substr(0, end);
     }

@@ -82,7 +82,7 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     to.set_state_hash(to_text(world.hash()));
     to.set_parameter_revision(world.parameters().revision);
     if (const auto ended = entry.control.until_generation) {
-        // the goal is the start of the next generation
+        // The goal is the start of the next generation.
         to.set_run_until_generation(*ended + (*ended < ~std::uint64_t{0} ? 1 : 0));
     }
     to.set_leased(entry.control.leased);

@@ -1,4 +1,4 @@
-// Worlds, statistics and organisms as messages.
+// Converts worlds, statistics and organisms into messages.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -15,7 +15,7 @@ v1::WorldInfo to_proto(const simulation::Entry& entry);
 v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics);
 v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::uint32_t island);
 
-/// id  below the number of organisms born on the island.
+/// id  must be below the number of organisms born on the island.
 v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id);
 
 } // namespace evod::protocol

@@ -1,4 +1,4 @@
-// Clock: the time source of everything outside the core; tests set it. The core reads no clock.
+// Clock: the source of time for all code outside the core. Tests set the time. The core reads no clock.
 #pragma once
 
 #include <chrono>

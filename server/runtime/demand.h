@@ -1,8 +1,8 @@
-// Stream demand: the worlds and islands that sessions are subscribed to, and how often. A world without subscriptions costs
-// nothing.
+// Stream demand: the worlds and islands to which sessions are subscribed, and their snapshot rates. A world without
+// subscriptions causes no work.
 //
 // Owner        the server.
-// Threads      set by the network thread; read by the simulation thread when it has changed.
+// Threads      the network thread sets it. The simulation thread reads it after a change.
 #pragma once
 
 #include <atomic>
@@ -14,15 +14,15 @@
 
 namespace evod::runtime {
 
-/// What all subscriptions to one world need together.
+/// The combined demand of all subscriptions to one world.
 struct WorldDemand {
-    double rate_hz = 0; // the highest of their rates, > 0
+    double rate_hz = 0; // the highest rate of these subscriptions, > 0
     bool all_islands = false;
-    std::vector<std::uint32_t> islands; // rising; meaningless with all_islands
-    std::uint64_t newcomers = 0;        // rises when a subscription needs a snapshot at once
+    std::vector<std::uint32_t> islands; // indices in rising order; ignored if all_islands is set
+    std::uint64_t newcomers = 0;        // incremented when a subscription needs a snapshot immediately
 };
 
-using WorldDemands = std::map<std::string, WorldDemand, std::less<>>; // by world
+using WorldDemands = std::map<std::string, WorldDemand, std::less<>>; // key: name of the world
 
 class StreamDemand {
   public:
@@ -37,7 +37,7 @@ class StreamDemand {
 
   private:
     std::atomic<bool> changed_ = false, events_wanted_ = false;
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the members below
     WorldDemands worlds_;
 };
 

@@ -25,7 +25,7 @@ Refusal over() {
 
 } // namespace
 
-/// Cuts what is written into parts; a stream on it fails when no more parts are requested.
+/// Divides the written text into parts. Writing fails when the client requests no more parts.
 class ExportJob::PartBuffer : public std::streambuf {
   public:
     PartBuffer(ExportJob& parts, const std::stop_token& stop) : parts_{parts}, stop_{stop} {}
@@ -82,7 +82,7 @@ bool ExportJob::give(Part part, const std::stop_token& stop) {
     Reply reply;
     {
         std::unique_lock lock{mutex_};
-        // A part that was not requested in time is lost, so no later one is given either.
+        // A part that was not requested in time is lost. Later parts would leave a gap, so none is returned.
         over_ = over_ || !changed_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
         if (over_) {
             return false;
@@ -130,7 +130,8 @@ void ExportJob::work(const std::stop_token& stop) {
     }
     const std::lock_guard lock{mutex_};
     finished_ = true;
-    changed_.notify_all(); // under the lock: the destructor may follow at once
+    // Notify while the lock is held, because the object may be destroyed as soon as it is released.
+    changed_.notify_all();
 }
 
 } // namespace evod::runtime

@@ -1,9 +1,9 @@
-// Export job: writes a table of a run, in parts that the client requests one by one.
+// Export job: writes a table of a run as text, in parts that the client requests one by one.
 //
-// Threads   a job queue runs it. It reads the run's file while a server writes to it, and simulates alone what the file
-//           does not retain; no world waits for it.
-// Full      it waits with a part that has not been requested. Meanwhile it keeps a snapshot of the file, so it ends after
-//           `patience`.
+// Threads   a job queue runs it. It reads the run file while the server may write to it. Generations that the file does
+//           not retain are simulated on the thread of the job, so no world waits for the export.
+// Full      the job waits until a finished part is requested. It holds a database snapshot of the run file meanwhile,
+//           so it ends after waiting for `patience`.
 #pragma once
 
 #include "server/jobs/job_queue.h"
@@ -21,24 +21,26 @@ namespace evod::runtime {
 
 class ExportJob {
   public:
-    static constexpr std::size_t part_bytes = 256 << 10; // at least, of all parts but the last
+    static constexpr std::size_t part_bytes = 256 << 10; // minimum size of each part except the last
     static constexpr std::chrono::milliseconds patience = std::chrono::seconds{30};
 
     struct Part {
         std::string text;
-        bool last = false;                      // of the table
-        std::uint64_t generations_left_out = 0; // replay::generations_out_of_reach(), of organisms or their lineage
+        bool last = false; // this is the last part of the table
+        // Replay::generations_out_of_reach(), for tables of organisms or of their lineage.
+        std::uint64_t generations_left_out = 0;
     };
-    /// Called on the job's thread; must not block.
+    /// Called on the thread of the job. Must not block.
     using Reply = std::function<void(base::Result<Part>)>;
 
-    /// jobs  outlives this and has a free thread; each export waits on one.
+    /// jobs  must outlive the job and have a free thread, because each export occupies a thread while it waits.
     ExportJob(jobs::JobQueue& jobs, replay::StoredRun run, const replay::WantedTable& wanted,
               std::chrono::milliseconds patience_time = patience);
-    /// Cancels the job and waits for its end.
+    /// Cancels the job and waits until it has ended.
     ~ExportJob();
 
-    /// Requests the next part, after the reply to the request before. After the last part and after a refusal: refused.
+    /// Requests the next part. The previous request must have been answered. Refused after the last part and after a
+    /// refusal.
     void next(Reply reply);
 
     /// Cancels the job.
@@ -51,21 +53,22 @@ class ExportJob {
 
     void work(const std::stop_token& stop);
     base::Result<void> write(const std::stop_token& stop);
-    /// Replies with a part, once it is requested; false if it is not within the patience.
+    /// Waits until a part is requested and returns it to the client. Returns false if no request arrives within
+    /// `patience`.
     bool give(Part part, const std::stop_token& stop);
 
     const replay::StoredRun run_;
     const replay::WantedTable wanted_;
     const std::chrono::milliseconds patience_;
     std::uint64_t generations_left_out_ = 0;
-    std::string text_; // of the next part
+    std::string text_; // text of the next part
 
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the members below
     std::condition_variable_any changed_;
-    Reply reply_;       // to the request under way
-    bool over_ = false; // there are no more parts
+    Reply reply_;       // receives the requested part
+    bool over_ = false; // no more parts will be returned
     bool finished_ = false;
-    std::stop_source stop_; // last: the job begins with it, and uses the rest
+    std::stop_source stop_; // last member, because initialising it starts the job, which uses the other members
 };
 
 } // namespace evod::runtime

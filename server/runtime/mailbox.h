@@ -1,7 +1,8 @@
-// Mailbox: commands and queries on their way to the simulation thread, in order of arrival.
+// Mailbox: a queue of commands and queries for the simulation thread, in order of arrival.
 //
-// Threads      any thread pushes; the simulation thread drains it between two ticks.
-// Full         at `mailbox_commands_max` entries try_push() fails and the sender gets REASON_SERVER_BUSY.
+// Threads      any thread adds mail. The simulation thread removes it between two ticks.
+// Full         when it contains `mailbox_commands_max` entries, try_push() fails and the sender receives
+//              REASON_SERVER_BUSY.
 #pragma once
 
 #include "server/base/result.h"
@@ -22,29 +23,29 @@ namespace evod::runtime {
 
 constexpr std::size_t mailbox_commands_max = 1024;
 
-/// A query. The simulation thread calls it between two ticks, when the query budget allows. Commands do not wait for
-/// queries, so a session sends nothing more until its query is answered.
+/// A query. The simulation thread calls it between two ticks, when the query budget allows it. Commands do not wait for
+/// queries, so a session passes on no further requests until its query is answered.
 struct QueryMail {
     std::function<void(const simulation::Laboratory&)> ask;
 };
-/// A short call of another part of the server on the simulation thread.
+/// A short function that another part of the server runs on the simulation thread.
 struct CallMail {
     std::function<void()> call;
 };
 
-// Replays (replays.h).
+// Requests for replays (replays.h).
 
-/// Opens a replay of the run of `world`.
+/// Opens a replay of the run of the world `world`.
 struct OpenReplay {
     std::string world;
-    replay::WantedMoment at; // without fields: the first moment of the run
-    std::uint64_t owner = 0; // the session, >= 1
+    replay::WantedMoment at; // the first moment to show; without fields: the first moment of the run
+    std::uint64_t owner = 0; // number of the session, >= 1
 };
 /// Moves a replay to another moment.
 struct Seek {
     std::string world;
     replay::WantedMoment to;
-    std::uint64_t owner = 0; // the session, >= 1
+    std::uint64_t owner = 0; // number of the session, >= 1
 };
 struct CloseReplay {
     std::string world;
@@ -53,18 +54,19 @@ struct CloseReplay {
 struct OwnerGone {
     std::uint64_t owner = 0;
 };
-/// Called on the simulation thread with the name of the replay, once it shows the moment.
+/// Called on the simulation thread with the name of the replay, once the replay shows the requested moment.
 using ReplayReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
 struct ReplayMail {
     std::variant<OpenReplay, Seek, CloseReplay, OwnerGone> request;
-    ReplayReply reply; // none for OwnerGone
+    ReplayReply reply; // not set for OwnerGone
 };
 
 struct FoundRun {
     replay::StoredRun run;
-    std::uint64_t generation = 0; // of the world at the time of the request
+    std::uint64_t generation = 0; // generation of the world when the request was handled
 };
-/// Finds the stored run of a world, after everything recorded so far is on the disk or cannot be written.
+/// Finds the stored run of a world. The reply waits until everything recorded so far is on the disk, or until writing
+/// fails.
 struct FindRun {
     std::string world;
     std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread
@@ -76,18 +78,18 @@ class Mailbox {
   public:
     explicit Mailbox(std::size_t capacity = mailbox_commands_max) : capacity_{capacity} {}
 
-    /// false: full; `mail` is unchanged.
+    /// Adds mail. Returns false if the mailbox is full; `mail` is then unchanged.
     bool try_push(Mail&& mail);
-    /// Ignores the capacity, for entries that are bounded elsewhere and must not be lost.
+    /// Adds mail regardless of the capacity. For entries whose number is bounded elsewhere and that must not be lost.
     void push(Mail&& mail);
 
-    /// Makes wait() return without mail.
+    /// Makes wait() return even if there is no mail.
     void wake();
 
-    /// Whether there is mail or a wake() that drain() has not seen; cheap enough for every tick.
+    /// Whether mail or a wake() has arrived since the last drain(). It is cheap enough to be called in every tick.
     bool pending() const { return pending_.load(std::memory_order_acquire); }
 
-    /// Everything that waits, oldest first. The result reuses the memory of `emptied`.
+    /// Removes and returns all entries, oldest first. The result reuses the memory of `emptied`.
     std::vector<Mail> drain(std::vector<Mail> emptied = {});
 
     struct Fill {
@@ -95,7 +97,7 @@ class Mailbox {
     };
     Fill fill() const;
 
-    /// Returns when there is mail, after a wake(), or at `until`; nullopt: no time limit.
+    /// Waits until there is mail, wake() is called, or the time `until` is reached; nullopt: no time limit.
     void wait(std::optional<Clock::time_point> until);
 
   private:

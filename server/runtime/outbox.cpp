@@ -36,7 +36,7 @@ void Outbox::snapshot(SnapshotPtr snapshot) {
     const auto same_world =
         std::find_if(waiting_.snapshots.begin(), waiting_.snapshots.end(),
                      [&](const NewestSnapshot& other) { return other.snapshot->world == snapshot->world; });
-    SnapshotPtr replaced; // released after the lock, because releasing may free memory
+    SnapshotPtr replaced; // freed after the lock is released, because freeing a snapshot may take a while
     if (same_world == waiting_.snapshots.end()) {
         waiting_.snapshots.push_back({std::move(snapshot), 0, after_change});
     } else {

@@ -1,10 +1,10 @@
-// Outbox: what the simulation thread hands to the network thread: answers and events in order, and the newest
+// Outbox: passes data from the simulation thread to the network thread: answers and events in order, and the newest
 // snapshots.
 //
-// Threads      the simulation thread fills it, and the storage thread adds answers to journaled commands. The network
-//              thread takes everything after `wake`.
-// Full         the mailbox and the sessions bound the answers. Of events, `events_max` wait; further ones are dropped
-//              and counted. Of each world only the newest snapshot waits; replaced ones are counted.
+// Threads      the simulation thread adds data. The storage thread adds the answers to journaled commands. `wake`
+//              notifies the network thread, which then takes all data.
+// Full         the mailbox and the sessions bound the number of answers. At most `events_max` events wait; further ones
+//              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted.
 #pragma once
 
 #include "server/runtime/commands.h"
@@ -20,13 +20,13 @@ namespace evod::runtime {
 
 constexpr std::size_t outbox_events_max = 4096;
 
-/// An answer to a query, or an event: called on the network thread.
+/// An answer to a query, or an event. The network thread calls it.
 using Call = std::function<void()>;
 using Delivery = std::variant<Call, CommandDone>;
 
 class Outbox {
   public:
-    /// wake  called on the filling thread when the outbox is no longer empty; must not block.
+    /// wake  called when the first entry is added to an empty outbox, on the thread that adds it. Must not block.
     explicit Outbox(std::function<void()> wake, std::size_t events_max = outbox_events_max)
         : wake_{std::move(wake)}, events_max_{events_max} {}
 
@@ -37,18 +37,19 @@ class Outbox {
 
     struct NewestSnapshot {
         SnapshotPtr snapshot;
-        std::uint64_t replaced_count = 0; // snapshots of the world that this one replaced here
-        bool after_change = false;        // this snapshot or a replaced one shows the effect of a command or goal
+        std::uint64_t replaced_count = 0; // number of snapshots of the world that this one replaced in the outbox
+        // This snapshot, or one that it replaced, shows the effect of a command or of a reached goal.
+        bool after_change = false;
     };
     struct Taken {
         std::vector<Delivery> deliveries;
-        std::uint64_t dropped_events = 0;      // since the last take()
-        std::vector<NewestSnapshot> snapshots; // at most one per world
+        std::uint64_t dropped_events = 0;      // number of events dropped since the last take()
+        std::vector<NewestSnapshot> snapshots; // at most one of each world
     };
     Taken take();
 
     struct Fill {
-        std::size_t deliveries = 0, events = 0, events_max = 0; // deliveries include the events
+        std::size_t deliveries = 0, events = 0, events_max = 0; // `deliveries` includes the events
     };
     Fill fill() const;
 

@@ -1,11 +1,11 @@
-// Query budget: bounds the time that the simulation thread spends on queries while worlds run.
+// Query budget: limits the time that the simulation thread spends on queries while worlds run.
 //
 // The budget grows by a fixed share of the elapsed time, up to a small maximum for bursts. A query that takes longer
-// than the budget leaves a debt, and the next one waits until it is paid. So even clients that query without pause slow
-// a world by at most that share.
+// than the budget leaves a debt. The next query waits until the debt is paid. So queries slow a world by at most that
+// share, even if clients send them without pause.
 //
 // Owner        the simulation loop, on its thread.
-// Determinism  decides when a query is answered, never what a world does.
+// Determinism  the budget decides when a query is answered. It does not influence what a world does.
 #pragma once
 
 #include "server/runtime/clock.h"
@@ -16,17 +16,17 @@ namespace evod::runtime {
 
 class QueryBudget {
   public:
-    static constexpr int share = 10; // one part in `share` of the elapsed time
+    static constexpr int share = 10; // queries get 1 / share of the elapsed time
     static constexpr std::chrono::milliseconds saved_max{5};
 
-    /// Whether a query may start at `now`. Times must not decrease.
+    /// Whether a query may start at the time `now`. Times must not decrease between calls.
     bool allows(Clock::time_point now) {
         earn(now);
         return saved_ > Clock::duration::zero();
     }
     void spend(Clock::duration time) { saved_ -= time; }
 
-    /// When the next query may start if no more time is spent. Call allows() first.
+    /// The earliest time at which the next query may start. allows() must be called first.
     Clock::time_point next_at() const {
         return earned_until_ + std::max(Clock::duration{1} - saved_, Clock::duration::zero()) * share;
     }
@@ -37,8 +37,8 @@ class QueryBudget {
         earned_until_ = now;
     }
 
-    Clock::time_point earned_until_; // starts at the clock's epoch, so the budget is full at first
-    Clock::duration saved_{0};       // negative: debt
+    Clock::time_point earned_until_; // initially the clock's epoch, so that the budget starts full
+    Clock::duration saved_{0};       // negative: a debt
 };
 
 } // namespace evod::runtime

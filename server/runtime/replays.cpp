@@ -15,7 +15,7 @@ using base::Result;
 
 namespace {
 
-/// Clients know a field of a RunMoment by its path.
+/// Adds the path of the RunMoment to the field names in a refusal, because clients know these fields by their path.
 Refusal within(Refusal refused, const std::string& field) {
     for (base::Violation& violation : refused.violations) {
         violation.field = field + "." + violation.field;
@@ -79,7 +79,7 @@ void Replays::show(const std::string& name, replay::StoredRun run, std::uint64_t
     replays_.emplace(name, Shown{run, changes, changes.last_entry(), owner, {}, false, 0});
     laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
         name, run.run_id(), control, std::move(result.rerun).take(), 0, false, std::move(result.there)}));
-    (void)entry_of(name)->world.take_events(); // of the seek
+    (void)entry_of(name)->world.take_events(); // discard the events that the seek caused
 }
 
 simulation::Entry* Replays::entry_of(const std::string& world) {
@@ -132,7 +132,7 @@ Result<replay::StoredRun> Replays::replay_of(const std::string& world) const {
 void Replays::once_written(const std::string& world, std::function<void(bool)> then) {
     recording::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
     if (!recorder || recorder_->refusal()) {
-        return then(false); // the file has what it has now
+        return then(false); // nothing more will be written, so the caller reads the file in its present state
     }
     const std::uint64_t number = ++last_waiting_;
     waiting_.emplace(number, std::move(then));
@@ -178,7 +178,7 @@ void Replays::read_and_seek(const replay::StoredRun& run, const std::optional<re
 
 void Replays::begin(std::uint64_t number, Result<replay::SeekStart> start) {
     const auto found = pending_.extract(number);
-    if (!found) { // its owner is gone
+    if (!found) { // the session that requested the seek has ended
         return;
     }
     PendingSeek pending = std::move(found.mapped());
@@ -235,7 +235,7 @@ bool Replays::advance(RunningSeek& running, base::Executor& executor) {
     } else if (world.outcome() == evolution::Outcome::Running) {
         running.rerun.advance_tick(executor);
     } else {
-        return true; // the run ends before the target; advance_seeks() reports that
+        return true; // the run ends before the target; advance_seeks() reports it
     }
     return is_over(running);
 }
@@ -264,7 +264,7 @@ void Replays::move_to(simulation::Entry& entry, Shown& shown, SeekResult result)
     shown.refreshed = {};
     entry.world = std::move(result.rerun).take();
     entry.replay = std::move(result.there);
-    (void)entry.world.take_events(); // of the seek
+    (void)entry.world.take_events(); // discard the events that the seek caused
     moved_.push_back(entry.name);
 }
 
@@ -360,7 +360,7 @@ void Replays::seek(const Seek& request, const ReplayReply& reply) {
             return sought(owner_gone());
         }
         const replay::StoredRun& run = shown->second.run;
-        // The world may have begun another run; the replay still shows the run with which it was opened.
+        // The world may have begun a new run in the meantime. The replay still shows the run for which it was opened.
         const simulation::Replay& seen = *entry_of(name)->replay;
         replay::RecordedUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
         if (all_is_written) {
@@ -479,7 +479,8 @@ void Replays::read_file(std::function<std::function<void()>()> read) {
 }
 
 void Replays::extend(simulation::Entry& entry, Shown& shown, const replay::NewRecords& records) {
-    // If a seek has moved the replay since the records were requested, they may begin after what is known there.
+    // If a seek has moved the replay since the records were requested, they may start after the end of its known
+    // records.
     if (records.there.last_tick <= entry.replay->last_tick || records.after_entry > shown.entries_read) {
         return;
     }

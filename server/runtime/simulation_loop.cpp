@@ -20,21 +20,23 @@ Clock::duration seconds(double s) {
 
 constexpr std::chrono::milliseconds measuring_time{1000};
 
-/// How many ticks to take between two readings of the clock, for a given length of a tick.
+/// Returns how many ticks to simulate between two readings of the clock.
+///
+/// tick  the duration of one tick.
 std::uint32_t ticks_a_look(Clock::duration tick) {
     constexpr std::int64_t most = 100;
     return static_cast<std::uint32_t>(
         tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_looks / tick, 1, most) : 1);
 }
 
-/// Whether the command builds a world and changes nothing before that succeeds.
+/// Whether the command creates a world and changes nothing if that fails.
 bool builds_a_world(const simulation::Command& command) {
     return std::holds_alternative<simulation::CreateWorld>(command) ||
            std::holds_alternative<simulation::ResetWorld>(command) ||
            std::holds_alternative<simulation::ForkWorld>(command);
 }
 
-/// What a command does to the run of its world.
+/// The effect of a command on the run of its world.
 enum class RunEffect { Begins, BeginsAsFork, BeginsAgain, Ends, Continues };
 
 RunEffect effect_of(const simulation::Command& command) {
@@ -79,9 +81,9 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     poll_storage();
     follow_worlds();
 
-    // Paced live worlds first, because they have due times.
+    // Paced live worlds come first, because their ticks are due at fixed times.
     std::optional<Clock::time_point> next;
-    std::optional<Clock::time_point> in_time; // of the worlds that keep their pace
+    std::optional<Clock::time_point> in_time; // due times of the worlds that keep their pace
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
     if (waiting_since_ && !laboratory_.storage()->worlds_wait()) {
         at_latest(*waiting_since_ + slow_disk_patience);
@@ -109,7 +111,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
             in_time = in_time ? std::min(*in_time, track.due) : track.due;
         }
     }
-    // The others share the time until then; all seeks together count as one world.
+    // The other worlds share the time until then. All seeks together count as one world.
     const auto wants_share = [&](const simulation::Entry& entry) {
         return !has_to_be_in_time(entry) && wants_tick(entry) &&
                (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
@@ -135,13 +137,13 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         }
     }
     if (replays_.under_way()) {
-        // Seeks share the processor with worlds that cannot keep their pace anyway.
+        // Seeks share the processor with worlds that cannot keep their pace.
         const auto end = end_of_share(in_time);
         replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
     announce_finished_seeks();
-    if (const auto again = answer_queries()) { // until the next tick is due
+    if (const auto again = answer_queries()) { // answers queries until the next tick is due
         at_latest(*again);
     }
 
@@ -161,12 +163,12 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 }
 
 void SimulationLoop::announce_finished_seeks() {
-    follow_worlds(); // a seek may have opened a replay
+    follow_worlds(); // a finished seek may have opened a replay
     for (const std::string& name : replays_.take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
-            continue; // closed in the meantime
+            continue; // the replay was closed in the meantime
         }
         track->second.changed = true;
         outputs_.events(laboratory_,
@@ -196,7 +198,7 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
     }
     auto now = clock_.now();
     const auto end = now + slice;
-    bool woken = false; // the wake-up may be for something other than mail, so the rest of the pass must run
+    bool woken = false; // set by a wake-up that may have another cause than mail; the rest of the pass must then run
     while (!queries_.empty()) {
         if (now >= end) {
             return now;
@@ -325,7 +327,7 @@ void SimulationLoop::fork(CommandMail& mail) {
     if (*command.at_generation == origin->world.moment().generation) {
         return answer(mail, fork_at_opening(false), before);
     }
-    // The seek runs in slices, so other clients are served meanwhile.
+    // The seek runs in slices, so that the thread can serve other clients meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
     replays_.begin_seek(origin->name, generation, [this, waiting, before](base::Result<Replays::SeekResult> arrival) {
@@ -378,13 +380,13 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
     if (entry && (*entry)->replay) {
-        return outputs_.done(std::move(done)); // the journal holds no commands to replays
+        return outputs_.done(std::move(done)); // commands to replays are not stored in the journal
     }
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,
                                     .answer = done.frame};
-    // The storage thread hands the command on once it is on the disk.
+    // After the command was written to the disk, the storage thread passes it on.
     record.done = [hand_on = outputs_.done, done = std::move(done)]() mutable { hand_on(std::move(done)); };
     switch (effect) {
     case RunEffect::Begins:
@@ -425,7 +427,7 @@ void SimulationLoop::poll_storage() {
     if (!recorder_) {
         return;
     }
-    // Read trouble() before has_room(): the storage thread makes room before it clears the trouble.
+    // trouble() must be read before has_room(), because the storage thread makes room before it clears the trouble.
     const auto trouble = recorder_->trouble();
     worlds_wait_ = !recorder_->has_room();
     if (!worlds_wait_ || trouble) {
@@ -481,12 +483,12 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     if (recorder_) {
         track.recorder = recorder_->of(entry.name);
     }
-    // A short wait for the disk counts as running.
+    // A short wait for the disk does not count as a pause.
     const bool wants_tick = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait());
     const double tick_s = entry.world.parameters().active.tick_s;
     const bool restarts = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
     if (wants_tick && (restarts || !track.running)) {
-        // Restart the pace: the time before the pause or at another speed does not count.
+        // Start a new time grid for the ticks. The time before the pause, or at another speed, does not count.
         track.due = clock_.now();
         track.measured_since = track.due;
         track.ticks = 0;
@@ -496,7 +498,7 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     if (!wants_tick) {
         entry.ticks_per_s = 0;
         entry.slowed = false;
-        track.changed |= track.running; // as after Pause
+        track.changed |= track.running; // the state changed, as after a Pause
     }
     track.run_id = entry.run_id;
     track.speed = entry.control.speed;
@@ -529,7 +531,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         } while (!paced && taken < track.ticks_a_look && !stopped && !mailbox_.pending());
         track.ticks += taken;
         if (stopped) {
-            track.changed = true; // a goal was reached
+            track.changed = true; // the world has reached a goal
             track.running = false;
             entry.ticks_per_s = 0;
         }
@@ -564,7 +566,7 @@ void SimulationLoop::make_due_checkpoint(const simulation::Entry& entry, Track& 
 
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {
     const std::chrono::duration<double> passed = now - track.measured_since;
-    // Report the first figure early, because a user may be waiting for it.
+    // The first measurement takes less time, because a user may be waiting for it.
     if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time)) {
         return;
     }
@@ -585,7 +587,8 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
     const bool newcomer = track.newcomers_served != watch.newcomers;
     const auto between = seconds(1 / watch.rate_hz);
     if (!newcomer && !track.changed) {
-        // A snapshot may come 10 % early rather than a whole tick late, because ticks rarely fall on its time.
+        // A snapshot may be taken early by 10 % of the interval. Ticks rarely coincide with the planned time, and
+        // waiting for the next tick could delay the snapshot by a whole tick.
         if (entry.world.moment().tick == track.shown_tick || now + between / 10 < track.next_snapshot) {
             return;
         }
@@ -607,7 +610,8 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
     if (track.counted) {
         track.counted->snapshot_time.add(clock_.now() - began);
     }
-    // Snapshots keep to a grid, so that the average rate holds. The grid restarts after a pause or an extra snapshot.
+    // Snapshots follow a fixed time grid, so that the average rate is exact. A pause or an extra snapshot restarts the
+    // grid.
     track.next_snapshot += between;
     if (newcomer || track.changed || track.next_snapshot <= now) {
         track.next_snapshot = now + between;

@@ -1,18 +1,17 @@
-// Simulation loop: one pass of the simulation thread. Owns the laboratory and decides when each world advances; the
-// laboratory decides what happens then.
+// Simulation loop: pass() is one pass of the simulation thread. The loop owns the laboratory and decides when each
+// world advances. The laboratory decides what happens in a tick.
 //
 //   commands → queries → state of the disk → paced worlds that are due → worlds at full speed and replays, a slice each
-//   →
-//   seeks of replays, a slice → queries → events and snapshots into the outbox → sleep until the next world is due
+//   → seeks of replays, a slice → queries → events and snapshots into the outbox → sleep until the next world is due
 //
-// Pace         a world at speed factor f takes a tick every tick_s / f. A late world catches up at most `catch_up_max`;
-//              beyond that it runs slower. A slice ends when mail arrives or another world is due, so answers and paced
-//              worlds wait for at most one tick of another world. Unpaced worlds get equal slices of the remaining
-//              time, at least one tick each.
+// Pace         a world with the speed factor f simulates a tick every tick_s / f. A late world catches up by at most
+//              `catch_up_max`; beyond that it runs slower. A slice ends when mail arrives or another world is due.
+//              Therefore answers and paced worlds wait for at most one tick of another world. Worlds without a pace
+//              share the remaining time in equal slices of at least one tick.
 // Queries      are answered in idle time, and in a small share of the other time (query_budget.h).
 // Disk         while the write queue is full, live worlds wait. Mail, replays and snapshots for new viewers continue.
-// Threads      one thread calls it: the simulation thread.
-// Determinism  time decides how many ticks are taken, never what happens in them.
+// Threads      only the simulation thread calls it.
+// Determinism  the clock decides how many ticks are simulated. It does not influence what happens in them.
 #pragma once
 
 #include "server/base/executor.h"
@@ -35,15 +34,16 @@
 
 namespace evod::runtime {
 
-/// Receivers of the loop's output; called on the simulation thread unless stated otherwise.
+/// The functions that receive the output of the loop. They run on the simulation thread unless stated otherwise.
 struct LoopOutputs {
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
     std::function<void(SnapshotPtr)> snapshot;
-    /// A command was applied or refused, and is on the disk if runs are stored. Also called on the storage thread.
+    /// Receives a command that was refused, or that was applied and stored if runs are stored. Also called on the
+    /// storage thread.
     std::function<void(CommandDone)> done = [](CommandDone) {};
-    /// The state of the disk has changed.
+    /// Receives a new state of the disk.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
-    /// Metrics of each live world; outlives the loop. nullptr: no metrics.
+    /// The metrics of each live world. Must outlive the loop; nullptr: no metrics.
     metrics::Worlds* counted = nullptr;
 };
 
@@ -51,36 +51,36 @@ class SimulationLoop {
   public:
     static constexpr std::chrono::milliseconds slice{5};
     static constexpr std::chrono::milliseconds catch_up_max{50};
-    /// A world at full speed runs for about so long between two readings of the clock, because in a small world a tick
-    /// is as short as a reading.
+    /// A world at full speed simulates ticks for about this time between two readings of the clock, because in a small
+    /// world one tick takes only as long as one reading.
     static constexpr std::chrono::microseconds between_looks{20};
-    /// A world counts as slowed if it loses more than this share of the time.
+    /// A paced world counts as slowed if it falls behind its speed by more than this fraction of the elapsed time.
     static constexpr double slowed_from = 0.02;
-    /// A short wait for a working disk is normal. It is reported only after this time.
+    /// A short wait for a working disk is normal. A longer wait is reported.
     static constexpr std::chrono::seconds slow_disk_patience{1};
 
-    /// Everything handed in outlives the loop.
+    /// All arguments must outlive the loop.
     ///
     /// laboratory  contains the worlds that exist at the start.
-    /// recorder    stores the runs; commands are answered once they are stored. nullptr: runs are not stored.
-    /// replay      a replay to show from the start.
+    /// recorder    stores the runs. A command is answered after it was stored. nullptr: runs are not stored.
+    /// replay      a replay that is shown from the start.
     SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                    simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
                    std::optional<Replays::FileReplay> replay = {});
 
-    /// Handles the mail and advances the worlds that are due, about a slice per world. Returns when the next pass is
-    /// due if no mail arrives; nullopt: not before mail arrives.
+    /// Handles the mail and advances each world that is due by about one slice. Returns the time at which the next pass
+    /// is due if no mail arrives; nullopt: no pass is due before mail arrives.
     std::optional<Clock::time_point> pass();
 
-    /// Applies the commands in the mailbox; queries wait for answer_queries().
+    /// Applies the commands in the mailbox, and queues the queries for answer_queries().
     void poll_mailbox();
-    /// At the end: handles the remaining mail and closes the recorder.
+    /// Handles the remaining mail and closes the recorder. Called when the server shuts down.
     void close();
 
     const simulation::Laboratory& laboratory() const { return laboratory_; }
 
   private:
-    /// The loop's state of a world, by name; reset when the run id changes.
+    /// The state of the loop for one world. It is reset when the run id of the world changes.
     struct Track {
         recording::RunRecorder* recorder = nullptr;
         std::shared_ptr<metrics::World> counted; // nullptr: no metrics
@@ -88,42 +88,43 @@ class SimulationLoop {
         simulation::Speed speed;
         double tick_s = 0;
         bool running = false;
-        Clock::time_point due; // time of the next tick, if paced
-        // Measured since `measured_since`.
+        Clock::time_point due; // time at which the next tick is due, if the world is paced
+        // Measurements since the time `measured_since`.
         Clock::time_point measured_since;
         std::uint64_t ticks = 0;
-        Clock::duration lost{};         // by which the world ran slower
+        Clock::duration lost{};         // time by which the world fell behind its speed
         std::uint32_t ticks_a_look = 1; // ticks between two readings of the clock, at full speed
-        // For viewers.
+        // State for viewers.
         const WorldDemand* watch = nullptr;
         std::uint64_t newcomers_served = 0;
-        bool changed = true; // a command or a goal changed the world since the last snapshot
+        bool changed = true; // a command or a reached goal changed the world since the last snapshot
         std::uint64_t shown_tick = 0;
         Clock::time_point next_snapshot;
     };
 
-    /// Answers queries within the budget. Returns when the next pass is due for them; nullopt: no query waits.
+    /// Answers queries within the budget. Returns the time at which more of them may be answered; nullopt: no query
+    /// waits.
     std::optional<Clock::time_point> answer_queries();
     void answer_query();
-    /// Whether a world is due now and would be late after other work.
+    /// Whether a paced world is due now and would run late if other work came first.
     bool time_is_wanted(Clock::time_point now) const;
     void apply(CommandMail& mail);
     void fork(CommandMail& mail);
     base::Result<simulation::Applied> apply(const simulation::Command& command);
-    /// The run of a command's world before the command.
+    /// The run of the command's world before the command was applied.
     struct RunBefore {
         simulation::RunId run_id;
         std::uint64_t tick;
     };
     std::optional<RunBefore> run_of(const simulation::Command& command) const;
     const simulation::Entry* entry_in(const simulation::Command& command) const;
-    /// Why the journal cannot store the command now, whatever it contains; nullopt: it can.
+    /// Why the journal cannot store any command at present; nullopt: it can.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
     void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                 const std::optional<RunBefore>& before);
-    /// The answer to a command, with what the network thread needs to know about the outcome.
+    /// Builds the answer to a command, and the data about its effect that the network thread needs.
     CommandDone done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const;
-    /// Writes a command that was applied to the journal.
+    /// Writes an applied command to the journal.
     void record(CommandDone done, const std::optional<RunBefore>& before);
     void announce_finished_seeks();
     void poll_demand();
@@ -133,7 +134,7 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
-    /// spent: time since the last reading of the clock, for ticks and the work after them.
+    /// spent  time since the last reading of the clock, for ticks and the work after them.
     void make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent);
     void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
     void show(const simulation::Entry& entry, Track& track, Clock::time_point now);
@@ -147,8 +148,8 @@ class SimulationLoop {
     const LoopOutputs outputs_;
     simulation::Laboratory laboratory_;
     recording::Recorder* recorder_;
-    bool worlds_wait_ = false;                       // live worlds wait for the disk
-    std::optional<Clock::time_point> waiting_since_; // since when worlds wait for a working disk
+    bool worlds_wait_ = false;                       // true: live worlds wait for the disk
+    std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
     Replays replays_;
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;
@@ -156,7 +157,7 @@ class SimulationLoop {
     std::vector<Mail> mail_;
     std::deque<QueryMail> queries_; // at most one per session
     QueryBudget query_budget_;
-    std::vector<std::uint32_t> island_indices_; // working memory
+    std::vector<std::uint32_t> island_indices_; // reused buffer
 };
 
 } // namespace evod::runtime

@@ -13,13 +13,13 @@ SimulationThread::SimulationThread(Mailbox& mailbox, StreamDemand& demand, base:
     , recorder_{recorder}
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
     , thread_{[this] {
-        pthread_setname_np(pthread_self(), "simulation"); // the name in `top -H`
+        pthread_setname_np(pthread_self(), "simulation"); // the name that `top -H` shows
         if (recorder_) {
             recorder_->when_changed([this] { mailbox_.wake(); });
         }
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
-            // A stop() after the check above looks like mail to the pass, so check again before waiting.
+            // pass() treats a stop() after the check above like mail, so the flag must be checked again before waiting.
             if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending())) {
                 mailbox_.wait(next);
             }

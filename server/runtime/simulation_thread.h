@@ -1,4 +1,5 @@
-// Simulation thread: owns all worlds. Sleeps while no world is due, no mail arrives and the disk state does not change.
+// Simulation thread: the thread that owns all worlds. It sleeps until a world is due, mail arrives or the state of the
+// disk changes.
 #pragma once
 
 #include "server/runtime/simulation_loop.h"
@@ -12,16 +13,16 @@ namespace evod::runtime {
 
 class SimulationThread {
   public:
-    /// Starts the thread. Everything handed in outlives it.
+    /// Starts the thread. All arguments must outlive it.
     SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                      LoopOutputs outputs, simulation::Laboratory laboratory = {},
                      recording::Recorder* recorder = nullptr, std::optional<Replays::FileReplay> replay = {});
     ~SimulationThread() { stop(); }
 
-    /// Handles the remaining mail and ends the thread.
+    /// Ends the thread after it has handled the remaining mail.
     void stop();
 
-    /// For CPU-time queries; not after stop().
+    /// For reading the CPU time of the thread. Must not be called after stop().
     pthread_t handle() { return thread_.native_handle(); }
 
   private:

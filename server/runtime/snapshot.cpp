@@ -76,7 +76,8 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     }
 
     return {taken.release(), [spare = spare_](const Snapshot* snapshot) {
-                std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)}; // it was not const when it was made
+                // The object was created as a non-const object.
+                std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)};
                 const std::lock_guard lock{spare->mutex};
                 if (spare->snapshots.size() < spares_max) {
                     spare->snapshots.push_back(std::move(back));

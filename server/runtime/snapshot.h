@@ -1,10 +1,10 @@
 // Snapshot: an immutable copy of a world between two ticks, for streaming.
 //
-// The worlds wait while the simulation thread copies, so it only copies columns in memory order. The thread that reads the
-// snapshot sorts entities and computes everything else.
+// The worlds wait while the simulation thread copies, so it only copies columns in the order of memory. The thread that
+// reads the snapshot sorts the entities and does all other calculations.
 //
-// Owner        shared; the last owner returns the memory to the pool it came from.
-// Threads      taken by the simulation thread, read by any.
+// Owner        shared. The last owner returns the memory to the pool that created the snapshot.
+// Threads      the simulation thread creates a snapshot. Any thread may read it.
 #pragma once
 
 #include "server/base/column.h"
@@ -20,16 +20,18 @@
 
 namespace evod::runtime {
 
-/// Columns in memory order, with gaps left by the dead, and the index of each organism in them.
+/// Columns in the order of memory, with gaps where organisms have died, and the position of each organism in the
+/// columns.
 struct OrganismsSnapshot {
-    base::Column<std::uint32_t> place_of; // by id: index in the columns; simulation::Island::no_body for the dead
+    // Key: id of an organism; value: its index in the columns, or simulation::Island::no_body if it is dead.
+    base::Column<std::uint32_t> place_of;
     base::Column<physics::Coordinate> x, y;
     base::Column<float> radius_px, health;
     std::uint32_t alive_count = 0;
 };
 
 struct ItemsSnapshot {
-    base::Column<simulation::Items::Item> all; // by id, present or not
+    base::Column<simulation::Items::Item> all; // index: id of the item; includes items that are not present
     std::uint32_t present_count = 0;
 };
 
@@ -41,10 +43,10 @@ struct BoxesSnapshot {
 struct IslandSnapshot {
     std::uint32_t island = 0;
     double width_px = 0, height_px = 0;
-    simulation::LiveStatistics live; // without health_mean, which the reader computes
+    simulation::LiveStatistics live; // health_mean is not set, because the reader computes it
     OrganismsSnapshot organisms;
     ItemsSnapshot food, poison;
-    BoxesSnapshot boxes; // crates, then obstacles
+    BoxesSnapshot boxes; // first the crates, then the obstacles
     std::uint32_t crate_count = 0;
 };
 
@@ -59,27 +61,28 @@ struct Snapshot {
     bool slowed = false;
     double item_radius_px = 0;
     std::uint32_t island_count = 0;
-    bool after_change = false;           // shows the effect of a command or a reached goal: sent whatever the rate
-    std::vector<IslandSnapshot> islands; // those with subscriptions, indices rising
+    // Shows the effect of a command or of a reached goal, so it is sent regardless of the rate.
+    bool after_change = false;
+    std::vector<IslandSnapshot> islands; // the islands with subscriptions, in order of their indices
 };
 
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
 
-/// Makes snapshots and reuses their memory.
+/// Creates snapshots and reuses the memory of released ones.
 class SnapshotPool {
   public:
     SnapshotPool() : spare_{std::make_shared<Spare>()} {}
 
-    /// islands  the indices of those to copy, each below the world's island count.
+    /// islands  indices of the islands to copy. Each index must be below the world's island count.
     SnapshotPtr take(const simulation::Entry& entry, const std::vector<std::uint32_t>& islands, bool after_change);
 
   private:
-    static constexpr std::size_t spares_max = 4; // one being written, one waiting, one being sent, one spare
+    static constexpr std::size_t spares_max = 4; // one being written, one waiting, one being sent, and one in reserve
     struct Spare {
-        std::mutex mutex; // guards what follows
+        std::mutex mutex; // guards the members below
         std::vector<std::unique_ptr<Snapshot>> snapshots;
     };
-    std::shared_ptr<Spare> spare_; // outlives the pool while snapshots exist
+    std::shared_ptr<Spare> spare_; // may outlive the pool, because snapshots return their memory to it
 };
 
 } // namespace evod::runtime

@@ -31,7 +31,7 @@ class Pool final : public base::Executor {
     void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
         const std::size_t pieces = (count + grain - 1) / grain;
         arena_.execute([&] {
-            // TBB splits ranges of piece numbers, so every cut is a multiple of the grain.
+            // TBB divides the range of pieces, not of elements. Each cut is therefore a multiple of the grain.
             tbb::parallel_for(
                 tbb::blocked_range<std::size_t>{0, pieces, 1},
                 [&](const tbb::blocked_range<std::size_t>& range) {
@@ -44,7 +44,7 @@ class Pool final : public base::Executor {
     }
 
   private:
-    tbb::global_control control_; // allows more threads than processors
+    tbb::global_control control_; // allows more threads than the machine has processors
     tbb::task_arena arena_;
     std::size_t threads_;
 };

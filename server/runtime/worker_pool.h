@@ -1,8 +1,8 @@
-// Worker pool: the executor that the server gives to the core.
+// Worker pool: the Executor that the server passes to the core.
 //
-// Threads      up to `threads` work at once, including the calling thread. oneTBB schedules them; under ThreadSanitizer
-//              the ThreadExecutor of tests/support does (EVOD_THREAD_EXECUTOR).
-// Determinism  the pieces are those that Executor promises, whichever thread computes them.
+// Threads      up to `threads` threads work at the same time, including the caller. oneTBB schedules them. Under
+//              ThreadSanitizer, ThreadExecutor from tests/support replaces oneTBB (EVOD_THREAD_EXECUTOR).
+// Determinism  the loop is divided into the pieces that Executor guarantees, whichever thread computes them.
 #pragma once
 
 #include "server/base/executor.h"
@@ -12,7 +12,7 @@
 
 namespace evod::runtime {
 
-/// threads  >= 1; with 1 every loop runs on its caller and no thread starts.
+/// threads  >= 1. With 1, every loop runs on the calling thread and no thread is started.
 std::unique_ptr<base::Executor> make_executor(std::size_t threads);
 
 } // namespace evod::runtime

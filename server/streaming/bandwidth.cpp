@@ -5,7 +5,7 @@ namespace evod::streaming {
 void Bandwidth::change(double bytes_per_s, v1::Detail most) {
     const double more_bytes = accumulated_s_max * (bytes_per_s - bytes_per_s_);
     bytes_per_s_ = bytes_per_s;
-    // After one huge snapshot the debt is limited, so that the next snapshot need not wait long.
+    // The debt after a very large snapshot is limited, so that the next snapshot does not wait long.
     bytes_ = std::clamp(bytes_ + std::max(more_bytes, 0.0), -bytes_max(), bytes_max());
     most_ = detail_ = most;
     retry_after_ = retry_min;
@@ -32,7 +32,8 @@ void Bandwidth::raise_detail(v1::Detail detail, Clock::time_point now) {
 }
 
 void Bandwidth::lower_detail(Clock::time_point now) {
-    // Detail that could not be sustained is tried less often. After a sustained period the interval starts again.
+    // If the higher detail could not be sustained, the next attempt comes later. After a sustained period the interval
+    // is reset.
     const bool sustained = now - raised_ > 2 * retry_after_;
     retry_after_ = sustained ? Clock::duration{retry_min} : std::min<Clock::duration>(2 * retry_after_, retry_max);
     detail_ = less(detail_);

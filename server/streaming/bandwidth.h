@@ -1,9 +1,10 @@
-// Bandwidth: the detail in which a viewer is sent each snapshot, so that it gets at most the bytes per second it wants.
+// Bandwidth: chooses the level of detail of each snapshot for a viewer, so that the viewer receives at most its chosen
+// number of bytes per second.
 //
-// Unspent bytes accumulate for a while, because keyframes are long. When a snapshot costs more than has accumulated, it
-// is sent in less detail; if even the least detail costs too much, it is delayed. More detail is tried again after a
-// while, of the same snapshot if no newer one has arrived. If more detail cannot be sustained, the next attempt comes
-// later.
+// Unspent bytes accumulate for a limited time, because keyframes are large. A snapshot that costs more than the
+// accumulated bytes is sent in less detail. If even the lowest detail costs too much, the snapshot is delayed. After a
+// while more detail is tried again. If no newer snapshot has arrived by then, the last one is sent again in more
+// detail. If the higher detail cannot be sustained, the next attempt comes later.
 //
 // Owner        a subscription.
 // Threads      the network thread.
@@ -22,30 +23,32 @@ namespace evod::streaming {
 class Bandwidth {
   public:
     using Clock = runtime::Clock;
-    static constexpr double accumulated_s_max = 2;                     // bytes of so many seconds accumulate at most
-    static constexpr std::chrono::seconds retry_min{2}, retry_max{64}; // until more detail is tried
+    static constexpr double accumulated_s_max = 2;                     // bytes accumulate for at most this many seconds
+    static constexpr std::chrono::seconds retry_min{2}, retry_max{64}; // range of the time until more detail is tried
 
     /// bytes_per_s  > 0.
-    /// most         the wanted detail.
+    /// most         the highest level of detail that the viewer wants.
     Bandwidth(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
 
-    /// Sets another rate and detail, which is tried at once. Accumulated bytes stay, up to the new maximum. A higher
-    /// maximum is filled at once, as at the beginning.
+    /// Sets a new rate and a new highest level of detail, which is tried at once. Accumulated bytes are kept, up to the
+    /// new maximum. If the maximum increases, the additional bytes are available at once, as for a new object.
     void change(double bytes_per_s, v1::Detail most);
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
-        Clock::time_point again;          // when to call again; after less detail than wanted, when to call refine()
+        // Time of the next call; if the detail is lower than wanted, the time to call refine().
+        Clock::time_point again;
     };
-    /// Chooses the detail of a snapshot and spends its cost.
+    /// Chooses the level of detail of a snapshot and spends its cost.
     ///
-    /// cost  returns the bytes of the snapshot at a detail; its last call is for the chosen one.
+    /// cost  returns the size of the snapshot in bytes at a given detail. The last call is for the chosen detail.
     template <class Cost>
     Choice choose(Clock::time_point now, const Cost& cost);
 
-    /// The same for a snapshot that was already sent: chooses more detail, or none.
+    /// Chooses a higher level of detail for a snapshot that was already sent. The choice is empty if more is not
+    /// affordable.
     ///
-    /// shown  the detail in which it was sent, less than wanted.
+    /// shown  the detail in which the snapshot was sent; it is lower than wanted.
     template <class Cost>
     Choice refine(Clock::time_point now, v1::Detail shown, const Cost& cost);
 
@@ -57,18 +60,18 @@ class Bandwidth {
     void lower_detail(Clock::time_point now);
     static v1::Detail less(v1::Detail detail) { return static_cast<v1::Detail>(detail + 1); }
 
-    double bytes_per_s_ = 0, bytes_ = 0; // accumulated; < 0 after a snapshot that cost more
+    double bytes_per_s_ = 0, bytes_ = 0; // bytes_: accumulated bytes; negative after a snapshot that cost more
     v1::Detail most_ = v1::DETAIL_FULL, detail_ = v1::DETAIL_FULL;
     Clock::duration retry_after_ = retry_min;
-    std::optional<Clock::time_point> updated_; // when bytes_ was
-    Clock::time_point raised_, try_more_;      // when detail_ was raised; when more detail is tried
+    std::optional<Clock::time_point> updated_; // time at which bytes_ was computed
+    Clock::time_point raised_, try_more_;      // time when detail_ was raised, and time when more detail is tried
 };
 
 template <class Cost>
 Bandwidth::Choice Bandwidth::choose(Clock::time_point now, const Cost& cost) {
     accumulate(now);
     if (detail_ != most_ && now >= try_more_) {
-        // Starts with the most detail: where little changes, a full delta may cost less than dots.
+        // Try the highest detail first: if little has changed, a delta in full detail may be smaller than dots.
         const auto affordable = [&](v1::Detail detail) { return static_cast<double>(cost(detail)) <= bytes_; };
         v1::Detail more = most_;
         while (more != detail_ && !affordable(more)) {
@@ -78,7 +81,7 @@ Bandwidth::Choice Bandwidth::choose(Clock::time_point now, const Cost& cost) {
     }
     for (;;) {
         const auto bytes = static_cast<double>(cost(detail_));
-        // A snapshot that costs more than can ever accumulate is sent when the maximum has accumulated.
+        // A snapshot may cost more than can ever accumulate. It is sent when the maximum has accumulated.
         const double needed = std::min(bytes, bytes_max());
         if (detail_ != v1::DETAIL_DENSITY && bytes > bytes_) {
             lower_detail(now);

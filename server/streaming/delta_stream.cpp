@@ -7,9 +7,9 @@
 namespace evod::streaming {
 namespace {
 
-constexpr std::size_t organisms = 0, crates = 3; // in codec::Counts
+constexpr std::size_t organisms = 0, crates = 3; // indices in codec::Counts
 
-/// The part of long columns that belongs to one tile.
+/// Returns the part of each long column that belongs to one tile.
 template <class Part, class Displacements>
 Part part_of(Displacements& all, std::uint32_t begin, std::uint32_t count) {
     return {std::span{all.x}.subspan(begin, count), std::span{all.y}.subspan(begin, count)};
@@ -50,7 +50,7 @@ StreamedSnapshot::StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form f
     if (!previous) {
         return;
     }
-    previous->previous_ = nullptr; // sessions send only the newest snapshot
+    previous->previous_ = nullptr; // free the snapshot before the previous one: sessions only send the newest snapshot
     const auto ticks = ticks_between(previous->island_->about(), island_->about());
     if (!ticks || previous->layout_ != layout_) {
         return;
@@ -108,12 +108,12 @@ StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
     Tile& of = *(tiles_[tile] = std::make_unique<Tile>());
     of.keyframe_made = now_;
     if (!previous_ || !previous_->tiles_[tile]) {
-        return of; // no viewer has the base of a delta
+        return of; // no viewer has the base of a delta, so a keyframe is needed
     }
     const Tile& before = *previous_->tiles_[tile];
     const codec::QuantisedView here = view(tile);
-    // If the next snapshot came too late to be the keyframe for all, this one is it. It contains displacements of 0:
-    // others would take more bytes in the keyframe than they save in the delta after it.
+    // If waiting for the next snapshot would exceed the keyframe interval, this one is the keyframe for all viewers. It
+    // contains displacements of 0: real displacements would add more bytes to it than they save in the next delta.
     const bool keyframe_due = now_ + between_ > before.keyframe_made + keyframe_interval;
     if (keyframe_due || !codec::follows(here, previous_->view(tile))) {
         return of;

@@ -1,11 +1,11 @@
-// Delta stream: the snapshots of one island that all viewers of one world, rate and form receive, each encoded against
-// the snapshot before it.
+// Delta stream: encodes the snapshots of one island for all viewers with the same world, rate and form. Each snapshot
+// is encoded against the previous one.
 //
-// A whole snapshot is the case of one tile that needs no tile header; a plain snapshot is the case of one tile without
-// deltas. A form is encoded when the first session sends it, and only if a session sends it. The sessions share the
-// bytes. Because all viewers of a group receive the same snapshots, one delta serves all of them.
+// A snapshot without tiles is treated as a single tile that has no tile header. A plain snapshot is treated as a single
+// tile that is never a delta. An encoding is computed when the first session sends it; all sessions share its bytes.
+// All viewers of a group receive the same snapshots, so one delta serves all of them.
 //
-// Owner        SnapshotStreams; a StreamedSnapshot lives until the last session has sent or replaced it.
+// Owner        SnapshotStreams. A StreamedSnapshot exists until the last session has sent or replaced it.
 // Threads      the network thread.
 #pragma once
 
@@ -24,11 +24,11 @@
 
 namespace evod::streaming {
 
-/// At least this often all viewers are sent a keyframe, while there are snapshots.
+/// While there are snapshots, every viewer receives a keyframe at least once in this interval.
 constexpr std::chrono::seconds keyframe_interval{2};
 
-/// Ticks from one snapshot to the next. nullopt: the next cannot be predicted from the one before, because the run, the
-/// generation or an unchanging field differs, time went back, or the interval does not fit.
+/// The number of ticks between two snapshots. nullopt: `after` cannot be predicted from `before`. Possible reasons: the
+/// run, the generation or an unchanging field differs, the tick is lower, or the number does not fit into 16 bits.
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after);
 
 enum class Form : std::uint8_t {
@@ -37,45 +37,46 @@ enum class Form : std::uint8_t {
     Tiles, // CODEC_DELTA with a View
 };
 
-/// One snapshot of an island, in every encoding that viewers of one group need.
+/// One snapshot of an island, in all encodings that the viewers of one group need.
 class StreamedSnapshot {
   public:
-    /// previous  the snapshot before it in the stream; null: there is none. It loses its own predecessor.
-    /// between   the usual time to the next snapshot.
+    /// previous  the previous snapshot in the stream; nullptr: there is none. It releases its own predecessor.
+    /// between   the usual time between two snapshots.
     StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form form,
                      const std::shared_ptr<StreamedSnapshot>& previous, runtime::Clock::time_point now,
                      runtime::Clock::duration between);
 
     std::uint64_t sequence() const { return island_->sequence(); }
     Form form() const { return form_; }
-    /// Of one tile that covers the island, unless the form is Tiles.
+    /// The tiles of the island. If the form is not Tiles, a single tile covers the island.
     const codec::TileLayout& layout() const { return layout_; }
 
-    /// The part of a frame that precedes its tiles; null if the only tile is the whole frame.
+    /// The part of a frame before its tiles; nullptr if the frame consists of one tile without a tile header.
     const SharedBytes* head();
-    /// A tile for one viewer; of the forms Plain and Whole, the frame.
+    /// A tile for one viewer. With the forms Plain and Whole it is the whole frame.
     ///
-    /// sent  sequence of the last snapshot in which the viewer was sent this tile at DETAIL_FULL; 0: none.
+    /// sent  sequence of the last snapshot in which the viewer received this tile at DETAIL_FULL; 0: none.
     const SharedBytes& tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression, std::uint64_t sent);
 
   private:
     enum class Encoding { Keyframe, Delta, Repeat };
-    /// A tile that some viewer was sent at DETAIL_FULL.
+    /// A tile that at least one viewer received at DETAIL_FULL.
     struct Tile {
-        std::uint16_t ticks = 0;                  // duration of its displacements
-        std::uint64_t base_sequence = 0;          // of `delta`; 0: the tile is a keyframe for all
-        runtime::Clock::time_point keyframe_made; // when the tile was last a keyframe for all
-        std::string delta;                        // body, if base_sequence is not 0
+        std::uint16_t ticks = 0;                  // number of ticks that the displacements cover
+        std::uint64_t base_sequence = 0;          // base of `delta`; 0: the tile is a keyframe for all viewers
+        runtime::Clock::time_point keyframe_made; // time when the tile was last a keyframe for all viewers
+        std::string delta;                        // the body of the delta; not set if base_sequence is 0
         codec::Seams delta_seams;
-        std::array<std::array<SharedBytes, 2>, 3> encodings; // by Encoding: uncompressed, compressed
+        // First index: Encoding; second index: 0 uncompressed, 1 compressed.
+        std::array<std::array<SharedBytes, 2>, 3> encodings;
     };
     struct Displacements {
-        std::vector<std::uint32_t> x, y; // tile after tile
+        std::vector<std::uint32_t> x, y; // grouped by tile
     };
 
     Tile& full(std::uint32_t tile);
     codec::QuantisedView view(std::uint32_t tile) const;
-    /// Counts of all tiles before `tile`.
+    /// Sums of the counts of all tiles with an index below `tile`.
     codec::Counts counts_before(std::uint32_t tile) const;
     codec::Counts counts(std::uint32_t tile) const;
     codec::BaselineView baseline(std::uint32_t tile) const;
@@ -83,27 +84,28 @@ class StreamedSnapshot {
     std::shared_ptr<EncodedIsland> island_;
     Form form_;
     codec::TileLayout layout_;
-    std::shared_ptr<StreamedSnapshot> previous_; // null: no tile can be a delta
-    std::uint16_t ticks_ = 0;                    // since previous_
+    std::shared_ptr<StreamedSnapshot> previous_; // nullptr: no tile can be a delta
+    std::uint16_t ticks_ = 0;                    // ticks since previous_
     runtime::Clock::time_point now_;
     runtime::Clock::duration between_;
-    std::vector<std::unique_ptr<Tile>> tiles_; // by index; null: no viewer was sent it
+    std::vector<std::unique_ptr<Tile>> tiles_; // index: tile; nullptr: no viewer received it
     Displacements organisms_, crates_;
 };
 
 using StreamedSnapshotPtr = std::shared_ptr<StreamedSnapshot>;
 
-/// What one viewer was sent last of an island. It decides which tiles the viewer can be sent as deltas.
+/// The last data of an island that one viewer received. It decides which tiles can be sent to that viewer as deltas.
 class SentState {
   public:
-    /// Appends the parts of a frame: together its fields 1 to 49. They live as long as the snapshot.
+    /// Appends the parts of a frame. Together they are its fields 1 to 49. They are valid as long as the snapshot
+    /// exists.
     void add_parts(StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail,
                    v1::Compression compression, std::vector<const SharedBytes*>& parts) const;
 
-    /// Records that this frame was sent.
+    /// Records that a frame with these tiles was sent.
     void sent(const StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail);
 
-    /// The next frame will consist of keyframes.
+    /// Makes the next frame consist of keyframes.
     void reset() { *this = {}; }
 
   private:

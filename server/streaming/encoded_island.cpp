@@ -17,25 +17,25 @@ namespace {
 using google::protobuf::internal::WireFormatLite;
 using google::protobuf::io::CodedOutputStream;
 
-/// Appends the tag and the length of a field of `bytes` bytes. The caller appends the bytes themselves, which are thus
-/// copied only once.
+/// Appends the tag and the length of a field whose content has `bytes` bytes. The caller appends the content itself, so
+/// that it is copied only once.
 void append_field_head(int number, std::size_t bytes, std::string& to) {
-    std::array<std::uint8_t, 10> head; // two varints of at most five bytes each
+    std::array<std::uint8_t, 10> head; // the tag and the length are varints of at most five bytes each
     std::uint8_t* end = WireFormatLite::WriteTagToArray(number, WireFormatLite::WIRETYPE_LENGTH_DELIMITED, head.data());
     end = CodedOutputStream::WriteVarint32ToArray(static_cast<std::uint32_t>(bytes), end);
     to.append(reinterpret_cast<const char*>(head.data()), static_cast<std::size_t>(end - head.data()));
 }
 
-/// Size of such a field: tag, length and `bytes` bytes.
+/// Size of a field whose content has `bytes` bytes: tag, length and content.
 std::size_t field_bytes(int number, std::size_t bytes) {
     return WireFormatLite::TagSize(number, WireFormatLite::TYPE_BYTES) + WireFormatLite::LengthDelimitedSize(bytes);
 }
 
-/// The body as it is sent: compressed if the subscription wants that and it makes the body shorter. Sets
-/// message.compression then.
+/// Returns the body as it is sent. It is compressed if the subscription wants compression and the result is shorter;
+/// then message.compression is set.
 ///
 /// message     a SnapshotFrame or a SnapshotTile.
-/// compressed  memory for the result.
+/// compressed  buffer for the compressed body.
 template <class Message>
 std::string_view sent_body(Message& message, std::string_view body, const codec::Seams& seams,
                            v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {

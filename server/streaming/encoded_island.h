@@ -1,8 +1,8 @@
-// Encoded island: one island at one tick, and the bytes of it that subscriptions of every rate share.
+// Encoded island: one island at one tick, with the encodings that subscriptions of all rates share.
 //
-// Each form is encoded when the first session sends it. The sessions then share the bytes.
+// Each encoding is computed when the first session sends it. All sessions then share its bytes.
 //
-// Owner        the streamed snapshots made from it (delta_stream.h).
+// Owner        the StreamedSnapshots that use it (delta_stream.h).
 // Threads      the network thread.
 #pragma once
 
@@ -24,32 +24,32 @@ namespace evod::streaming {
 
 using codec::SharedBytes;
 
-/// The fields of a SnapshotFrame that describe the world and the island, without entities, codec and sequence.
+/// The fields of a SnapshotFrame that describe the world and the island. Entities, codec and sequence are not set.
 v1::SnapshotFrame frame_about(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
 
 class EncodedIsland {
   public:
-    /// about       the frame without entities and codec; with its sequence.
-    /// compressor  must live until the last form has been encoded.
+    /// about       a frame with its sequence, but without entities and codec.
+    /// compressor  must exist until the last encoding was computed.
     EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor);
 
     const v1::SnapshotFrame& about() const { return about_; }
     std::uint64_t sequence() const { return about_.sequence(); }
     const codec::QuantisedSnapshot& snapshot() const { return *snapshot_; }
-    /// The snapshot cut into tiles, on the first call.
+    /// The snapshot divided into tiles. The first call divides it.
     codec::SnapshotTiles& tiles();
 
-    /// Fields 1 to 49 of a frame of CODEC_PLAIN.
+    /// Encodes fields 1 to 49 of a frame with CODEC_PLAIN.
     const SharedBytes& plain();
-    /// Fields 1 to 49 of a frame of CODEC_DELTA without tiles. base_sequence: 0 for a keyframe.
+    /// Encodes fields 1 to 49 of a frame with CODEC_DELTA and without tiles. base_sequence: 0 for a keyframe.
     SharedBytes whole(std::uint64_t base_sequence, std::string_view body, const codec::Seams& seams,
                       v1::Compression compression);
-    /// Fields 1 to 49 of a frame of CODEC_DELTA in tiles, without the field `tiles`.
+    /// Encodes fields 1 to 49 of a frame with CODEC_DELTA and tiles, except the field `tiles`.
     const SharedBytes& without_tiles();
-    /// One element of the field `tiles`, at DETAIL_FULL.
+    /// Encodes one element of the field `tiles` at DETAIL_FULL.
     SharedBytes full_tile(std::uint32_t tile, std::uint64_t base_sequence, std::string_view body,
                           const codec::Seams& seams, v1::Compression compression);
-    /// One element of the field `tiles`, at DETAIL_DOTS or DETAIL_DENSITY.
+    /// Encodes one element of the field `tiles` at DETAIL_DOTS or DETAIL_DENSITY.
     const SharedBytes& coarse_tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression);
 
   private:
@@ -62,7 +62,7 @@ class EncodedIsland {
     codec::Compressor* compressor_;
     std::optional<codec::SnapshotTiles> tiles_;
     SharedBytes plain_, without_tiles_;
-    std::vector<std::array<SharedBytes, 4>> coarse_; // by tile: dots and densities, each plain and compressed
+    std::vector<std::array<SharedBytes, 4>> coarse_; // index: tile; dots and density, each uncompressed and compressed
 };
 
 } // namespace evod::streaming

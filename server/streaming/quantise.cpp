@@ -11,7 +11,8 @@ namespace {
 
 using codec::Column;
 
-/// Converts fixed point to steps in place, in one loop for vector instructions.
+/// Converts a column from fixed point to steps in place. A single loop, so that the compiler can use vector
+/// instructions.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
     const codec::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
                                           position_bytes};
@@ -20,7 +21,7 @@ void to_steps(Column& positions, std::uint32_t position_bytes) {
     }
 }
 
-/// Makes room for `count` and one more: a skipped entity is written there and overwritten.
+/// Resizes the columns to `count` + 1 entities. A skipped entity is written to the next free row and then overwritten.
 template <class... Columns>
 void make_room(std::size_t count, Columns&... columns) {
     (columns.resize(count + 1), ...);
@@ -35,7 +36,8 @@ codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posi
     codec::Entities to;
     make_room(items.present_count, to.id, to.x, to.y);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < items.all.size(); ++i) { // without a branch: which items are absent is unpredictable
+    // Without a branch, because the processor cannot predict which items are absent.
+    for (std::size_t i = 0; i < items.all.size(); ++i) {
         const simulation::Items::Item& item = items.all[i];
         to.id[kept] = static_cast<std::uint32_t>(i);
         to.x[kept] = static_cast<std::uint32_t>(item.x);

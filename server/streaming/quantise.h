@@ -1,7 +1,7 @@
-// Quantise: an island of a snapshot in the form that encoders take, with whole numbers and ids rising.
+// Quantise: converts an island of a snapshot into the input of the encoders: whole numbers, ordered by id.
 //
-// The simulation thread copies columns in memory order. The network thread sorts and rounds them here, so that this does not
-// delay the simulation.
+// The simulation thread copies columns in the order of memory. The network thread sorts and rounds them here, so that
+// this work does not delay the simulation.
 #pragma once
 
 #include "proto/codec/quantised_snapshot.h"

@@ -66,7 +66,7 @@ void SnapshotQueue::send_again(std::uint32_t subscription_id, std::uint32_t isla
 void SnapshotQueue::acknowledge(const v1::AcknowledgeSnapshot& acknowledged) {
     const auto subscription = subscriptions.find(acknowledged.subscription_id());
     if (subscription == subscriptions.end()) {
-        return; // the client unsubscribed meanwhile
+        return; // the client has unsubscribed in the meantime
     }
     const auto island = subscription->second.islands.find(acknowledged.island());
     if (island == subscription->second.islands.end()) {
@@ -93,13 +93,13 @@ const OutgoingFrame* SnapshotQueue::next() {
         turns_.push_back(postponed_.begin()->second);
         postponed_.erase(postponed_.begin());
     }
-    // Each turn is examined once: a turn that is not due moves elsewhere or is deleted.
+    // Each turn is examined once. If its snapshot cannot be sent yet, the turn is moved to another list or deleted.
     while (!turns_.empty()) {
         const Turn turn = turns_.front();
         turns_.pop_front();
         const auto found = subscriptions.find(turn.subscription_id);
         if (found == subscriptions.end()) {
-            continue; // unsubscribed
+            continue; // the client has unsubscribed
         }
         SnapshotSubscription& subscription = found->second;
         const auto of = subscription.islands.find(turn.island);
@@ -108,7 +108,7 @@ const OutgoingFrame* SnapshotQueue::next() {
         }
         Island& island = of->second;
         if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max) {
-            island.turn = 0; // until an acknowledgement arrives
+            island.turn = 0; // no turn until an acknowledgement arrives
             continue;
         }
         if (!take(turn.subscription_id, subscription, island)) {
@@ -135,7 +135,7 @@ void SnapshotQueue::drop_outgoing(SnapshotSubscription& subscription, Island& is
     }
     island.waiting = {};
     island.shown.reset();
-    island.sent.reset(); // the client does not have this snapshot, so the next one must not be encoded against it
+    island.sent.reset(); // the client does not receive this snapshot, so it cannot be the base of the next one
 }
 
 bool SnapshotQueue::take(std::uint32_t subscription_id, SnapshotSubscription& subscription, Island& island) {
@@ -176,7 +176,7 @@ bool SnapshotQueue::take(std::uint32_t subscription_id, SnapshotSubscription& su
     }
     if (detail == wanted) {
         island.shown.reset();
-        island.waiting = {}; // outgoing_ still owns it
+        island.waiting = {}; // outgoing_ keeps the snapshot alive
     } else {
         island.shown = detail;
     }

@@ -1,12 +1,12 @@
-// Snapshot queue: the snapshots that wait to be sent to one session, and the order in which they are sent.
+// Snapshot queue: the snapshots that wait to be sent to one session, and their order.
 //
-// Of each subscription and island at most one snapshot waits, the newest. It is encoded when its turn comes, against the
-// snapshot that the session was sent last. It waits longer while too many earlier ones are unacknowledged or the
-// bandwidth limit does not allow it.
+// At most one snapshot waits for each subscription and island: the newest. It is encoded when its turn comes, against
+// the last snapshot that was sent to the session. It waits longer if too many earlier snapshots are unacknowledged, or
+// if the bandwidth limit does not allow it.
 //
-// Owner        the session, which does the sending.
+// Owner        the session, which sends the snapshots.
 // Threads      the network thread.
-// Full         a newer snapshot replaces the waiting one; the subscription counts it as dropped.
+// Full         a newer snapshot replaces the waiting one. The subscription counts the replaced one as dropped.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -25,23 +25,23 @@
 
 namespace evod::streaming {
 
-/// The session that sends what waits in a queue.
+/// The interface through which a queue makes its session send snapshots.
 class SnapshotSender {
   public:
-    /// Sends what may be sent now, without waiting for the connection.
+    /// Sends the snapshots that may be sent now, as far as the connection accepts them without waiting.
     virtual void send_snapshots() = 0;
-    /// Sends it after answers that are queued already.
+    /// Sends the snapshots after the answers that are already queued.
     virtual void send_snapshots_later() = 0;
 
   protected:
     virtual ~SnapshotSender() = default;
 };
 
-/// The body of a frame, in parts.
+/// The body of a frame, divided into parts.
 struct OutgoingFrame {
-    StreamedSnapshotPtr snapshot;          // owns the parts
+    StreamedSnapshotPtr snapshot;          // keeps the parts alive
     std::vector<const SharedBytes*> parts; // fields 1 to 49
-    std::array<std::uint8_t, 24> tail;     // begins with the fields from 50 on
+    std::array<std::uint8_t, 24> tail;     // fields from 50 on, tail_bytes bytes long
     std::size_t tail_bytes = 0;
 
     std::size_t body_bytes() const;
@@ -52,46 +52,47 @@ class SnapshotQueue {
   public:
     using Clock = runtime::Clock;
 
-    /// dropped  counts the snapshots that were replaced before they were sent.
+    /// dropped  counts snapshots that were replaced before they were sent.
     SnapshotQueue(Clock& clock, metrics::Counter& dropped, SnapshotSender& sender)
         : clock_{clock}, dropped_{dropped}, sender_{sender} {}
 
-    std::map<std::uint32_t, SnapshotSubscription> subscriptions; // by subscription id
+    std::map<std::uint32_t, SnapshotSubscription> subscriptions; // key: subscription id
     SnapshotSender& sender() { return sender_; }
 
     /// The largest frame body that the client accepts; larger frames are dropped.
     void set_frame_bytes_max(std::size_t bytes) { frame_bytes_max_ = bytes; }
 
-    /// Replaces the waiting snapshot of an island. The caller calls send_snapshots() afterwards.
+    /// Replaces the waiting snapshot of an island. The caller must call send_snapshots() afterwards.
     void offer(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr snapshot);
-    /// Sends the next snapshot of an island as a keyframe: the waiting one, or else `newest`.
+    /// Makes the next snapshot of an island a keyframe. Sends the waiting snapshot or, if none waits, `newest`.
     void send_keyframe(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr newest);
-    /// The view has changed: sends the waiting snapshot again, or else `newest`.
+    /// Sends a snapshot again after the view has changed: the waiting one or, if none waits, `newest`.
     void send_again(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr newest);
     void acknowledge(const v1::AcknowledgeSnapshot& acknowledged);
-    /// Counts snapshots of a subscription that newer ones replaced.
+    /// Counts snapshots of a subscription that were replaced by newer ones.
     void count_dropped(SnapshotSubscription& of, std::uint64_t count);
 
-    /// Chooses and encodes the snapshot whose turn it is. null: none may be sent now. Valid until the next call; it counts
-    /// as sent.
+    /// Chooses and encodes the next snapshot, which then counts as sent. Returns nullptr if none may be sent now. The
+    /// result is valid until the next call.
     const OutgoingFrame* next();
-    /// When next() may succeed again because of a bandwidth limit; max(): not before another event.
+    /// The time at which the bandwidth limit may allow next() to succeed; max(): it will not succeed before another
+    /// event.
     Clock::time_point retry_at() const { return retry_at_; }
-    /// Releases the snapshot returned last: its memory is in no accounting.
+    /// Releases the last snapshot that next() returned, because its memory is not counted by SendMemory.
     void release() { outgoing_.snapshot = {}; }
 
-    /// Accepts no more snapshots.
+    /// Makes the queue accept no more snapshots.
     void stop() { stopped_ = true; }
-    /// Drops everything that waits, and stops.
+    /// Drops all waiting snapshots and accepts no more.
     void clear();
 
   private:
     using Island = SnapshotSubscription::Island;
-    /// Queues the waiting snapshot of an island behind the others.
+    /// Moves the waiting snapshot of an island to the end of the queue.
     void give_turn(std::uint32_t subscription_id, std::uint32_t index, Island& island);
-    /// Encodes a snapshot into outgoing_. false: the bandwidth limit does not allow it yet.
+    /// Encodes a snapshot into outgoing_. Returns false if the bandwidth limit does not allow it yet.
     bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, Island& island);
-    /// Drops the snapshot in outgoing_, which is larger than the client accepts.
+    /// Drops the snapshot in outgoing_ because it is larger than the client accepts.
     void drop_outgoing(SnapshotSubscription& subscription, Island& island);
     void set_tail(std::uint32_t subscription_id, std::uint64_t dropped_count);
 
@@ -99,8 +100,8 @@ class SnapshotQueue {
     metrics::Counter& dropped_;
     SnapshotSender& sender_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max();
-    // A waiting snapshot has one valid turn, the last it was given: none while it waits for an acknowledgement, and one in
-    // postponed_ while the bandwidth limit delays it.
+    // A waiting snapshot has at most one valid turn, the newest. It has none while it waits for an acknowledgement.
+    // While the bandwidth limit delays it, its turn is in postponed_.
     struct Turn {
         std::uint32_t subscription_id, island;
         std::uint64_t number; // invalid if it differs from SnapshotSubscription::Island::turn

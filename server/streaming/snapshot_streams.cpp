@@ -9,17 +9,18 @@
 namespace evod::streaming {
 namespace {
 
-/// Steps after which other clients are served: 1 to 5 ms for small islands.
+/// Number of steps before other clients are served. For small islands they take 1 to 5 ms together.
 constexpr std::size_t steps_at_once = 128;
 
 runtime::Clock::duration between_snapshots(double rate_hz) {
     return std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz});
 }
 
-/// Whether a group of this rate receives a snapshot now. Then schedules the next one.
+/// Whether a group with this rate receives a snapshot now. If so, the time of the next one is set.
 bool is_due(double rate_hz, runtime::Clock::time_point& next, bool after_change, runtime::Clock::time_point now) {
     const auto between = between_snapshots(rate_hz);
-    // A tenth of the interval early is better than a whole snapshot late.
+    // It is better to send a snapshot early by a tenth of the interval than to wait for the next snapshot of the
+    // simulation.
     if (!after_change && now + between / 10 < next) {
         return false;
     }
@@ -37,7 +38,8 @@ void SnapshotStreams::subscribe(std::uint64_t session, SnapshotQueue& queue, std
     queues_.emplace(session, &queue);
     Group& group = groups_[group_of(subscription)];
     ++group.subscription_count;
-    // For the first viewer of an island the simulation makes a snapshot; later viewers are sent the newest one.
+    // For the first viewer of an island the simulation must copy a snapshot. Later viewers receive the newest existing
+    // one.
     bool joins = false;
     each_newest(subscription, [&](std::uint32_t, const StreamedSnapshotPtr&) { joins = true; });
     if (!joins) {
@@ -199,7 +201,7 @@ void SnapshotStreams::begin(InProgress& of, runtime::Clock::time_point now) {
         }
         of.groups.insert(name);
         if (std::exchange(group.run_id, snapshot.run_id) != snapshot.run_id) {
-            group.newest.clear(); // of an earlier run, which may have had more islands
+            group.newest.clear(); // these snapshots may belong to an earlier run, which may have had more islands
         }
     }
     for (const auto& [session, queue] : queues_) {
@@ -221,7 +223,7 @@ std::vector<SnapshotStreams::Viewer> SnapshotStreams::viewers_of(const InProgres
             if (subscription.world != of.snapshot.snapshot->world) {
                 continue;
             }
-            // A group may have lost its last viewer since begin(), and another may have made it again.
+            // Since begin() a group may have lost its last viewer, and another viewer may have created the group again.
             const GroupName name = group_of(subscription);
             if (of.groups.contains(name)) {
                 viewers.push_back({queue, id, &subscription, &groups_.at(name)});
@@ -239,7 +241,7 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
     }
     for (; steps_left > 0 && of.next_island < snapshot.islands.size(); ++of.next_island) {
         const runtime::IslandSnapshot& island = snapshot.islands[of.next_island];
-        std::shared_ptr<EncodedIsland> encoded; // for the viewers of every rate and form
+        std::shared_ptr<EncodedIsland> encoded; // shared by the viewers of all rates and forms
         std::size_t steps = 1;
         for (Viewer& viewer : viewers) {
             if (viewer.subscription->island && *viewer.subscription->island != island.island) {
@@ -251,7 +253,7 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
                 encoded = std::make_shared<EncodedIsland>(std::move(about), quantise(island), compressor_);
             }
             StreamedSnapshotPtr& newest = viewer.group->newest[island.island];
-            if (!newest || newest->sequence() != encoded->sequence()) { // the first viewer of its group
+            if (!newest || newest->sequence() != encoded->sequence()) { // this viewer is the first of its group
                 newest = std::make_shared<StreamedSnapshot>(encoded, viewer.subscription->form(), newest, of.began,
                                                             between_snapshots(viewer.subscription->rate_hz));
             }

@@ -1,11 +1,11 @@
-// Snapshot streams: which sessions are subscribed to which worlds, and the path of a snapshot from the simulation to
-// their queues.
+// Snapshot streams: stores which sessions are subscribed to which worlds, and passes snapshots from the simulation to
+// the queues of these sessions.
 //
-// Subscriptions to one world at one rate and in one form are a group. A group has one pace, so all of its viewers receive
-// the same snapshots, and each snapshot is encoded once per island for all of them.
+// All subscriptions to the same world with the same rate and the same form are a group. All viewers of a group receive
+// the same snapshots, so each snapshot is encoded once per island for the whole group.
 //
-// A world of thousands of islands takes the network thread a tenth of a second. Its islands are therefore distributed in
-// several turns. Between the turns the thread serves other clients and other worlds.
+// To distribute a snapshot of thousands of islands, the network thread needs about a tenth of a second. It therefore
+// distributes the islands in several steps. Between the steps it serves other clients and other worlds.
 //
 // Owner        network::Streams.
 // Threads      the network thread.
@@ -30,30 +30,32 @@ namespace evod::streaming {
 
 class SnapshotStreams {
   public:
-    /// Adds a subscription to a session's queue. The newest snapshots of its group, if there are any, are sent at once.
+    /// Adds a subscription to the queue of a session. If its group already has snapshots, the newest ones are sent at
+    /// once.
     ///
-    /// session  number of the session, the same for all calls with this queue.
+    /// session  number of the session. All calls with the same queue must use the same number.
     void subscribe(std::uint64_t session, SnapshotQueue& queue, std::uint32_t subscription_id,
                    SnapshotSubscription subscription);
-    /// false: the queue has no such subscription.
+    /// Ends a subscription. Returns false if the queue has no such subscription.
     bool unsubscribe(std::uint64_t session, SnapshotQueue& queue, std::uint32_t subscription_id);
-    /// The session has ended; its queue is not used again.
+    /// Must be called when a session has ended. Its queue is not used afterwards.
     void forget(std::uint64_t session);
 
-    /// Sends the newest snapshots of a subscription as keyframes. false: the queue has no such subscription.
+    /// Sends the newest snapshots of a subscription as keyframes. Returns false if the queue has no such subscription.
     bool send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id);
     /// Changes the view of a subscription that has one, and sends the newest snapshots again.
     void set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view);
 
-    /// The world has been deleted: drops everything of it.
+    /// Must be called when a world was deleted. Drops all snapshots of the world.
     void forget_world(const std::string& world);
 
-    /// What the simulation thread should copy.
+    /// The worlds and islands that the simulation thread should copy.
     runtime::WorldDemands demand() const;
 
-    /// Accepts snapshots for distribute(). Of each world a newer snapshot replaces one that waits here.
+    /// Stores snapshots for distribute(). A newer snapshot of a world replaces the one that is stored here.
     void deliver(std::vector<runtime::Outbox::NewestSnapshot> snapshots);
-    /// Distributes the next islands to the queues and has them sent. true: more islands are left for another call.
+    /// Passes the next islands to the queues and makes the sessions send them. Returns true if islands remain for
+    /// another call.
     bool distribute(runtime::Clock::time_point now);
 
   private:
@@ -65,18 +67,19 @@ class SnapshotStreams {
     };
     struct Group {
         std::size_t subscription_count = 0;
-        runtime::Clock::time_point next_snapshot;            // not before then
-        std::map<std::uint32_t, StreamedSnapshotPtr> newest; // by island
-        simulation::RunId run_id;                            // of these
+        runtime::Clock::time_point next_snapshot;            // earliest time of the next snapshot
+        std::map<std::uint32_t, StreamedSnapshotPtr> newest; // key: island
+        simulation::RunId run_id;                            // run of these snapshots
     };
-    /// A snapshot whose islands are being distributed.
+    /// A snapshot whose islands are currently being distributed.
     struct InProgress {
         runtime::Outbox::NewestSnapshot snapshot;
         bool begun = false;
         runtime::Clock::time_point began = {};
-        std::size_t next_island = 0;                       // in the snapshot
-        std::set<GroupName> groups = {};                   // that receive it
-        std::optional<runtime::Outbox::NewestSnapshot> next = {}; // a newer snapshot of the same world
+        std::size_t next_island = 0;     // index in the snapshot
+        std::set<GroupName> groups = {}; // groups that receive this snapshot
+        // A newer snapshot of the same world, which is distributed next.
+        std::optional<runtime::Outbox::NewestSnapshot> next = {};
     };
     struct Viewer {
         SnapshotQueue* queue;
@@ -88,20 +91,21 @@ class SnapshotStreams {
 
     static GroupName group_of(const SnapshotSubscription& subscription);
     void leave_group(const SnapshotSubscription& subscription);
-    /// Chooses the groups that receive a snapshot.
+    /// Chooses the groups that receive the snapshot.
     void begin(InProgress& of, runtime::Clock::time_point now);
     std::vector<Viewer> viewers_of(const InProgress& of);
-    /// Distributes islands until all are done or no step is left. An island takes one step, and one for each viewer.
+    /// Distributes islands until all are done or no step is left. Each island costs one step, plus one per viewer.
     void advance(InProgress& of, std::size_t& steps_left);
     /// Calls what(island, snapshot) for each island of the subscription.
     template <class Do>
     void each_newest(const SnapshotSubscription& subscription, const Do& what) const;
 
-    std::map<std::uint64_t, SnapshotQueue*> queues_; // of sessions that have subscribed, by number
+    // Queues of the sessions that have subscriptions; key: number of the session.
+    std::map<std::uint64_t, SnapshotQueue*> queues_;
     std::uint64_t newcomers_ = 0, sequence_ = 0;
     codec::Compressor compressor_;
-    std::map<GroupName, Group> groups_;  // those with subscriptions
-    std::deque<InProgress> in_progress_; // at most one of a world
+    std::map<GroupName, Group> groups_;  // groups that have subscriptions
+    std::deque<InProgress> in_progress_; // at most one snapshot of each world
 };
 
 } // namespace evod::streaming
