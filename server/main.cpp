@@ -1,4 +1,4 @@
-// evod: starts the program. Each subcommand registers itself; see server/commands/commands.h.
+// The entry point of evod. Registers all subcommands; see server/commands/commands.h.
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/commands/termination.h"
@@ -13,10 +13,11 @@
 int main(int argument_count, char** arguments) {
     using namespace evod::commands;
     install_termination_handler();
-    // Writing beyond `ulimit -f` then fails like a full disk, instead of ending the process.
+    // With this, writing beyond the limit of `ulimit -f` fails like writing to a full disk. Otherwise it would end the
+    // process.
     std::signal(SIGXFSZ, SIG_IGN);
-    // The server reports a malformed message to its sender. protobuf would also log each one, so that any client
-    // could fill the log.
+    // The server reports a malformed message to its sender. Without this, protobuf would also log each message, and any
+    // client could fill the log.
     google::protobuf::SetLogHandler(nullptr);
 
     evod::command_line::Command app{"evod", "An evolution laboratory that runs as a server.", "evod " EVOD_VERSION};
@@ -36,7 +37,7 @@ int main(int argument_count, char** arguments) {
 
     const std::optional<int> ended = app.parse(argument_count, arguments);
     const int status = ended ? *ended : app.run();
-    // A server continues when its log cannot be written.
+    // A server continues even if its log cannot be written.
     if (standard_output_is_log() || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush())) {
         return status;
     }

@@ -1,8 +1,9 @@
-// Command line: the options and subcommands of a program, their help, and what each subcommand does. evod, evoctl and
-// evoview describe theirs with this header. CLI11 reads the command line and prints the help; command.cpp alone
-// includes it, because every source that does takes seven seconds longer to compile.
+// Command line: the options and subcommands of a program, their help, and the action of each subcommand. evod, evoctl
+// and evoview use this header. CLI11 parses the command line and prints the help. Only command.cpp includes CLI11,
+// because including it adds seven seconds to the compile time of a source file.
 //
-// Owner    main. Variables that options write must outlive parse() and run(); keep() gives them the command's lifetime.
+// Owner    the main thread. Variables to which options write must outlive parse() and run(); keep() gives them the
+//          lifetime of the command.
 // Threads  one.
 #pragma once
 
@@ -25,73 +26,75 @@ class Option;
 
 namespace evod::command_line {
 
-/// Exit status after an error of the command line.
+/// Exit status after an error in the command line.
 constexpr int exit_usage = 2;
 
-/// The variable that receives the value of an option. Its type decides how the value is read and what the help calls
-/// it. A vector takes several values.
+/// The variable that receives the value of an option. Its type determines how the value is parsed and how the help
+/// names it. A vector accepts several values.
 using Target =
     std::variant<std::string*, std::vector<std::string>*, int*, std::int64_t*, std::uint16_t*, std::uint32_t*,
                  std::uint64_t*, double*, std::optional<std::string>*, std::optional<std::uint16_t>*,
                  std::optional<std::uint32_t>*, std::optional<std::uint64_t>*, std::optional<double>*>;
 
-/// Says what is wrong with a value as it was typed; an empty text accepts it. The message is printed after the name of
-/// the option.
+/// Returns an error message for a value as the user typed it, or an empty text if the value is valid. The message is
+/// printed after the name of the option.
 using Check = std::function<std::string(const std::string& word)>;
 
-/// A handle of an option or flag, valid as long as its command. Every setter returns the same handle.
+/// A handle of an option or flag. It is valid as long as its command. Every setter returns the same handle.
 class Option {
   public:
     explicit Option(CLI::Option* option) : option_{option} {}
 
     Option check(Check check) const;
-    /// One of these words; the help shows them.
+    /// Allows only these words. The help lists them.
     Option choices(const std::vector<std::string>& choices) const;
-    /// How many values a vector takes.
+    /// The number of values that a vector accepts.
     Option count(int min, int max) const;
     Option required() const;
-    /// Rejected unless the other is given, too.
+    /// Rejects this option unless the other option is given too.
     Option needs(Option other) const;
-    /// Rejected where the other is given, too.
+    /// Rejects this option if the other option is given too.
     Option excludes(Option other) const;
-    /// The variable that holds the value where the command line does not.
+    /// The environment variable that contains the value if the command line does not.
     Option environment(const std::string& variable) const;
-    /// The help shows the value that the target has now.
+    /// Makes the help show the present value of the target as the default.
     Option show_default() const;
 
-    /// Whether the command line or the environment had a value.
+    /// Whether the command line or the environment contained a value.
     bool is_given() const;
 
   private:
-    CLI::Option* option_; // CLI11's App owns it
+    CLI::Option* option_; // owned by CLI11's App
 };
 
 /// The program itself or one of its subcommands.
 class Command {
   public:
-    /// A program. version  what --version prints.
+    /// Creates a program. version  the text that --version prints.
     Command(const std::string& name, const std::string& help, const std::string& version);
     Command(Command&&) = default;
 
-    /// name  "--seed", or "run" for a value without a name before it, or both: "server,--server".
+    /// name  "--seed" for an option, "run" for a positional value, or "server,--server" for both.
     Option add_option(const std::string& name, Target target, const std::string& help);
     Option add_flag(const std::string& name, bool* target, const std::string& help);
-    /// The reference stays valid. One subcommand must be given, unless this command has an action of its own.
+    /// Adds a subcommand. The reference stays valid. The user must give a subcommand, unless this command has its own
+    /// action.
     Command& add_command(const std::string& name, const std::string& help);
 
-    /// The heading under which the help of the program lists this subcommand.
+    /// Sets the heading under which the help of the program lists this subcommand.
     Command& group(const std::string& heading);
-    /// Printed after the options. Subcommands that are added later inherit it.
+    /// Sets a text that the help prints after the options. Subcommands that are added later inherit it.
     Command& footer(const std::string& text);
-    /// The column at which the help begins to explain options.
+    /// Sets the column at which the explanations of options begin in the help.
     Command& help_column(std::size_t column);
-    /// Options of this command may also follow the subcommand. Holds for subcommands that are added later.
+    /// Allows options of this command after the name of the subcommand too. Applies to subcommands that are added
+    /// later.
     Command& accept_options_after_commands();
-    /// Options given before a subcommand count as given to it. An option that it does not have is rejected as one of
-    /// `owner`, because it would have no effect.
+    /// Treats options before the name of a subcommand as if they were given to the subcommand. If the subcommand does
+    /// not have such an option, the option is rejected as an option of `owner`, because it would have no effect.
     Command& hand_options_down(const std::string& owner);
 
-    /// What the command does. Returns the exit status, or nothing for 0.
+    /// Sets the action of the command. It returns the exit status; an action that returns void means status 0.
     template <class Action>
     Command& action(Action action) {
         if constexpr (std::is_void_v<std::invoke_result_t<Action&>>) {
@@ -103,7 +106,8 @@ class Command {
             return set_action(std::move(action));
         }
     }
-    /// Stores a value as long as the command exists: what its options write and its action reads.
+    /// Stores a value as long as the command exists. Use it for variables to which options write and that the action
+    /// reads.
     template <class Value>
     Value& keep(Value value) {
         auto kept = std::make_shared<Value>(std::move(value));
@@ -111,17 +115,17 @@ class Command {
         return *kept;
     }
 
-    /// Reads the command line. Returns nothing if run() can follow; otherwise the exit status, after it has printed the
-    /// help, the version or the error.
+    /// Parses the command line. Returns nullopt if run() may follow. Otherwise prints the help, the version or the
+    /// error, and returns the exit status.
     std::optional<int> parse(int argument_count, const char* const* arguments);
-    /// Runs the action of the subcommand that was given, or of the program if none was. Returns the exit status.
+    /// Runs the action of the given subcommand, or of the program if none was given. Returns the exit status.
     int run();
-    /// Prints an error that parse() cannot see, as parse() prints its own. Returns the exit status.
+    /// Prints an error that parse() cannot detect, in the format of parse(). Returns the exit status.
     int reject(const std::string& error) const;
 
     std::string name() const;
     const std::list<Command>& commands() const { return commands_; }
-    /// "--help", "--seed", …: names that begin with two dashes.
+    /// All names that begin with two dashes: "--help", "--seed", …
     std::vector<std::string> option_names() const;
 
   private:
@@ -131,7 +135,7 @@ class Command {
     std::shared_ptr<CLI::App> app_;
     std::list<Command> commands_;
     std::function<int()> action_;
-    std::string owner_; // of options that are handed down; empty: none are
+    std::string owner_; // owner of options that are handed down; empty: none are handed down
     std::vector<std::shared_ptr<void>> kept_;
 };
 

@@ -12,9 +12,9 @@ bool read(const std::string& word, Number& number) {
     return error == std::errc{} && read_until == end;
 }
 
-/// The shortest text that reads back as the same number, without an exponent.
+/// The shortest text, without an exponent, that reads back as the same number.
 std::string text_of(double number) {
-    char digits[400]; // of DBL_MAX: 309
+    char digits[400]; // DBL_MAX has 309 digits
     return {digits, std::to_chars(digits, digits + sizeof digits, number, std::chars_format::fixed).ptr};
 }
 

@@ -1,4 +1,4 @@
-// Numbers: checks for options that are numbers. The message gives what is allowed and what was typed.
+// Numbers: checks for numeric options. An error message contains the allowed values and the typed text.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,15 @@
 
 namespace evod::command_line {
 
-/// Decimal digits without a sign. Rejects a leading zero, which means nothing to people and an octal number to CLI11,
-/// and "-1", which CLI11 reads as the greatest number of 64 bits.
+/// Accepts decimal digits without a sign. Rejects a leading zero, because CLI11 would read an octal number. Rejects
+/// "-1", because CLI11 would read the greatest 64-bit number.
 struct WholeNumber {
     std::uint64_t min = 0, max = std::numeric_limits<std::uint64_t>::max();
 
     std::string operator()(const std::string& word) const;
 };
 
-/// Rejects "nan", which CLI11 accepts for a number in any range.
+/// Rejects "nan", which CLI11 accepts as a number in any range.
 struct RealNumber {
     double min, max;
 

@@ -1,4 +1,4 @@
-// `evod certificate`: makes a key and a self-signed certificate for TLS.
+// `evod certificate`: creates a key and a self-signed certificate for TLS.
 #include "server/access/certificate.h"
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"

@@ -10,7 +10,7 @@
 namespace evod::commands {
 namespace {
 
-/// Prints which parameters the file changes, or what is wrong with it. Returns the exit status.
+/// Prints the parameters that the file changes, or the errors in it. Returns the exit status.
 int check(const std::string& path) {
     const base::Result<parameters::Experiment> experiment = experiments::load_experiment(path);
     if (!experiment) {

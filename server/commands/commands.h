@@ -1,11 +1,12 @@
-// Commands: the server that `evod` starts, and its subcommands. Each function below adds one of them, with its options,
-// its help and its action, to the program. Each is defined in the source of its name: add_run_command() in run.cpp.
+// Commands: the server that `evod` starts, and the subcommands of `evod`. Each function below adds one of them to the
+// program, with its options, its help and its action. The source file has the same name: run.cpp defines
+// add_run_command().
 //
-// An action reads files that its options name, prints its result to stdout, and prints progress and errors to stderr.
-// It returns the exit status: 0 for success, unless its help lists others.
+// An action reads the files that its options name, prints its result to stdout, and prints progress and errors to
+// stderr. It returns the exit status. Status 0 means success, unless the help of the command says otherwise.
 //
-// Owner    main.
-// Threads  main's. Actions start worker threads of their own and join them.
+// Owner    the main thread.
+// Threads  the main thread. Actions start their own worker threads and join them.
 #pragma once
 
 namespace evod::command_line {
@@ -14,7 +15,7 @@ class Command;
 
 namespace evod::commands {
 
-/// What `evod` without a subcommand does: it serves.
+/// Adds the action of `evod` without a subcommand: it starts the server.
 void add_server(command_line::Command& app);
 
 void add_run_command(command_line::Command& app);
@@ -30,7 +31,7 @@ void add_certificate_command(command_line::Command& app);
 void add_parameters_command(command_line::Command& app);
 void add_limits_command(command_line::Command& app);
 
-/// Whether stdout is a log: a server has started. From any thread.
+/// Whether stdout contains a log, because a server has started. May be called from any thread.
 bool standard_output_is_log();
 
 } // namespace evod::commands

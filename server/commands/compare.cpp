@@ -1,4 +1,4 @@
-// `evod compare`: runs a world and its controls, or several worlds, with the same seeds, and tests the differences.
+// `evod compare`: runs several worlds, or a world and its controls, with the same seeds, and tests the differences.
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
@@ -29,13 +29,13 @@ struct CompareOptions {
     experiments::ComparisonRequest request;
     std::uint32_t replicates = 20; // >= 2
     std::size_t jobs = default_thread_count();
-    std::string csv, plot; // paths; empty: none
+    std::string csv, plot; // paths; empty: write no such file
 };
 
 constexpr std::uint32_t replicates_advised = 20;
-constexpr int compared_max = 12; // curves that a plot can show clearly
+constexpr int compared_max = 12; // maximum number of curves that a plot can show clearly
 
-/// Whether the file can be made or written; leaves its contents unchanged.
+/// Whether the file can be created or written. Does not change its contents.
 bool can_be_written(const std::string& path) {
     std::error_code error;
     const bool existed = std::filesystem::exists(path, error);
@@ -46,7 +46,8 @@ bool can_be_written(const std::string& path) {
     return writable;
 }
 
-/// Whether all that the options name can be written, so that a comparison of minutes does not end with an error.
+/// Checks that all files that the options name can be written, so that a comparison of several minutes does not fail at
+/// its end.
 base::Result<void> check_outputs(const CompareOptions& options) {
     for (const auto& [option, path] : {std::pair{"--csv", &options.csv}, {"--plot", &options.plot}}) {
         if (!path->empty() && !can_be_written(*path)) {
@@ -80,7 +81,7 @@ std::optional<std::vector<std::vector<Course>>> run(const ComparisonPlan& plan, 
     return courses;
 }
 
-/// Prints the error if the file cannot be written. Returns whether it could.
+/// Writes a file. Prints an error if this is not possible. Returns whether the file was written.
 bool write_file(const std::string& option, const std::string& path, const auto& write) {
     std::ofstream file{path, std::ios::binary};
     write(file);
@@ -91,7 +92,7 @@ bool write_file(const std::string& option, const std::string& path, const auto& 
     return false;
 }
 
-/// A file that exists as long as this object.
+/// A temporary file. The destructor deletes it.
 class TemporaryFile {
   public:
     TemporaryFile() : path_{(std::filesystem::temp_directory_path() / "evod-curves-XXXXXX").string()} {
@@ -126,8 +127,8 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
     return drawn.has_value();
 }
 
-/// Prints results to stdout, progress and errors to stderr. Returns the exit status. An interrupted comparison prints
-/// and writes no results.
+/// Prints results to stdout, and progress and errors to stderr. Returns the exit status. If the comparison is
+/// interrupted, it neither prints nor writes results.
 int compare(const CompareOptions& options) {
     const auto plan = experiments::plan_comparison(options.request);
     if (!plan) {

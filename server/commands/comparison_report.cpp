@@ -41,14 +41,14 @@ std::vector<double> rises_of(std::span<const Course> courses) {
 
 std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const Course> courses, int decimals) {
     std::vector<double> first, last;
-    std::size_t extinct = 0; // generations in which all organisms died
+    std::size_t extinct = 0; // number of generations in which all organisms died
     for (const Course& course : courses) {
         first.push_back(course.front().mean);
         last.push_back(course.back().mean);
         extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
     }
     if (arm.parameters.fitness != parameters::FitnessFunction::Life) {
-        extinct = 0; // without lives there are no deaths
+        extinct = 0; // no organism can die if fitness is a function of the chromosome alone
     }
     const std::vector<double> rises = rises_of(courses);
     std::string row = formatted("%-*s %9.*f %9.*f %9s  %-20s %7zu  ", name_width_of(plan), arm.name.c_str(), decimals,
@@ -59,7 +59,7 @@ std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const
     return row + "\n";
 }
 
-/// The conclusion about two worlds, neither of which is a control of the other.
+/// The conclusion about two worlds of which neither is a control of the other.
 std::string sentence_of(const Arm& world, const Arm& other, const Finding& finding, std::size_t tests, int decimals) {
     const std::string by = signed_text(std::abs(finding.mean), decimals).substr(finding.mean != 0 ? 1 : 0);
     const std::string p = formatted(" (adjusted p = %.2g).", finding.adjusted_p);
@@ -128,7 +128,7 @@ std::string conclusions_text(const ComparisonPlan& plan, std::span<const std::ve
         return text;
     }
     std::vector<ControlResult> weighed;
-    std::size_t next = 0; // of the findings: controls that cannot differ have none
+    std::size_t next = 0; // index of the next finding; controls that cannot differ have no finding
     for (const Control& control : plan.controls) {
         weighed.push_back(
             {control, control.cannot_differ.empty() ? std::optional{findings[next++]} : std::optional<Finding>{}});

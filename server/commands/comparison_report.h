@@ -1,4 +1,4 @@
-// Comparison report: the results of `evod compare` as tables and sentences for the terminal.
+// Comparison report: formats the results of `evod compare` as tables and sentences for the terminal.
 //
 // Threads  none.
 #pragma once
@@ -12,13 +12,13 @@
 
 namespace evod::commands {
 
-/// The number of decimals at which the means of a comparison differ.
+/// The number of decimals that is needed to show the differences between the means of a comparison.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
 /// A table with the rise of every arm. courses  shape (arms, replicates).
 std::string rises_text(const experiments::ComparisonPlan& plan,
                        std::span<const std::vector<experiments::Course>> courses, int decimals);
-/// A table with the differences between the first arm and each other. findings  shape (arms − 1).
+/// A table that compares the first arm with every other arm. findings  shape (arms − 1).
 std::string findings_text(const experiments::ComparisonPlan& plan, std::span<const experiments::Finding> findings,
                           int decimals);
 /// One line per conclusion.

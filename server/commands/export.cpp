@@ -33,7 +33,7 @@ Refusal wrong_option(const std::string& option, const std::string& allowed, cons
             .violations = {}};
 }
 
-/// "30:0:12".
+/// Parses "30:0:12".
 std::optional<replay::OrganismName> organism_named(const std::string& text) {
     replay::OrganismName name;
     const char* at = text.data();
@@ -50,7 +50,7 @@ std::optional<replay::OrganismName> organism_named(const std::string& text) {
     return valid ? std::optional{name} : std::nullopt;
 }
 
-/// The table that the options select; nullopt for a bundle. Refuses options that contradict each other.
+/// The table that the options select; nullopt for a bundle. Rejects options that contradict each other.
 Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
     using replay::RunTable;
     static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
@@ -72,7 +72,7 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
     if (options.generation && options.what != "population") {
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
     }
-    // REPEAT.md of a bundle compares generations.csv with the output of evod run --csv.
+    // REPEAT.md in a bundle compares generations.csv with the output of evod run --csv.
     if (!options.bundle.empty() && options.format != "csv") {
         return wrong_option("--format", "only csv with --bundle", options.format);
     }
@@ -95,7 +95,7 @@ void report_omitted_generations(RunFile& file) {
     }
 }
 
-/// Fields are named as the options on the command line.
+/// Replaces the names of fields by the names of the command line options.
 Refusal with_option_names(Refusal refused) {
     for (base::Violation& violation : refused.violations) {
         violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
@@ -149,7 +149,7 @@ Result<void> export_to(const ExportOptions& options) {
                                 ? "standard output cannot be written, the disk may be full"
                                 : "--output: cannot write " + options.output + ", the disk may be full");
     }
-    return sound; // after the intact part of the file is written
+    return sound; // reports damage only after writing the intact part of the file
 }
 
 } // namespace

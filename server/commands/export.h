@@ -1,6 +1,6 @@
 // `evod export`: writes the contents of a run file as rows for other programs, or the run as a bundle.
 //
-// Threads  one; `threads` workers simulate the generations that the file does not contain in full.
+// Threads  one; `threads` workers simulate the generations that the file does not store whole.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,18 @@
 namespace evod::commands {
 
 struct ExportOptions {
-    std::string run;                         // path of a run file
-    std::string bundle;                      // folder to make instead of a table; empty: none
-    std::string what;                        // which table, as --what spells it; empty with a bundle
-    std::string of;                          // "GENERATION:ISLAND:ORGANISM": its lineage alone; empty: all organisms
-    std::optional<std::uint64_t> generation; // of the population; nullopt: the last that has begun
-    std::string format = "csv";              // or "jsonl"
-    std::string output;                      // path; empty: stdout
+    std::string run;    // path of a run file
+    std::string bundle; // path of a folder to create instead of a table; empty: write a table
+    std::string what;   // the table, as --what spells it; empty for a bundle
+    // "GENERATION:ISLAND:ORGANISM": only the lineage of this organism; empty: all organisms
+    std::string of;
+    std::optional<std::uint64_t> generation; // only for the population; nullopt: the last generation that has begun
+    std::string format = "csv";              // "csv" or "jsonl"
+    std::string output;                      // path of the output; empty: stdout
     std::size_t threads = 1;
 };
 
-/// Returns the exit status: 0, or 1 after an error on stderr. What was written before the error stays.
+/// Returns the exit status: 0, or 1 after it has printed an error to stderr. Rows written before an error are kept.
 int export_run(const ExportOptions& options);
 
 } // namespace evod::commands

@@ -1,4 +1,4 @@
-// `evod fork`: makes a second world from a generation of a run file.
+// `evod fork`: creates a second world that begins with a generation of a run file.
 #include "server/replay/fork.h"
 #include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
@@ -19,12 +19,12 @@ namespace {
 
 struct ForkOptions {
     std::string run_file;
-    std::optional<std::uint64_t> at_generation; // nullopt: the last tick of the file
-    std::string name;                           // of the new world
-    std::string data_folder;                    // of the new run file
+    std::optional<std::uint64_t> at_generation; // nullopt: fork the last tick of the file
+    std::string name;                           // name of the new world
+    std::string data_folder;                    // folder for the new run file
 };
 
-/// The storage names fields as requests do; the user typed options.
+/// Replaces the field names of requests by the names of the command line options.
 base::Refusal with_fork_options(base::Refusal refused) {
     for (base::Violation& violation : refused.violations) {
         if (violation.field == "generation") {
@@ -34,18 +34,18 @@ base::Refusal with_fork_options(base::Refusal refused) {
     return refused;
 }
 
-/// Prints what it made, or the error. Returns the exit status.
+/// Prints a description of the new world, or an error. Returns the exit status.
 int fork(const ForkOptions& options) {
     if (!simulation::is_world_name(options.name)) {
         return fail("evod fork",
                     "--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
     }
-    // fork() only reads the origin, so a server may be writing to it.
+    // fork() only reads the origin, so a server may write to that file at the same time.
     const auto origin = run_file::RunFile::open_checked(options.run_file);
     if (!origin) {
         return fail("evod fork", origin.error());
     }
-    // A snapshot of the file, so that a server can purge no generation that fork() is reading.
+    // Uses a snapshot of the file, so that a server cannot purge a generation while fork() reads it.
     if (const auto held = (*origin)->pin_snapshot(); !held) {
         return fail("evod fork", held.error());
     }

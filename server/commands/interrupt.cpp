@@ -7,7 +7,7 @@ namespace evod::commands {
 namespace {
 
 std::atomic<bool> flag = false;
-static_assert(std::atomic<bool>::is_always_lock_free); // a signal handler may only write such objects
+static_assert(std::atomic<bool>::is_always_lock_free); // a signal handler may write only to lock-free atomic objects
 extern "C" void set_flag(int) {
     flag.store(true, std::memory_order_relaxed);
 }

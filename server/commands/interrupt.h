@@ -1,13 +1,14 @@
-// Interrupt: SIGINT and SIGTERM set a flag that long-running commands poll, so that they can end in order.
+// Interrupt: SIGINT and SIGTERM set a flag. Commands that run for a long time poll the flag, so that they can end
+// cleanly.
 //
 // Threads  any thread may poll the flag.
 #pragma once
 
 namespace evod::commands {
 
-/// From now on the two signals set the flag instead of ending the program.
+/// From now on, SIGINT and SIGTERM set the flag instead of ending the program.
 void catch_interrupts();
-/// Whether one of them has arrived.
+/// Whether SIGINT or SIGTERM has arrived.
 bool interrupted();
 
 } // namespace evod::commands

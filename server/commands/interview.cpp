@@ -11,7 +11,7 @@ using parameters::Parameters;
 
 struct Question {
     const char* name;
-    bool (*matters)(const Parameters&); // with the answers so far; the question is asked only if true
+    bool (*matters)(const Parameters&); // gets the answers so far; the question is asked only if it returns true
 };
 
 constexpr auto always = [](const Parameters&) { return true; };

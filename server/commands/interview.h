@@ -1,4 +1,5 @@
-// Interview: the questions of `evod run --ask`, about population, food, poison, time and every option of the genetic algorithm.
+// Interview: the questions of `evod run --ask` about population, food, poison, time and the settings of the genetic
+// algorithm.
 #pragma once
 
 #include "server/base/result.h"
@@ -8,11 +9,11 @@
 
 namespace evod::commands {
 
-/// Asks one question per parameter. An empty answer accepts the proposed value. After an invalid answer, it prints what
-/// is allowed and asks again.
+/// Asks one question per parameter. An empty answer accepts the proposed value. After an invalid answer, prints the
+/// allowed values and asks again.
 ///
-/// proposed  the proposed values; valid.
-/// returns   valid parameters; refused if the input ends before the last answer.
+/// proposed  the proposed values, which must be valid.
+/// returns   valid parameters; a refusal if the input ends before the last answer.
 base::Result<parameters::Parameters> interview(const parameters::Parameters& proposed, std::istream& in,
                                                std::ostream& out);
 

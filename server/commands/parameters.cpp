@@ -1,5 +1,5 @@
-// `evod parameters` and `evod limits`: what the documents docs/PARAMETERS.md and docs/OPERATIONS.md contain, printed
-// from the registries in the program.
+// `evod parameters` and `evod limits`: print the lists in docs/PARAMETERS.md and docs/OPERATIONS.md from the registries
+// in the program.
 #include "server/parameters/parameters.h"
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
@@ -23,7 +23,7 @@ const char* effect_text(base::Effect effect) {
     return "";
 }
 
-/// Markdown, one row per parameter.
+/// A Markdown table with one row per parameter.
 std::string parameter_list() {
     std::string text =
         "# Parameters\n\n"

@@ -14,14 +14,14 @@ namespace {
 
 using base::RefusalCode;
 
-/// In the folder of the running program; empty if that folder is unknown.
+/// The path of the script in the folder of the running program; empty if that folder is unknown.
 std::string script_path() {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     return error ? std::string{} : (program.parent_path() / "plot_compare").string();
 }
 
-/// Runs the script, which prints its own errors to stderr.
+/// Runs the script. The script prints its own errors to stderr.
 base::Result<void> run_script(std::vector<std::string> words) {
     words.insert(words.begin(), script_path());
     std::vector<char*> arguments;

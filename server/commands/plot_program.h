@@ -1,7 +1,7 @@
-// Plot program: draws the curves of `evod compare`. It is the script plot_compare, which the installation puts beside
-// evod, and needs Python with matplotlib.
+// Plot program: draws the curves of `evod compare`. It runs the script plot_compare, which is installed beside evod and
+// needs Python with matplotlib.
 //
-// Threads  one; the caller waits until the script has ended.
+// Threads  one. The caller waits until the script has ended.
 #pragma once
 
 #include "server/base/result.h"
@@ -10,10 +10,10 @@
 
 namespace evod::commands {
 
-/// Refused where the script cannot draw; the message names the package that is missing.
+/// Checks that the script can draw. A refusal names the missing package.
 base::Result<void> check_plot_program();
 
-/// Draws curves into a file: SVG, or PNG or PDF if the name of the file ends so.
+/// Draws curves into a file. The format is PNG or PDF if the file name ends with that extension, otherwise SVG.
 ///
 /// curves  path of a CSV file with the columns arm, generation, mean, low, high.
 base::Result<void> draw_curves(const std::string& curves, const std::string& title, const std::string& subtitle,

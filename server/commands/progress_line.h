@@ -1,7 +1,7 @@
-// Progress line: one line on stderr that each update overwrites, at most ten times a second. Where stderr is not a
-// terminal, it prints nothing.
+// Progress line: one line on stderr. Each update overwrites it, at most ten times a second. If stderr is not a
+// terminal, nothing is printed.
 //
-// Threads  one at a time; callers on several threads hold a lock.
+// Threads  one at a time. If several threads use it, they must hold a lock.
 #pragma once
 
 #include <unistd.h>
@@ -14,7 +14,7 @@ namespace evod::commands {
 
 class ProgressLine {
   public:
-    /// text  returns the line; show() calls it only if 100 ms have passed since the last update.
+    /// text  a function that returns the line. show() calls it only if 100 ms have passed since the last update.
     template <class Text>
     void show(Text&& text) {
         if (!on_terminal_ || Clock::now() - shown_ < std::chrono::milliseconds{100}) {
@@ -35,9 +35,10 @@ class ProgressLine {
     Clock::time_point shown_{};
 };
 
-/// "90 s left", "37 min left", "2 h 05 min left".
-/// share         part of the work that is done, in (0, 1].
-/// seconds_gone  time that this part took.
+/// Formats the estimated remaining time: "90 s left", "37 min left", "2 h 05 min left".
+///
+/// share         finished share of the work, in (0, 1].
+/// seconds_gone  time that this share took.
 std::string time_left(double share, double seconds_gone);
 
 } // namespace evod::commands

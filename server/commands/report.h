@@ -1,4 +1,4 @@
-// Report: statistics of generations as a table for the terminal.
+// Report: formats the statistics of generations as a table for the terminal.
 #pragma once
 
 #include "server/simulation/statistics.h"
@@ -7,7 +7,7 @@
 
 namespace evod::commands {
 
-/// The heading of the table, and one row. The columns have fixed widths; the text has no line end.
+/// The heading of the table, and one row of it. The columns have fixed widths. The text does not end with a newline.
 std::string table_heading(bool with_island);
 std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
 

@@ -1,4 +1,4 @@
-// `evod run`: runs one experiment from beginning to end, without a network.
+// `evod run`: runs one experiment from beginning to end without a network.
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
@@ -34,27 +34,27 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct RunOptions {
-    std::string experiment; // path; empty: the default world
-    std::string population; // path; empty: the first generation is random
+    std::string experiment; // path; empty: use the default world
+    std::string population; // path; empty: draw the first generation at random
     std::optional<std::uint64_t> seed;
-    std::optional<std::uint32_t> generations; // replaces generation_limit
+    std::optional<std::uint32_t> generations; // overrides generation_limit
     std::size_t threads = default_thread_count();
-    std::vector<std::string> changes; // "name=value"
-    std::string csv;                  // path; empty: none
+    std::vector<std::string> changes; // texts of the form "name=value"
+    std::string csv;                  // path; empty: write no CSV file
     bool ask = false;
 };
 
-/// Exit statuses of `evod run` besides 0, for a limit or a target that was reached, exit_error and exit_interrupted.
+/// Exit statuses of `evod run`, besides exit_error, exit_interrupted, and 0 for a limit or target that was reached.
 constexpr int exit_value_not_allowed = 2, exit_stagnated = 3, exit_extinct = 4;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The time that a run has taken.
+/// The computing time of a run.
 struct Cost {
     double start_s = 0, tick_s = 0, turnover_s = 0;
-    std::uint64_t organism_ticks = 0; // sum over ticks of the organisms alive at the start
+    std::uint64_t organism_ticks = 0; // sum of the organisms alive at the start of each tick
 };
 
 base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
@@ -72,7 +72,7 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
     }
     experiment = *std::move(changed);
     if (options.ask) {
-        // An answer replaces the schedule of its parameter; Enter keeps the schedule.
+        // An answer replaces the schedule of its parameter. An empty answer keeps the schedule.
         const parameters::Parameters proposed = experiment.parameters;
         const auto answers = interview(proposed, std::cin, std::cout);
         if (!answers) {

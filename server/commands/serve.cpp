@@ -1,4 +1,4 @@
-// Serving: `evod` without a subcommand, and `evod replay`.
+// The server: `evod` without a subcommand, and `evod replay`.
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
@@ -26,8 +26,8 @@ void begin_log(const ServeOptions& options) {
                options.log_format == "json" ? log::Format::Json : log::Format::Text);
 }
 
-/// Raises the limit of file descriptors to what the system allows: each connection takes one, and the usual limit of
-/// 1,024 is soon reached.
+/// Raises the limit of file descriptors to the maximum that the system allows. Each connection takes one descriptor,
+/// and the usual limit of 1,024 is soon reached.
 void raise_descriptor_limit() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) {
@@ -45,7 +45,7 @@ void log_http_address(const boost::asio::ip::tcp::endpoint& http) {
     }
 }
 
-/// Serves until a signal or a ShutDown request ends the server. Returns the exit status.
+/// Runs the server until a signal or a ShutDown request ends it. Returns the exit status.
 int run_server(network::ServerOptions options) {
     raise_descriptor_limit();
     const std::string folder = options.data_folder, first_world = options.first_world.name;

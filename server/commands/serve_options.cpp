@@ -36,7 +36,7 @@ void add_http_options(Command& command, ServeOptions& options) {
     command.add_option("--http-bind", &options.http_bind_address, "Address for HTTP").needs(http).show_default();
 }
 
-/// The options that describe the same in both kinds of server.
+/// The part of the configuration that is the same for `evod` and `evod replay`.
 network::ServerOptions common_server_options(const ServeOptions& options) {
     network::ServerOptions server;
     server.bind_address = options.bind_address;

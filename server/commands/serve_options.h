@@ -1,4 +1,4 @@
-// Serve options: the options of `evod` and `evod replay`, and the server that they describe.
+// Serve options: the options of `evod` and `evod replay`, and the configuration of the server that they describe.
 //
 // Threads  one.
 #pragma once
@@ -17,7 +17,7 @@ class Command;
 
 namespace evod::commands {
 
-/// The variables that the options write. The defaults are those of the program.
+/// The variables to which the options write. The initial values are the defaults of the program.
 struct ServeOptions {
     std::string bind_address = "127.0.0.1", http_bind_address = "127.0.0.1";
     std::uint16_t port = codec::default_port;
@@ -26,7 +26,7 @@ struct ServeOptions {
     std::size_t threads = default_thread_count();
     std::string experiment_file, population_file;
     std::optional<std::uint64_t> seed;
-    std::string speed; // parse_speed() accepts it; empty: the default
+    std::string speed; // text that parse_speed() accepts; empty: the default
     bool start = false;
     std::string data_folder;
     bool keep_nothing = false;
@@ -38,18 +38,19 @@ struct ServeOptions {
     std::uint64_t keep_every = run_file::RunFile::Options{}.keep_every;
 };
 
-/// Addresses, access, TLS, metrics and log: the options of `evod` and of `evod replay`.
+/// Adds the options of both `evod` and `evod replay`: addresses, access, TLS, metrics and log.
 void add_server_options(command_line::Command& command, ServeOptions& options);
-/// The options of `evod` alone.
+/// Adds the options of `evod` only.
 void add_first_world_options(command_line::Command& command, ServeOptions& options);
 void add_storage_options(command_line::Command& command, ServeOptions& options);
 
-/// "max", or simulated seconds per second. Returns nothing for another text.
+/// Parses "max", or a number of simulated seconds per second. Returns nullopt for any other text.
 std::optional<simulation::Speed> parse_speed(const std::string& text);
 
-/// The server of `evod`. Reads the experiment and the population that the options name, and draws what they leave open.
+/// The configuration of the server for `evod`. Reads the experiment and the population that the options name. Draws at
+/// random what the options leave open.
 base::Result<network::ServerOptions> server_options(const ServeOptions& options);
-/// The server of `evod replay`.
+/// The configuration of the server for `evod replay`.
 network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run);
 
 } // namespace evod::commands

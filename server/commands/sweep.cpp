@@ -1,4 +1,4 @@
-// `evod sweep`: runs an experiment many times with other parameters and seeds, on one machine or on many.
+// `evod sweep`: runs an experiment many times with different parameters and seeds, on one or several machines.
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
@@ -32,19 +32,20 @@ using experiments::SweepFolder;
 using Clock = std::chrono::steady_clock;
 
 struct SweepOptions {
-    std::string file;                          // path of the sweep file
-    std::string out;                           // folder; empty: named like the file, without its extension
-    std::size_t jobs = default_thread_count(); // runs at a time, >= 1
-    bool run_files = false;                    // also write a run file per run
-    std::optional<std::size_t> array_index;    // make the runs of this cell alone
+    std::string file; // path of the sweep file
+    // Folder for the results; empty: the name of the sweep file without its extension.
+    std::string out;
+    std::size_t jobs = default_thread_count(); // number of simultaneous runs, >= 1
+    bool run_files = false;                    // also write a run file for each run
+    std::optional<std::size_t> array_index;    // run only this cell
     bool gather = false;                       // only write runs.csv
     bool dry_run = false;                      // only print cells and seeds
 };
 
-/// The progress of the runs, printed to stderr. Threads of the runner call it.
+/// Prints the progress of all runs to stderr. The threads of the runner call it.
 class Progress {
   public:
-    /// work  that the runs need; nullopt: unknown, so the number of finished runs is the measure.
+    /// work  total work of the runs; nullopt: unknown, so progress is measured by the number of finished runs.
     Progress(std::size_t runs, std::optional<double> work) : runs_{runs}, work_{work} {}
 
     void generation_done(double work) {
@@ -70,7 +71,7 @@ class Progress {
             char text[96];
             std::snprintf(text, sizeof text, "%zu of %zu runs, %.3g runs/%s", runs_done_, runs_,
                           rate < 1 ? 60 * rate : rate, rate < 1 ? "min" : "s");
-            // In the first two seconds an estimate is unreliable.
+            // An estimate is unreliable in the first two seconds.
             return std::string{text} + (s > 2 && share > 0 ? ", " + time_left(share, s) : "");
         });
     }
@@ -78,7 +79,7 @@ class Progress {
     const Clock::time_point start_ = Clock::now();
     const std::size_t runs_;
     const std::optional<double> work_;
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the members below
     std::size_t runs_done_ = 0;
     double done_ = 0;
     ProgressLine line_;
@@ -97,7 +98,7 @@ std::string seed_text(const Sweep& sweep, std::uint32_t replicate) {
     return std::to_string(experiments::replicate_seed(sweep.seed, replicate).value);
 }
 
-/// The runs of the sweep as two tables with tab-separated columns: seeds by replicate, and values by cell.
+/// Prints the runs of the sweep as two tables with tab-separated columns: seeds by replicate, and values by cell.
 void print_cells(const SweepOptions& options, const Sweep& sweep) {
     std::printf("%s\n\nreplicate\tseed\n", plan_text(options, sweep).c_str());
     for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
@@ -126,7 +127,7 @@ void print_seeds(const Sweep& sweep) {
     std::puts((text + (sweep.replicates > printed_max ? " …; --dry-run prints all of them" : "")).c_str());
 }
 
-/// Writes runs.csv, and prints how many rows it has and how the runs ended.
+/// Writes runs.csv. Prints its number of rows, and how many runs ended by which criterion.
 Result<void> gather(const SweepFolder& folder) {
     const auto gathered = folder.gather();
     if (!gathered) {
@@ -160,7 +161,7 @@ Refusal runs_missing(const std::vector<std::size_t>& missing, const Sweep& sweep
                        " are missing: " + names + (missing.size() > printed_max ? ", …" : ""));
 }
 
-/// Makes the runs, and prints how long they took. Returns how many it made.
+/// Executes the runs and prints their duration. Returns the number of finished runs.
 Result<std::size_t> make_runs(const std::vector<std::size_t>& runs, const Sweep& sweep, const SweepFolder& folder,
                               const SweepOptions& options) {
     std::optional<Progress> progress;
@@ -203,7 +204,7 @@ std::vector<std::size_t> run_numbers(const Sweep& sweep, std::optional<std::size
     return runs;
 }
 
-/// Makes the runs that are missing. Returns the exit status.
+/// Executes the runs that are still missing. Returns the exit status.
 Result<int> make_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
                               const std::string& out) {
     if (options.run_files) {
@@ -237,7 +238,7 @@ Result<int> make_missing_runs(const SweepOptions& options, const Sweep& sweep, c
     return 0;
 }
 
-/// Returns the exit status.
+/// Executes `evod sweep`. Returns the exit status.
 Result<int> run_sweep(const SweepOptions& options) {
     const auto sweep = load(options);
     if (!sweep) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int exit_out_of_memory = 3;
 
-/// Released before the last message is written, because writing it needs memory.
+/// Reserved memory. The handler frees it before it writes its message, because writing needs memory.
 std::unique_ptr<char[]> memory_for_last_message;
 
 [[noreturn]] void exit_after_second_failure() {
@@ -34,7 +34,7 @@ std::unique_ptr<char[]> memory_for_last_message;
     std::abort();
 }
 
-/// What the program lacks. Aborts if the exception has another cause.
+/// Names the exhausted resource. Aborts if the exception has any other cause.
 const char* missing_resource(std::exception_ptr error) {
     if (!error) {
         std::abort();
@@ -62,7 +62,7 @@ const char* missing_resource(std::exception_ptr error) {
         while (terminating != std::this_thread::get_id()) {
             ::pause(); // another thread ends the program
         }
-        exit_after_second_failure(); // writing the message below ran out of memory too
+        exit_after_second_failure(); // memory also ran out while the message below was written
     }
     const char* const missing = missing_resource(std::current_exception());
     memory_for_last_message.reset();

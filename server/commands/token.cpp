@@ -1,4 +1,4 @@
-// `evod token`: makes, lists and revokes tokens. A running server reads the changed token file within a second.
+// `evod token`: creates, lists and revokes tokens. A running server reads the changed token file within a second.
 #include "proto/command_line/command.h"
 #include "server/access/token_file.h"
 #include "server/commands/commands.h"
@@ -15,7 +15,7 @@ struct TokenOptions {
     std::string folder, name, role;
 };
 
-/// Prints the secret alone to stdout, so that a script can store it, and how to use it to stderr.
+/// Prints only the secret to stdout, so that a script can store it. Prints to stderr how to use the secret.
 int add_token(const TokenOptions& options) {
     const access::Role role = *access::role_named(options.role);
     const auto secret = access::add_token(options.folder, options.name, role);

@@ -1,4 +1,4 @@
-// `evod verify`: simulates the run of a run file again and compares the two.
+// `evod verify`: simulates a stored run again and compares the result with the run file.
 #include "server/replay/verify.h"
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
@@ -39,7 +39,7 @@ void print_difference(const std::string& path, const Difference& difference) {
               << difference.stored << ", simulated again " << difference.simulated << '\n';
 }
 
-/// simulated_for  the time since the first tick.
+/// simulated_for  time since the simulation began.
 std::string text_of(const VerifyProgress& now, std::chrono::duration<double> simulated_for) {
     if (now.ticks == 0) {
         return "reading: " + std::to_string(now.generations) + " of " + std::to_string(now.generations_in_all) +
@@ -48,13 +48,13 @@ std::string text_of(const VerifyProgress& now, std::chrono::duration<double> sim
     const double share = static_cast<double>(now.ticks) / static_cast<double>(now.ticks_in_all);
     std::string text = std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) +
                        " ticks simulated again, " + std::to_string(static_cast<int>(100 * share)) + " %";
-    if (simulated_for > std::chrono::seconds{2}) { // earlier estimates are unreliable
+    if (simulated_for > std::chrono::seconds{2}) { // an estimate is unreliable in the first two seconds
         text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s left";
     }
     return text;
 }
 
-/// Prints what it compared to stdout, or the first difference to stderr. Returns the exit status.
+/// Prints what was compared to stdout, or the first difference to stderr. Returns the exit status.
 int verify(const VerifyOptions& options) {
     const auto start = Clock::now();
     const auto file = run_file::RunFile::open_checked(options.run);
@@ -63,7 +63,7 @@ int verify(const VerifyOptions& options) {
     }
 
     ProgressLine progress;
-    std::mutex progress_mutex; // guards `progress`, which any thread may write, and simulating_since
+    std::mutex progress_mutex; // guards `progress` and simulating_since; any thread may call `progress`
     std::optional<Clock::time_point> simulating_since;
     const auto executor = runtime::make_executor(options.threads);
     const auto verified = replay::verify(**file, *executor, [&](const VerifyProgress& now) {

@@ -23,7 +23,7 @@ base::Refusal cannot_write(const std::string& path, const std::string& why) {
 } // namespace
 
 std::string AtomicFile::temporary_name(const std::string& path) {
-    std::random_device random; // processes on other machines may write into the same folder
+    std::random_device random; // processes on several machines may write into the same folder
     char number[17];
     std::snprintf(number, sizeof number, "%08x%08x", random(), random());
     return path + std::string{mark} + number;
@@ -35,7 +35,7 @@ bool AtomicFile::is_temporary(std::string_view name) {
 
 base::Result<void> AtomicFile::sync(const std::string& path) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    // Some file systems cannot sync a folder, and report EINVAL.
+    // Some file systems cannot sync a folder and report EINVAL.
     const bool synced = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
     const int error = errno;
     if (file >= 0) {

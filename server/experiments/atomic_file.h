@@ -1,7 +1,8 @@
-// Atomic file: a file that appears complete or not at all, also after a crash of the program or the machine.
+// Atomic file: writes a file that appears either complete or not at all, even after a crash of the program or the
+// machine.
 //
-// It is written under a temporary name in the same folder, synced to the disk, and renamed. A file that another process
-// put there meanwhile is replaced.
+// The file is written under a temporary name in the same folder, synced to the disk and then renamed. If another
+// process has meanwhile created a file with the final name, that file is replaced.
 //
 // Threads  one at a time.
 #pragma once
@@ -18,20 +19,20 @@ class AtomicFile {
     explicit AtomicFile(std::string path);
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
-    /// Removes the temporary file, unless finish() has renamed it.
+    /// Deletes the temporary file, unless finish() has renamed it.
     ~AtomicFile();
 
-    /// After an error, which finish() reports, it writes nothing more.
+    /// Appends text. After an error, writes nothing more; finish() reports the error.
     void write(std::string_view text);
     base::Result<void> finish();
     /// The first error; empty if there is none.
     const std::string& error() const { return error_; }
 
-    /// A new name in the folder of `path`, different at every call and in every process.
+    /// A new temporary name in the folder of `path`. It is different for every call and every process.
     static std::string temporary_name(const std::string& path);
-    /// Whether temporary_name() made this name.
+    /// Whether the name was returned by temporary_name().
     static bool is_temporary(std::string_view name);
-    /// Syncs the contents of a file, or the names in a folder, to the disk.
+    /// Syncs a file, or the list of names in a folder, to the disk.
     static base::Result<void> sync(const std::string& path);
 
   private:
@@ -39,7 +40,7 @@ class AtomicFile {
     void note_error();
 
     const std::string path_, temporary_path_;
-    int file_; // descriptor
+    int file_; // file descriptor
     std::string buffer_, error_;
 };
 

@@ -34,17 +34,17 @@ Result<void> write_file(const fs::path& path, Write&& write) {
     return {};
 }
 
-/// An experiment file with all parameters and the seed.
+/// The text of an experiment file with all parameters and the seed.
 std::string experiment_text(const run_file::RunIdentity& identity) {
-    // The parameters of a fork are those of the generation it begins with, so its schedule cannot begin in generation
-    // 1.
+    // The parameters of a fork are those of the generation with which it begins. So its schedule cannot begin in
+    // generation 1.
     const std::string parameters =
         to_experiment_text(identity.parameters, parameters::Written::Everything,
                            identity.forked_from ? parameters::Schedule{} : identity.schedule);
     return "{\n  \"seed\": " + std::to_string(identity.seed.value) + "," + parameters.substr(1);
 }
 
-/// 64 hexadecimal digits.
+/// The checksum as 64 hexadecimal digits.
 Result<std::string> sha256_of(const fs::path& path) {
     const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context{EVP_MD_CTX_new(), EVP_MD_CTX_free};
     std::ifstream in{path, std::ios::binary};
@@ -86,7 +86,7 @@ Result<void> write_checksums(const fs::path& folder) {
     });
 }
 
-/// How to repeat the run with `evod run`, or why that is impossible.
+/// Instructions to repeat the run with `evod run`, or the reason why that is impossible.
 Result<std::string> rerun_text(run_file::RunFile& file) {
     const run_file::RunIdentity& identity = file.identity();
     const auto changes = replay::parameter_changes(file);

@@ -1,10 +1,10 @@
-// Bundle: a folder with everything about a run that another person needs to check and repeat it.
+// Bundle: a folder with everything that another person needs to check and repeat a run.
 //
-//   NAME.evod        a copy of the run file, consistent even if a server writes to it
+//   NAME.evod        a copy of the run file, consistent even if a server writes to the original
 //   experiment.json  the initial parameters and the seed of the run
-//   population.csv   the initial organisms, if they were given
+//   population.csv   the initial organisms, if a population was given
 //   generations.csv, organisms.csv, lineage.csv, events.csv
-//   REPEAT.md        how to repeat the run, and which evod can
+//   REPEAT.md        instructions to repeat the run, and the version of evod that they need
 //   SHA256SUMS       checksums of all files, for `sha256sum --check`
 #pragma once
 
@@ -14,7 +14,8 @@
 
 namespace evod::experiments {
 
-/// folder  is made; refused if it exists. After another refusal it does not exist.
+/// Creates `folder` and writes the bundle. Refused if the folder exists. After any other refusal, the folder does not
+/// exist.
 base::Result<void> write_bundle(const replay::RunSource& run, const std::string& folder);
 
 } // namespace evod::experiments

@@ -1,11 +1,11 @@
-// Comparison: runs several worlds with the same seeds and tests the differences of their rises.
+// Comparison: runs several worlds with the same seeds and tests whether their rises in fitness differ.
 //
-// The rise of a run is the mean fitness of its organisms in the last generation minus that in the first. A replicate is
-// a seed. The first generation of a seed has the same organisms in every arm that does not change how organisms are
-// made, so the test pairs the runs by seed.
+// The rise of a run is the mean fitness of its organisms in the last generation minus that in the first one. A
+// replicate is a seed. With the same seed, all arms begin with the same organisms, unless an arm changes how organisms
+// are created. So the test pairs the runs by seed.
 //
-// Threads      runs are distributed to `jobs` threads, one run per thread at a time (trials.h).
-// Determinism  the same arms, seed and counts give the same numbers to the last bit, for any `jobs`.
+// Threads      `jobs` threads share the runs; each thread does one run at a time (trials.h).
+// Determinism  the same arms, seed and counts give the same numbers to the last bit, for any value of `jobs`.
 #pragma once
 
 #include "server/base/random.h"
@@ -22,20 +22,20 @@
 
 namespace evod::experiments {
 
-/// A world to compare.
+/// One of the worlds that are compared.
 struct Arm {
     std::string name;
-    parameters::Parameters parameters;  // valid; generation_limit is their only termination criterion
-    parameters::Schedule schedule = {}; // in which faults_of() finds nothing
+    parameters::Parameters parameters;  // valid; generation_limit is the only termination criterion
+    parameters::Schedule schedule = {}; // a schedule in which faults_of() finds no faults
 };
 
-/// A generation of a run, over all islands.
+/// The fitness in one generation of a run, over all islands.
 struct GenerationFitness {
     double mean = 0, best = 0;
     std::uint64_t organism_count = 0, alive_count = 0;
     friend bool operator==(const GenerationFitness&, const GenerationFitness&) = default;
 };
-using Course = std::vector<GenerationFitness>; // of one run, by generation from 1
+using Course = std::vector<GenerationFitness>; // one run, by generation; the first element is generation 1
 
 double rise_of(const Course& course);
 
@@ -43,28 +43,29 @@ struct RunsWanted {
     base::Seed seed;
     std::uint32_t replicates = 20;                              // >= 2
     std::size_t jobs = 1;                                       // >= 1
-    std::function<void(double share)> progress = [](double) {}; // called from several threads, one at a time
-    std::function<bool()> stopped = [] { return false; };       // called from several threads at once
+    std::function<void(double share)> progress = [](double) {}; // called by several threads, but never at the same time
+    std::function<bool()> stopped = [] { return false; };       // called by several threads at the same time
 };
 
 /// Runs every arm with every seed.
 ///
-/// returns  shape (arms, replicates), each with generation_limit generations; nullopt after stopped() returned true.
+/// returns  shape (arms, replicates); each element has generation_limit generations. nullopt after stopped() returned
+///          true.
 std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> arms, const RunsWanted& wanted);
 
-/// The difference between the first arm and another.
+/// The difference between the first arm and one other arm.
 struct Finding {
-    std::vector<double> differences; // rise of the first arm minus rise of the other, by replicate
+    std::vector<double> differences; // by replicate: rise of the first arm minus rise of the other arm
     double mean = 0;
-    Interval interval;                 // 95 %, of the mean difference
-    std::optional<double> effect_size; // hedges_g()
-    double p = 1;                      // sign_flip_p()
-    double adjusted_p = 1;             // for the number of tests (Holm)
+    Interval interval;                 // 95 % confidence interval of the mean difference
+    std::optional<double> effect_size; // result of hedges_g()
+    double p = 1;                      // result of sign_flip_p()
+    double adjusted_p = 1;             // p adjusted for the number of tests (Holm)
 };
 
-/// Compares the first arm with each other.
+/// Compares the first arm with every other arm.
 ///
-/// courses  shape (arms >= 2, replicates >= 2), of at least one generation.
+/// courses  shape (arms >= 2, replicates >= 2); each element has at least one generation.
 /// returns  shape (arms − 1).
 std::vector<Finding> find_differences(std::span<const std::vector<Course>> courses, base::Seed seed);
 
@@ -72,8 +73,8 @@ std::vector<Finding> find_differences(std::span<const std::vector<Course>> cours
 constexpr double significance = 0.05;
 
 enum class Judgement { Above, Below, NotShown, CannotBeShown };
-/// CannotBeShown: there are too few replicates for `tests` tests: no difference could have an adjusted p below
-/// `significance`.
+/// Judges a finding. CannotBeShown means that there are too few replicates for this number of tests: even the largest
+/// difference could not have an adjusted p below `significance`.
 Judgement judge(const Finding& finding, std::size_t tests);
 
 } // namespace evod::experiments

@@ -18,7 +18,7 @@ struct NamedExperiment {
     parameters::Experiment experiment;
 };
 
-/// The experiments by the names of their files. A name that repeats gets a number.
+/// Loads the experiments and names them after their files. If a name occurs twice, the second one gets a number.
 Result<std::vector<NamedExperiment>> load_named(const std::vector<std::string>& paths) {
     std::vector<NamedExperiment> named;
     for (const std::string& path : paths) {

@@ -1,4 +1,4 @@
-// Comparison plan: the worlds that a comparison runs, from experiment files and changes to them.
+// Comparison plan: derives the worlds of a comparison from experiment files and changes.
 #pragma once
 
 #include "server/base/result.h"
@@ -15,25 +15,27 @@
 namespace evod::experiments {
 
 struct ComparisonRequest {
-    std::vector<std::string> experiments = {}; // paths; with controls at most one, empty: the default world
+    // Paths; empty: the default world; at most one path if controls are compared.
+    std::vector<std::string> experiments = {};
     bool controls = false;
-    /// >= 2; nullopt: generation_limit of the first, or default_generations.
+    /// Number of generations, >= 2. nullopt: the generation_limit of the first experiment, or default_generations.
     std::optional<std::uint32_t> generations = {};
     std::optional<std::uint64_t> seed = {}; // nullopt: the seed of the first experiment, or drawn_seed
     base::Seed drawn_seed = {};
-    std::vector<std::string> changes = {}; // "name=value", made to all experiments
+    std::vector<std::string> changes = {}; // texts of the form "name=value", applied to all experiments
 };
 constexpr std::uint32_t default_generations = 60;
 
 struct ComparisonPlan {
-    std::vector<Arm> arms; // to run; the first is the world that the others are compared with
+    std::vector<Arm> arms; // the worlds to run; the first is compared with all others
     std::vector<Control>
-        controls; // of the first arm, also those that need no run; empty: other experiments are compared
+        // The controls of the first arm, including those that need no run; empty: different experiments are compared.
+        controls;
     base::Seed seed;
     std::uint32_t generations;
 };
 
-/// Loads and validates the experiments, and makes their controls.
+/// Loads and validates the experiments, and creates their controls.
 base::Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request);
 
 /// Writes the fitness of every run and generation as CSV.
@@ -41,8 +43,8 @@ base::Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request);
 /// courses  as run_arms() returns them for the arms of the plan.
 void write_courses(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses);
 
-/// Writes the mean fitness over the replicates by arm and generation, with its 95 % confidence interval, as CSV: the
-/// data of a plot.
+/// Writes the data of a plot as CSV: the mean fitness over the replicates, by arm and generation, with its 95 %
+/// confidence interval.
 void write_curves(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses);
 
 } // namespace evod::experiments

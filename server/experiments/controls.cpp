@@ -8,15 +8,16 @@
 namespace evod::experiments {
 namespace {
 
-using namespace evolution; // the enumerations of its parameters
+using namespace evolution; // enumerations of the evolution parameters
 using parameters::Parameters;
 
-/// Lets nothing depend on fitness.
+/// Removes every influence of fitness on breeding.
 Parameters with_random_selection(Parameters p) {
     p.selection = SelectionMethod::Random;
     p.elite_count = 0;
     if (p.population_model == PopulationModel::SteadyState) {
-        // Steady state keeps the fittest. A hybrid model keeps as many organisms, drawn at random.
+        // Steady state keeps the fittest organisms. The hybrid model keeps the same number of organisms, drawn at
+        // random.
         p.population_model =
             p.replaced_count < p.population_size ? PopulationModel::Hybrid : PopulationModel::Generational;
         if (p.population_model == PopulationModel::Hybrid) {
@@ -69,7 +70,7 @@ constexpr std::string_view poison_conditions[] = {"poison_count", "population_si
 
 struct NamesOfControl {
     Names made_by;    // parameters that the control sets
-    Names depends_on; // other parameters that decide whether it can differ
+    Names depends_on; // other parameters that determine whether the control can differ
 };
 NamesOfControl names_of(ControlKind kind) {
     switch (kind) {

@@ -44,7 +44,7 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
         const std::string name = change.substr(0, equals), text = change.substr(equals + 1);
         const parameters::ParameterDescription* description = parameters::find_parameter(name);
         if (description == nullptr) {
-            assignments.push_back({name, text}); // assign() refuses the unknown name
+            assignments.push_back({name, text}); // assign() rejects the unknown name
             continue;
         }
         base::Result<parameters::ParameterValue> value = parameters::parse_value(*description, text);

@@ -1,4 +1,4 @@
-// Experiment files: reads them, and makes the changes of `--set`.
+// Experiment files: reads them and applies the changes of `--set`.
 #pragma once
 
 #include "server/parameters/experiment.h"
@@ -8,25 +8,25 @@
 
 namespace evod::experiments {
 
-/// The text of a file, at most 1 MiB.
+/// Reads the text of a file of at most 1 MiB.
 ///
-/// kind  what the file should be, for errors: "an experiment file".
+/// kind  the expected kind of file, for error messages: "an experiment file".
 base::Result<std::string> load_text(const std::string& path, const std::string& kind);
 
-/// Reads and validates a file. The refusal's message begins with the path.
+/// Reads and validates an experiment file. The message of a refusal begins with the path.
 base::Result<parameters::Experiment> load_experiment(const std::string& path);
 
-/// Makes each change "name=value", for all generations: it removes the parameter from the schedule. Violations are
-/// named "--set name".
+/// Applies each change "name=value" to all generations, so it also removes the parameter from the schedule. A violation
+/// has the name "--set name".
 base::Result<parameters::Experiment> with_changes(parameters::Experiment experiment,
                                                   const std::vector<std::string>& changes);
 
-/// Makes the schedule begin with the parameters of the experiment, and validates each of its generations. Violations
-/// name the generation.
+/// Makes the first values of the schedule equal to the parameters of the experiment, and validates every generation of
+/// the schedule. Violations name the generation.
 base::Result<void> fit_schedule(parameters::Experiment& experiment);
 
-/// The name of the world of an experiment: the name of the file without folder and extension, at most 64 characters;
-/// those other than a-z A-Z 0-9 _ - become "_".
+/// Derives the name of an experiment's world from the name of its file, without folder and extension. It has at most 64
+/// characters. Each character other than a-z A-Z 0-9 _ - becomes "_".
 std::string world_name(const std::string& path);
 
 } // namespace evod::experiments

@@ -52,7 +52,7 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
         observed += difference;
         magnitude += std::abs(difference);
     }
-    // Equal sums may differ in the last digits, because rounding depends on the signs.
+    // Equal sums may differ in their last digits, because rounding depends on the signs.
     const double least = std::abs(observed) - 1e-12 * magnitude;
     const std::size_t count = differences.size();
     const auto is_as_far = [&](const auto& is_negative) {
@@ -63,7 +63,7 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
         return std::abs(sum) >= least;
     };
     if (count <= exact_sign_flips_max) {
-        // Inverting all signs only inverts the sum, so the last sign can stay fixed.
+        // Inverting all signs only inverts the sum, so it is enough to try the patterns with a fixed last sign.
         const std::uint32_t patterns = 1u << (count - 1);
         std::uint32_t as_far = 0;
         for (std::uint32_t signs = 0; signs < patterns; ++signs) {

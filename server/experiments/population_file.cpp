@@ -14,7 +14,7 @@ using base::RefusalCode;
 
 namespace {
 
-constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take some 70 MB
+constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take about 70 MB
 
 } // namespace
 

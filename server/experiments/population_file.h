@@ -1,4 +1,4 @@
-// Population files: the chromosomes that a world begins with, as CSV (proto/codec/population_csv.h).
+// Population files: CSV files with the chromosomes with which a world begins (proto/codec/population_csv.h).
 #pragma once
 
 #include "server/base/result.h"
@@ -8,7 +8,7 @@
 
 namespace evod::experiments {
 
-/// Reads a file for a world with these parameters. Returns nullptr for an empty path. The refusal names the file.
+/// Reads a file for a world with these parameters. Returns nullptr if `path` is empty. A refusal names the file.
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
                                                           const parameters::Parameters& parameters);
 

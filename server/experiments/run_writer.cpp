@@ -7,7 +7,7 @@
 
 namespace evod::experiments {
 
-// Relaxed durability is enough, because finish() syncs the file before it gets its name.
+// Relaxed durability is sufficient, because finish() syncs the file before it renames it.
 RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId& run_id,
                      const simulation::World& world)
     : path_{std::move(path)}
@@ -20,7 +20,7 @@ RunWriter::~RunWriter() {
         return;
     }
     file_->reset();
-    (void)run_file::remove_run_file(temporary_path_); // if it stays, no program reads a file of that name
+    (void)run_file::remove_run_file(temporary_path_); // if this fails, no program reads a file with that name
 }
 
 base::Result<void> RunWriter::follow(const simulation::World& world) {

@@ -23,10 +23,10 @@ bool has_too_many_runs(const std::string& field, const JsonNode& node, std::size
     return true;
 }
 
-/// A value by the column of its parameter in Sweep::swept.
+/// A value, and the index of its parameter in Sweep::swept.
 using ColumnValue = std::pair<std::size_t, ParameterValue>;
 
-/// The values that each element of a list names. Adds the parameters to sweep.swept in the order in which they appear.
+/// Reads the values in each element of a list. Adds each new parameter to sweep.swept in order of appearance.
 std::vector<std::vector<ColumnValue>> read_list_cells(const JsonNode& list, Sweep& sweep, SweepErrors& errors) {
     std::vector<std::vector<ColumnValue>> given(list.elements.size());
     for (std::size_t cell = 0; cell < given.size(); ++cell) {
@@ -58,7 +58,7 @@ void read_list(const JsonNode& list, Sweep& sweep, SweepErrors& errors) {
         return;
     }
     auto given = read_list_cells(list, sweep, errors);
-    std::vector<ParameterValue> defaults; // those of the experiment
+    std::vector<ParameterValue> defaults; // values of the experiment
     for (const ParameterDescription* parameter : sweep.swept) {
         defaults.push_back(parameter->get(sweep.parameters));
     }
@@ -70,7 +70,7 @@ void read_list(const JsonNode& list, Sweep& sweep, SweepErrors& errors) {
     }
 }
 
-/// Adds the values of the range to the dimension. Steps of whole numbers that round to the same one appear once.
+/// Adds the values of the range to the dimension. If several steps round to the same whole number, adds it once.
 void add_steps(Dimension& dimension) {
     for (std::size_t i = 0; i < dimension.steps; ++i) {
         auto value = dimension.range->step(i, dimension.steps);
@@ -112,8 +112,8 @@ void read_grid(const JsonMember& grid, Sweep& sweep, SweepErrors& errors) {
     }
 }
 
-/// Cuts the range of each parameter into `samples` parts of equal probability. Each part gets one sample; the parts of
-/// different parameters are combined at random.
+/// Divides the range of each parameter into `samples` parts of equal probability, and draws one sample from each part.
+/// The parts of different parameters are combined at random.
 void draw_samples(const std::vector<Dimension>& dimensions, std::uint32_t samples, Sweep& sweep) {
     sweep.cells.assign(samples, std::vector<ParameterValue>(dimensions.size()));
     const base::RandomKey key{sweep.seed, base::Purpose::LatinHypercube, 0, 0};
@@ -136,7 +136,7 @@ void draw_samples(const std::vector<Dimension>& dimensions, std::uint32_t sample
     }
 }
 
-/// The members of a Latin hypercube; nullopt, with errors, if they are invalid.
+/// The members of a Latin hypercube. If they are invalid, reading adds errors and returns nullopt.
 struct Hypercube {
     std::uint32_t samples = 0;
     const JsonNode* parameters = nullptr;

@@ -85,7 +85,7 @@ std::optional<ParameterValue> read_swept_value(const ParameterDescription& param
 
 namespace {
 
-/// Reports values that appear twice. Returns whether there are any.
+/// Adds an error for every value that appears twice. Returns whether there are any.
 bool find_repetitions(const Dimension& dimension, const JsonNode& list, const std::string& field, SweepErrors& errors) {
     bool found = false;
     std::set<ParameterValue> seen;
@@ -109,7 +109,7 @@ bool read_values(Dimension& dimension, const JsonNode& list, const std::string& 
     return dimension.values.size() == list.elements.size() && !find_repetitions(dimension, list, field, errors);
 }
 
-/// Reads the members of a range. Returns the first that is missing; nullptr if all are given.
+/// Reads the members of a range. Returns the name of the first missing member; nullptr if all are present.
 const char* read_range_members(Dimension& dimension, Range& range, const JsonNode& node, const std::string& field,
                                Steps steps, SweepErrors& errors) {
     bool has_from = false, has_to = false, has_steps = steps == Steps::None;

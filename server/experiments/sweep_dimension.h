@@ -1,7 +1,7 @@
-// Sweep dimension: the values that a sweep file gives to one parameter, as a list or as a range.
+// Sweep dimension: the values of one parameter in a sweep file, given as a list or as a range.
 //
 // Threads      none.
-// Determinism  the values follow from the text alone.
+// Determinism  the values depend only on the text.
 #pragma once
 
 #include "server/parameters/experiment.h"
@@ -14,7 +14,7 @@
 
 namespace evod::experiments {
 
-/// What is wrong with a sweep file. Fields get their line: "grid.mutation_chance[2] (line 4)".
+/// The errors in a sweep file. Each field is named with its line: "grid.mutation_chance[2] (line 4)".
 class SweepErrors {
   public:
     void add(std::string field, std::string allowed, std::string got) {
@@ -27,15 +27,15 @@ class SweepErrors {
     std::vector<base::Violation> violations;
 };
 
-/// Numbers between two ends.
+/// A range of numbers.
 struct Range {
     double from = 0, to = 1; // from < to
-    bool log = false;        // logarithmic scale, else linear
+    bool log = false;        // true: logarithmic scale; false: linear scale
     bool whole = false;      // whole numbers only
 
-    /// The i-th of `steps` evenly spaced numbers, with both ends. A whole number is the nearest.
+    /// The i-th of `steps` evenly spaced numbers, including both ends. For whole numbers, rounds to the nearest one.
     parameters::ParameterValue step(std::size_t i, std::size_t steps) const;
-    /// The number at the quantile u, 0 <= u < 1. Each whole number has an equal share of u, by the scale.
+    /// The number at the quantile u, 0 <= u < 1. On the given scale, each whole number has an equal share of u.
     parameters::ParameterValue quantile(double u) const;
 
   private:
@@ -45,27 +45,28 @@ struct Range {
 
 struct Dimension {
     const parameters::ParameterDescription* parameter = nullptr;
-    std::vector<parameters::ParameterValue> values; // of a list
-    std::optional<Range> range;                     // instead of a list
-    std::size_t steps = 0;                          // of the range, in a grid
+    std::vector<parameters::ParameterValue> values; // values of a list
+    std::optional<Range> range;                     // set if the dimension is not a list
+    std::size_t steps = 0;                          // number of steps of the range, only in a grid
 };
 
-/// Sets a parameter to a value that it allows.
+/// Sets a parameter to a value, which it must allow.
 void set_parameter(const parameters::ParameterDescription& description, const parameters::ParameterValue& value,
                    parameters::Parameters& parameters);
 
-/// The parameter that the member names; nullptr, with an error, if there is none.
+/// The parameter with the name of the member. If there is none, adds an error and returns nullptr.
 const parameters::ParameterDescription* find_swept(const parameters::JsonMember& member, const std::string& field,
                                                    SweepErrors& errors);
-/// A value in the type of the parameter; nullopt, with an error, if the parameter does not allow it.
+/// Converts a value to the type of the parameter. If the parameter does not allow it, adds an error and returns
+/// nullopt.
 std::optional<parameters::ParameterValue> read_swept_value(const parameters::ParameterDescription& parameter,
                                                            const std::string& field, const parameters::JsonNode& node,
                                                            SweepErrors& errors);
-/// Whether a range has "steps": in a grid it must, in a Latin hypercube it cannot.
+/// Whether a range has a member "steps": in a grid it must; in a Latin hypercube it must not.
 enum class Steps { Needed, None };
-/// Reads the list or the range of one parameter; nullopt, with errors, if it is invalid.
+/// Reads the list or the range of one parameter. If it is invalid, adds errors and returns nullopt.
 ///
-/// field  as errors name it: "grid.mutation_chance".
+/// field  name of the parameter in errors: "grid.mutation_chance".
 std::optional<Dimension> read_dimension(const parameters::JsonMember& member, const std::string& field, Steps steps,
                                         SweepErrors& errors);
 

@@ -22,7 +22,7 @@ bool has_an_end(const Parameters& parameters) {
            parameters.stop_at_extinction;
 }
 
-/// The members of the file, before the experiment and the design are read.
+/// The members of the file, before the experiment and the design have been read.
 struct SweepMembers {
     const JsonMember* experiment = nullptr;
     std::vector<const JsonMember*> designs;
@@ -76,7 +76,7 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
     return members;
 }
 
-/// prefix  of the fields in errors.
+/// prefix  precedes the names of fields in errors.
 void take_experiment(const base::Result<parameters::Experiment>& experiment, const std::string& prefix, Sweep& sweep,
                      SweepErrors& errors) {
     if (experiment) {
@@ -107,7 +107,7 @@ void read_experiment_member(const JsonNode& node, const LoadExperiment& load, Sw
     }
 }
 
-/// "cell 3 (food_count 5): "
+/// The beginning of an error about a cell: "cell 3 (food_count 5): ".
 std::string cell_prefix(const Sweep& sweep, std::size_t cell) {
     std::string name = "cell " + std::to_string(cell);
     for (std::size_t i = 0; i < sweep.swept.size(); ++i) {
@@ -117,7 +117,7 @@ std::string cell_prefix(const Sweep& sweep, std::size_t cell) {
     return name + (sweep.swept.empty() ? ": " : "): ");
 }
 
-/// Reports cells whose runs no criterion would end.
+/// Reports cells whose runs would never end, because they have no termination criterion.
 void check_ends(const Sweep& sweep, SweepErrors& errors) {
     std::vector<std::size_t> endless;
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
@@ -135,7 +135,7 @@ void check_ends(const Sweep& sweep, SweepErrors& errors) {
     }
 }
 
-/// Checks the values of each cell together, and with the schedule.
+/// Checks that the values of each cell are consistent with each other and with the schedule.
 void check_cells(const Sweep& sweep, SweepErrors& errors) {
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
         const Parameters parameters = sweep.parameters_of(cell);
@@ -177,7 +177,7 @@ Sweep read_sweep(const JsonNode& document, const LoadExperiment& load, SweepErro
     }
     if (errors.violations.empty()) {
         for (const ParameterDescription* parameter : sweep.swept) {
-            sweep.schedule.remove(parameter->name); // the value of the cell holds in all generations
+            sweep.schedule.remove(parameter->name); // the value in the cell applies to all generations
         }
         check_cells(sweep, errors);
     }

@@ -1,11 +1,11 @@
-// Sweep files: JSON files that describe many runs of one experiment with other parameters. docs/CLUSTER.md has the
-// format.
+// Sweep files: JSON files that describe many runs of one experiment with different parameters. docs/CLUSTER.md
+// documents the format.
 //
-// A cell is one set of values; a run is one replicate of a cell. Cells, replicates and runs are numbered from 0. The
+// A cell is one set of values. A run is one replicate of a cell. Cells, replicates and runs are numbered from 0. The
 // number of a run is cell × replicates + replicate.
 //
 // Threads      none.
-// Determinism  the cells follow from the text and the experiment alone, also where they are drawn at random.
+// Determinism  the cells depend only on the text and the experiment, even if they are drawn at random.
 #pragma once
 
 #include "server/base/random.h"
@@ -23,32 +23,32 @@ namespace evod::experiments {
 struct Sweep {
     static constexpr std::size_t runs_max = 100'000;
 
-    std::string text;                  // of the file
-    parameters::Parameters parameters; // of the experiment
-    parameters::Schedule schedule;     // of the experiment, without the swept parameters
+    std::string text;                  // text of the file
+    parameters::Parameters parameters; // parameters of the experiment
+    parameters::Schedule schedule;     // schedule of the experiment, without the swept parameters
     base::Seed seed{1};
     std::uint32_t replicates = 1;
     std::vector<const parameters::ParameterDescription*> swept; // in the order of the file
     std::vector<std::vector<parameters::ParameterValue>> cells; // shape (cells, swept)
 
     std::size_t run_count() const { return cells.size() * replicates; }
-    /// Valid, and with a criterion that ends the run.
+    /// The parameters of a cell. They are valid and contain a criterion that ends the run.
     parameters::Parameters parameters_of(std::size_t cell) const;
-    /// In which faults_of() finds nothing.
+    /// The schedule of a cell. faults_of() finds no faults in it.
     parameters::Schedule schedule_of(std::size_t cell) const;
 };
 
 using LoadExperiment = std::function<base::Result<parameters::Experiment>(const std::string& path)>;
 
-/// Reads the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", or the
-/// cell whose values contradict each other. Reports at most violations_max of them.
+/// Parses the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", or the
+/// cell whose values contradict each other. Reports at most violations_max violations.
 ///
-/// load  called for an experiment that is given by its path.
+/// load  called if the experiment is given by its path.
 base::Result<Sweep> parse_sweep(std::string_view text, const LoadExperiment& load);
 constexpr std::size_t violations_max = 100;
 
-/// Reads a file and the experiment that it names, relative to the folder of the file. The refusal's message begins with
-/// the path.
+/// Reads a sweep file and its experiment. The path of the experiment is relative to the folder of the sweep file. The
+/// message of a refusal begins with the path of the file.
 base::Result<Sweep> load_sweep(const std::string& path);
 
 } // namespace evod::experiments

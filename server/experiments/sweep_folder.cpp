@@ -35,7 +35,7 @@ struct Fact {
     std::string name, text;
 };
 
-/// Everything that the results depend on, and nothing else.
+/// All facts that determine the results, and no others.
 std::vector<Fact> facts_of(const Sweep& sweep) {
     std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
     std::erase(parameters, '\n');
@@ -58,7 +58,7 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
             {"sweep file", "\n" + text}};
 }
 
-/// As a comment of one or more lines.
+/// Formats a fact as a comment of one or more lines.
 std::string to_text(const Fact& fact) {
     std::string text = "# " + fact.name + ": ";
     for (const char c : fact.text) {
@@ -75,9 +75,9 @@ std::string provenance_of(const Sweep& sweep) {
     return text;
 }
 
-/// The refusal of a folder with other results: which facts differ.
+/// The refusal of a folder with results of another sweep. It names the facts that differ.
 ///
-/// there  the text of its sweep.txt.
+/// there  text of the sweep.txt in the folder.
 base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
                                     path + " contains the results of another sweep; name another folder with --out");
@@ -88,7 +88,7 @@ base::Refusal other_sweep(const std::string& path, const std::string& there, con
         const std::string name = "\n# " + fact.name + ": ";
         const std::size_t begin = there.find(name);
         std::string got = begin == std::string::npos ? "nothing" : there.substr(begin + name.size());
-        got = got.substr(0, got.find("\n# ")); // continuation lines begin with more spaces
+        got = got.substr(0, got.find("\n# ")); // continuation lines are indented further
         const bool long_text = fact.text.find('\n') != std::string::npos;
         refused.violations.push_back({fact.name, long_text ? "no change since the sweep began" : fact.text,
                                       long_text ? "a changed text" : got.substr(0, got.find('\n'))});
@@ -114,7 +114,7 @@ Result<void> make_folder(const std::string& path) {
                    path + " cannot be made: " + (error ? error.message() : "a file of that name exists"));
 }
 
-/// The last line of a file; nullopt if the file is missing or ends within a line.
+/// The last line of a file; nullopt if the file is missing or does not end with a newline.
 std::optional<std::string> last_line(const std::string& part) {
     std::error_code error;
     if (!fs::is_regular_file(part, error)) {
@@ -188,7 +188,8 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
 Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep) {
     const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
     std::error_code error;
-    std::string result; // checked before sweep.txt: another task may be making both now, sweep.txt first
+    // Another task may create both files at the same time, sweep.txt first; so this one is checked first.
+    std::string result;
     for (const char* name : {"/runs.csv", "/parts", "/run-files"}) {
         if (fs::exists(path + name, error)) {
             result = path + name;
@@ -298,7 +299,7 @@ Result<SweepFolder::Gathered> SweepFolder::gather() const {
     return gathered;
 }
 
-/// Removes the temporary files of processes that were killed. After gather() no process needs them.
+/// Deletes the temporary files of processes that were killed. After gather() no process needs them.
 void SweepFolder::remove_temporary_files() const {
     std::error_code error;
     std::vector<fs::path> left;

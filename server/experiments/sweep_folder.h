@@ -1,15 +1,15 @@
-// Sweep folder: the results of a sweep.
+// Sweep folder: the folder with the results of a sweep.
 //
-//   sweep.txt                          the identity of the sweep and of evod: the comment at the head of runs.csv
+//   sweep.txt                          identifies the sweep and the build of evod; also the first comment of runs.csv
 //   parts/cell-C-replicate-R.csv       the rows of a finished run, and its outcome
-//   run-files/cell-C-replicate-R.evod  its run file, with --run-files
+//   run-files/cell-C-replicate-R.evod  the run file of a finished run, with --run-files
 //   runs.csv                           all rows, in order of runs
 //
-// Every file is atomic (atomic_file.h). A run is finished when its part exists, so a process that starts after a crash,
-// or beside others, makes the runs that are missing. Several processes on several machines may use a folder at a time.
-// If two of them make the same run, both write the same rows.
+// Every file is atomic (atomic_file.h). A run is finished if its part exists. So a process that starts after a crash,
+// or while other processes run, executes only the missing runs. Several processes on several machines may use a folder
+// at the same time. If two of them execute the same run, both write the same rows.
 //
-// Threads  parts may be written on several threads; the rest on one.
+// Threads  parts may be written by several threads; all other functions are called by one thread.
 #pragma once
 
 #include "server/evolution/termination.h"
@@ -30,36 +30,36 @@ struct RunEnd {
     evolution::Outcome outcome = evolution::Outcome::GenerationLimit;
     std::uint64_t rows = 0;
 };
-/// The last line of a part.
+/// Formats the end of a run as the last line of its part.
 std::string to_text(const RunEnd& end);
-/// "generation_limit", "target_fitness", "stagnation_limit" or "extinction": the criterion that ended the run.
+/// The criterion that ended the run: "generation_limit", "target_fitness", "stagnation_limit" or "extinction".
 std::string_view name_of(evolution::Outcome outcome);
 
 class SweepFolder {
   public:
-    /// Makes the folder, or opens it to resume the sweep. Refused if it contains the results of another sweep, or of
+    /// Creates the folder, or opens it to resume the sweep. Refused if it contains results of another sweep, or of
     /// another build of evod.
     ///
-    /// sweep  outlives it.
+    /// sweep  must outlive the SweepFolder.
     static base::Result<SweepFolder> open(const std::string& path, const Sweep& sweep);
 
-    /// "cell-07-replicate-2": the name of a run and of its world.
+    /// The name of a run and of its world: "cell-07-replicate-2".
     std::string name_of(std::size_t run) const;
     std::string part_of(std::size_t run) const { return path_ + "/parts/" + name_of(run) + ".csv"; }
     std::string run_file_of(std::size_t run) const { return path_ + "/run-files/" + name_of(run) + ".evod"; }
     std::string table() const { return path_ + "/runs.csv"; }
-    /// Makes the folder of run files, if it does not exist.
+    /// Creates the folder for run files, if it does not exist.
     base::Result<void> make_run_file_folder() const;
 
     enum class Wanted { Rows, RowsAndRunFile };
-    /// How a run ended; nullopt if a file that is wanted is missing or incomplete.
+    /// How a run ended; nullopt if one of the requested files is missing or incomplete.
     std::optional<RunEnd> end_of(std::size_t run, Wanted wanted) const;
 
     struct Gathered {
         std::uint64_t rows = 0;
-        std::map<evolution::Outcome, std::size_t> runs; // number by outcome
+        std::map<evolution::Outcome, std::size_t> runs; // number of runs by outcome
     };
-    /// Writes runs.csv. Refused if a part is missing or was changed.
+    /// Writes runs.csv. Refused if a part is missing or has been changed.
     base::Result<Gathered> gather() const;
 
   private:
@@ -71,7 +71,7 @@ class SweepFolder {
     const Sweep* sweep_;
 };
 
-/// The columns of runs.csv: cell, replicate, seed, the swept parameters, statistics.
+/// The columns of runs.csv: cell, replicate, seed, the swept parameters, and the statistics.
 std::vector<std::string> sweep_columns(const Sweep& sweep);
 
 } // namespace evod::experiments

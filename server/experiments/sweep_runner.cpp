@@ -18,7 +18,7 @@ using base::Refusal;
 using base::Result;
 using parameters::Parameters;
 
-/// The rows of the generation that has just ended, as runs.csv has them.
+/// Writes the rows of the generation that has just ended, in the format of runs.csv.
 void write_generation(replay::Table& table, const Sweep& sweep, std::size_t run, const simulation::World& world) {
     const std::size_t cell = run / sweep.replicates, replicate = run % sweep.replicates;
     for (const simulation::GenerationStatistics& statistics : world.history().back()) {
@@ -56,7 +56,7 @@ std::optional<double> SweepRunner::work_of(const std::vector<std::size_t>& runs)
     return sum;
 }
 
-/// The longest runs begin first, so that all threads are busy until near the end.
+/// Sorts the runs so that the longest begin first. Then all threads are busy until shortly before the end.
 void SweepRunner::sort_by_work(std::vector<std::size_t>& runs) const {
     std::vector<double> work;
     for (std::size_t cell = 0; cell < sweep_.cells.size(); ++cell) {
@@ -92,7 +92,7 @@ Result<std::size_t> SweepRunner::make(std::vector<std::size_t> runs) {
     return made.load();
 }
 
-/// Makes one run from beginning to end. Returns false if it was stopped.
+/// Executes one run from beginning to end. Returns false if the run was stopped.
 Result<bool> SweepRunner::make(std::size_t run) const {
     const std::size_t cell = cell_of(run), replicate = run % sweep_.replicates;
     const Parameters parameters = sweep_.parameters_of(cell);
@@ -111,7 +111,7 @@ Result<bool> SweepRunner::make(std::size_t run) const {
     AtomicFile part{folder_.part_of(run)};
     std::ostringstream rows;
     replay::Table table{rows, replay::Table::Format::Csv, sweep_columns(sweep_)};
-    rows.str({}); // without the heading
+    rows.str({}); // removes the heading
     RunEnd end;
     base::InlineExecutor executor;
     while (world.outcome() == evolution::Outcome::Running && part.error().empty()) {

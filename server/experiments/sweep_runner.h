@@ -1,8 +1,8 @@
-// Sweep runner: makes the runs of a sweep and writes each into the sweep folder.
+// Sweep runner: executes the runs of a sweep and writes the results into the sweep folder.
 //
-// Threads      `jobs` threads, each with a world of its own, take whole runs (trials.h). The callbacks are called on
-//              those threads, several at once.
-// Determinism  the files of a run depend on its number alone: not on `jobs`, and not on which runs exist already.
+// Threads      `jobs` threads. Each run is executed by one thread, with its own world (trials.h). Several threads may
+//              call a callback at the same time.
+// Determinism  the files of a run depend only on its number, not on `jobs` and not on the runs that already exist.
 #pragma once
 
 #include "server/experiments/sweep_folder.h"
@@ -17,32 +17,36 @@
 
 namespace evod::experiments {
 
-/// The work of one run or generation in organism-ticks, if no organism died.
+/// The work of one generation in organism-ticks, if no organism dies early.
 double work_of_generation(const parameters::Parameters& parameters);
-/// Of a run up to its generation_limit; nullopt without one, because other criteria end it at an unknown time.
+/// The work of a run up to its generation_limit; nullopt without a generation_limit, because other criteria end the run
+/// at an unknown time.
 std::optional<double> work_of_run(const parameters::Parameters& parameters);
 
 struct SweepRunnerOptions {
     std::size_t jobs = 1; // >= 1
     bool run_files = false;
-    std::function<simulation::RunId()> draw_run_id = {};            // for run files
-    std::function<bool()> stopped = [] { return false; };           // polled every tick
-    std::function<void(double work)> on_generation = [](double) {}; // with the work it was expected to be
-    /// With the rest of the expected work, which a run that ended before its generation_limit did not need.
+    std::function<simulation::RunId()> draw_run_id = {};  // for run files
+    std::function<bool()> stopped = [] { return false; }; // called in every tick
+    // Gets the expected work of the generation that ended.
+    std::function<void(double work)> on_generation = [](double) {};
+    /// Called at the end of a run, with the expected work that was not needed because it ended before its
+    /// generation_limit.
     std::function<void(double work)> on_run = [](double) {};
 };
 
 class SweepRunner {
   public:
-    /// sweep, folder  outlive the runner.
+    /// sweep, folder  must outlive the runner.
     SweepRunner(const Sweep& sweep, const SweepFolder& folder, SweepRunnerOptions options)
         : sweep_{sweep}, folder_{folder}, options_{std::move(options)} {}
 
-    /// Makes these runs, those with the most work first. Returns how many it made: fewer than `runs` after stopped()
-    /// returned true. After the first error no further run begins; a run that is stopped leaves no files.
+    /// Executes these runs; the runs with the most work begin first. Returns the number of finished runs, which is
+    /// smaller than `runs` if stopped() returned true. After the first error, no further run begins. A stopped run
+    /// leaves no files.
     base::Result<std::size_t> make(std::vector<std::size_t> runs);
 
-    /// The work of all these runs; nullopt if it is unknown for any of them.
+    /// The total work of these runs; nullopt if the work of any run is unknown.
     std::optional<double> work_of(const std::vector<std::size_t>& runs) const;
 
   private:

@@ -1,9 +1,9 @@
-// Trials: independent runs, several at a time, and the seeds of replicates.
+// Trials: executes independent runs, several at a time, and derives the seeds of replicates.
 //
-// Threads      one thread does a trial from beginning to end. Independent runs on one thread each use all cores better
-//              than one run on several threads.
-// Determinism  the scheduler decides which thread does which trial, so the work of a trial may depend on its index
-//              only.
+// Threads      one thread executes a trial from beginning to end. Many independent runs with one thread each use all
+//              cores better than one run with many threads.
+// Determinism  the scheduler decides which thread executes a trial, so the work of a trial may depend only on its
+//              index.
 #pragma once
 
 #include "server/base/random.h"
@@ -14,11 +14,11 @@
 
 namespace evod::experiments {
 
-/// Calls work(index) for 0 … count − 1 on `jobs` threads, begun in order of index. Begins no further call after
-/// stopped() has returned true. Returns when all calls have returned.
+/// Calls work(index) for 0 … count − 1 on `jobs` threads. The calls begin in order of index. After stopped() has
+/// returned true, no further call begins. Returns when all calls have returned.
 ///
 /// jobs     >= 1.
-/// stopped  called on several threads at once.
+/// stopped  may be called by several threads at the same time.
 void for_each_trial(std::size_t count, std::size_t jobs, const std::function<void(std::size_t index)>& work,
                     const std::function<bool()>& stopped);
 

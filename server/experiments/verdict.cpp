@@ -32,7 +32,7 @@ class Sentences {
     std::string of_poison(double rise) const;
 
   private:
-    /// "+121.3 against random selection (adjusted p = 7.6e-06)"
+    /// Formats a difference: "+121.3 against random selection (adjusted p = 7.6e-06)".
     std::string difference(ControlKind kind, const char* name) const {
         const Finding& finding = *of(kind).finding;
         return text(finding.mean) + " against " + name + " (" + p_text(finding) + ")";
@@ -66,7 +66,7 @@ std::string Sentences::answer(double rise, const Interval& interval) const {
     if (any(Judgement::NotShown)) {
         return question + "That is not shown: " + differences + "; both p must be below 0.05.";
     }
-    // Selection may only have prevented a fall.
+    // If the fitness did not rise, selection may only have prevented a fall.
     const std::string how = interval.low > 0 ? "Yes: the mean fitness rose by " + text(rise).substr(1) +
                                                    ", and selection for fitness is the cause: "
                                              : "Yes, but the mean fitness is not shown to have risen (" + text(rise) +

@@ -1,4 +1,4 @@
-// Verdict: the conclusions from the comparison of a world with its controls, as sentences.
+// Verdict: derives conclusions from the comparison of a world with its controls, and formats them as sentences.
 //
 // Threads  none.
 #pragma once
@@ -12,23 +12,23 @@
 
 namespace evod::experiments {
 
-/// A control, and how the world differs from it; without a finding: the control cannot differ and was not run.
+/// A control and its difference from the world. There is no finding if the control cannot differ and was not run.
 struct ControlResult {
     Control control;
     std::optional<Finding> finding;
 };
 
-/// A number with its sign; zero has none.
+/// A number with its sign. Zero has no sign.
 std::string signed_text(double value, int decimals);
 
-/// Did evolution do it? One line for the answer, one for mutation, one for poison.
+/// Answers the question "Did evolution do it?". Returns one line for the answer, one for mutation and one for poison.
 ///
-/// rise     of the world: mean over its replicates, and its 95 % interval.
-/// results  of the four controls, in the order of all_controls.
+/// rise     rise of the world: the mean over its replicates, with its 95 % confidence interval.
+/// results  results of the four controls, in the order of all_controls.
 ///
 /// The answer needs two controls. Random selection has no selection pressure, but also keeps more genetic variety,
-/// because no organism has many children. Shuffled fitness has the same pressure without a relation to fitness. The
-/// answer is yes if the world rises more than both.
+/// because no organism has many children. Shuffled fitness has the same selection pressure, but without a relation to
+/// the real fitness. The answer is yes if the world rises more than both controls.
 std::vector<std::string> verdict(double rise, const Interval& rise_interval, const std::vector<ControlResult>& results,
                                  int decimals);
 

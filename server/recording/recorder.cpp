@@ -25,7 +25,7 @@ run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run
 }
 
 std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
-    // In one batch, so that a file has either all records of a tick or none.
+    // Passes them in one batch, so that a file contains either all records of a tick or none.
     std::vector<StorageThread::Record> records;
     const std::uint64_t begun = news_.generations_begun();
     news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
@@ -44,7 +44,7 @@ void RunRecorder::hand_over(const simulation::World& world) {
 bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent) {
     since_beginning_ += spent;
     since_checkpoint_ += spent;
-    // If a generation is over, the beginning of the next one follows with the next tick.
+    // If a generation is over, the next generation begins with the next tick and is stored then.
     return since_beginning_ > worth_a_checkpoint && !world.generation_over() && !writing_->waits &&
            since_checkpoint_ > checkpoint_cost_factor * (copying_took_ + writing_->took.load());
 }
@@ -109,7 +109,7 @@ std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world
     }
     const std::string path = folder_.file_of(world);
     for (const std::string& taken : {path, run_file::DataFolder::next_file_of(path)}) {
-        std::error_code error; // if the file cannot be examined, creating it reports why
+        std::error_code error; // if the file cannot be examined, its creation reports the reason
         if (std::filesystem::exists(taken, error)) {
             return base::refusal(base::RefusalCode::AlreadyExists,
                                  "the run would be kept in " + taken +
@@ -144,10 +144,11 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     identity.forked_from = origin;
     run_file::Inherited inherited = run_file::inherited_by(entry.world);
     identity.inherited_generations = inherited.history.size();
-    run.news_.seen(entry.world.moment().tick); // the file of the origin has the state hash of that tick
+    run.news_.seen(entry.world.moment().tick); // the file of the origin contains the state hash of that tick
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
-    // Within a generation its beginning is not enough: the journal since then is in the file of the origin.
+    // Within a generation, its beginning is not sufficient, because the journal since then is in the file of the
+    // origin.
     if (entry.world.moment().generation_tick > 0) {
         first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
     }

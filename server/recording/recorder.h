@@ -1,7 +1,7 @@
-// Recorder: hands over the records of a laboratory's runs to the storage thread while their worlds are simulated.
+// Recorder: passes the records of all runs of a laboratory to the storage thread while their worlds are simulated.
 //
 // Owner        the simulation thread.
-// Determinism  it reads worlds and never changes them. The duration of ticks decides only when checkpoints are made.
+// Determinism  it reads worlds and never changes them. The duration of ticks only decides when checkpoints are created.
 #pragma once
 
 #include "server/recording/storage_thread.h"
@@ -16,10 +16,10 @@
 
 namespace evod::recording {
 
-/// A command that the simulation has applied; `done` is called once it is on the disk.
+/// A command that the simulation has applied. `done` is called once the record is on the disk.
 struct CommandRecord {
-    std::uint64_t tick = 0;              // after which it was applied
-    simulation::RunControl control = {}; // of the world after the command
+    std::uint64_t tick = 0;              // ticks of the run before it was applied
+    simulation::RunControl control = {}; // run control of the world after the command
     run_file::Origin origin = {};
     std::string answer = {};
     StorageThread::Done done = {};
@@ -28,15 +28,15 @@ struct CommandRecord {
 /// The identity of a run that begins now with this world.
 run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world);
 
-/// Finds what is new in a world after a tick: the beginning and end of a generation, and the state hash.
+/// Finds new records in a world after a tick: the beginning and end of a generation, and the state hash.
 class RunNews {
   public:
     RunNews() = default;
-    /// For a run that continues and whose file has this already.
+    /// For a run that continues. Its file already contains the records up to this tick and these generations.
     RunNews(std::uint64_t tick, std::uint64_t generations_begun, std::uint64_t generations_ended)
         : tick_{tick}, begun_{generations_begun}, ended_{generations_ended} {}
 
-    /// Calls write(record) for each new record. To be called after every tick and before the first.
+    /// Calls write(record) for each new record. To be called before the first tick and after every tick.
     template <class Write>
     void report(const simulation::World& world, Write&& write) {
         const simulation::Moment& moment = world.moment();
@@ -53,10 +53,10 @@ class RunNews {
             ended_ = moment.generation;
         }
     }
-    /// Everything about this tick has been recorded otherwise.
+    /// To be called if other code has recorded everything about this tick.
     void seen(std::uint64_t tick) { tick_ = std::max(tick_, tick); }
 
-    std::uint64_t tick() const { return tick_; } // the last recorded
+    std::uint64_t tick() const { return tick_; } // the last recorded tick
     std::uint64_t generations_begun() const { return begun_; }
 
   private:
@@ -66,12 +66,12 @@ class RunNews {
 /// Records one run.
 class RunRecorder {
   public:
-    /// A checkpoint is made once simulating the run from what its file contains would take longer than this.
+    /// A checkpoint is created if simulating the run again from the contents of its file would take longer than this.
     static constexpr std::chrono::seconds worth_a_checkpoint{2};
-    /// The time between two checkpoints is this many times as long as the last one took on both threads.
+    /// After a checkpoint that cost the two threads a time t, the next one follows after this number times t.
     static constexpr int checkpoint_cost_factor = 50;
 
-    /// For a run that continues.
+    /// For a run that continues. `so_far` describes the records in its file.
     RunRecorder(StorageThread& thread, StorageThread::RunNumber number, const run_file::EndMark& so_far,
                 std::uint64_t generations_ended)
         : thread_{thread}
@@ -79,7 +79,7 @@ class RunRecorder {
         , news_{so_far.tick, so_far.generations, generations_ended}
         , journal_entries_{so_far.journal_entries} {}
 
-    /// Hands over what is new. To be called after every tick and before the first.
+    /// Passes new records to the storage thread. To be called before the first tick and after every tick.
     void follow(const simulation::World& world) {
         const simulation::Moment& moment = world.moment();
         if (moment.generation != news_.generations_begun() || moment.tick % run_file::ticks_per_hash == 0 ||
@@ -88,11 +88,11 @@ class RunRecorder {
         }
     }
     void journal(CommandRecord command);
-    /// Calls `done` on the storage thread once everything that was handed over is on the disk.
+    /// Calls `done` on the storage thread once all records passed so far are on the disk.
     void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
-    /// Whether a checkpoint is due right after the last followed tick. spent: on simulating that tick.
+    /// Whether a checkpoint is due right after the last followed tick. spent: time for the simulation of that tick.
     bool checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent);
-    /// Makes a checkpoint. The caller then reports with checkpoint_took() how long the simulation waited for it.
+    /// Creates a checkpoint. The caller must then report with checkpoint_took() how long the simulation waited for it.
     void make_checkpoint(const simulation::World& world, base::Executor& executor);
     void checkpoint_took(std::chrono::nanoseconds time) { copying_took_ = time; }
 
@@ -102,18 +102,20 @@ class RunRecorder {
     void hand_over(const simulation::World& world);
     std::vector<StorageThread::Record> news(const simulation::World& world);
     run_file::JournalEntry entry(CommandRecord& command);
-    /// The first records of a run.
+    /// The records with which the file of a run begins.
     StorageThread::Batch first(const simulation::World& world, std::optional<CommandRecord> command);
-    /// The end mark after `tick`, of a run that is over or whose server stops, preceded by the command that ended it.
+    /// The end mark after `tick`, for a run that is over or whose server stops. If a command ended the run, its record
+    /// precedes the end mark.
     StorageThread::Ending ending(std::uint64_t tick, bool ended, std::string renamed = {},
                                  std::optional<CommandRecord> command = {});
 
     StorageThread& thread_;
     StorageThread::RunNumber number_ = 0;
-    RunNews news_; // up to what has been handed over
+    RunNews news_; // what has been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
-    // Time spent on simulating since the file has a state to start from; since the last checkpoint.
+    // Time spent on simulation since the last stored beginning of a generation or checkpoint; since the last
+    // checkpoint.
     std::chrono::nanoseconds since_beginning_{0}, since_checkpoint_{0};
     std::chrono::nanoseconds copying_took_{0};
     std::shared_ptr<StorageThread::CheckpointWriting> writing_ = std::make_shared<StorageThread::CheckpointWriting>();
@@ -124,41 +126,41 @@ class Recorder {
   public:
     Recorder(run_file::DataFolder& folder, StorageThread& thread) : folder_{folder}, thread_{thread} {}
 
-    /// Why no command can be accepted now; nothing if one can.
+    /// The reason why no command can be accepted now; nullopt if commands can be accepted.
     std::optional<base::Refusal> refusal() const;
-    /// Why no world of that name can be created: a file that belongs to no world of this server has its path. Nothing
-    /// if it can be, or if there is such a world.
+    /// The reason why no world with this name can be created: a file that belongs to no world of this server has the
+    /// path of its run file. Returns nullopt if the world can be created or already exists.
     std::optional<base::Refusal> refusal_of_place(const std::string& world) const;
-    /// Whether worlds may be simulated: there is room for their records.
+    /// Whether worlds may be simulated, because the storage thread has room for their records.
     bool has_room() const { return thread_.has_room(); }
-    /// Why nothing can be written at present; nothing if it can.
+    /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const { return thread_.trouble(); }
     /// Calls `changed` on the storage thread when has_room() or trouble() has changed.
     void when_changed(std::function<void()> changed) { thread_.when_changed(std::move(changed)); }
 
-    /// The recorder of a world; nullptr if it has no file.
+    /// The recorder of a world; nullptr if the world has no file.
     RunRecorder* of(const std::string& world);
 
-    /// The path of the file of a world's run, and its path after the run has ended.
+    /// The path of the file with a world's run, and the path of that file after the run has ended.
     std::vector<std::string> paths_of(const std::string& world, const simulation::RunId& run_id) const {
         return {folder_.file_of(world), folder_.ended_file_of(world, run_id)};
     }
 
-    /// For a world whose run has just begun, by this command.
+    /// Begins to record a world whose run has just begun. If a command began the run, it is recorded too.
     void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {});
-    /// The same for a fork of the run `origin`, at its present moment.
+    /// Like begin(), for a world that was just forked from the run `origin`. The fork begins at its present moment.
     void begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
                     base::Executor& executor);
-    /// The same for a world that was reset: its run before has ended after `tick`, and that file gets the name of an
-    /// ended run.
+    /// Like begin(), for a world that was reset. Its previous run ended after `tick`, and the file of that run gets the
+    /// name of an ended run.
     void begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
                      std::optional<CommandRecord> command = {});
-    /// For a world that continues the run of a file.
+    /// Continues to record the run in an existing file.
     RunRecorder& resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,
                         const run_file::EndMark& so_far, std::uint64_t generations_ended);
-    /// For a world that was deleted by this command: its file gets an end mark and the name of an ended run.
+    /// Ends the recording of a world that this command deleted. Its file gets an end mark and the name of an ended run.
     void end(const std::string& world, const simulation::RunId& run_id, CommandRecord command);
-    /// The server stops: every file gets an end mark.
+    /// To be called when the server stops: every file gets an end mark.
     void close_all(const simulation::Laboratory& laboratory);
 
   private:
@@ -166,10 +168,10 @@ class Recorder {
 
     run_file::DataFolder& folder_;
     StorageThread& thread_;
-    std::map<std::string, RunRecorder, std::less<>> runs_; // by world
-    /// How many runs of a world have ended whose file may not have been renamed yet.
+    std::map<std::string, RunRecorder, std::less<>> runs_; // by name of the world
+    /// Number of ended runs of a world whose files may still have to be renamed.
     using Leaving = std::atomic<std::size_t>;
-    std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by world
+    std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by name of the world
 };
 
 } // namespace evod::recording

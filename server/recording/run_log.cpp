@@ -16,7 +16,7 @@ namespace {
 using base::Refusal;
 using base::Result;
 
-/// other_file  another file has the name.
+/// other_file  whether another file has the name now.
 Refusal name_lost(const std::string& path, bool other_file) {
     return {.code = base::RefusalCode::NotFound,
             .message = path +
@@ -87,10 +87,10 @@ void RunLog::compressed(run_file::StoredCheckpoint checkpoint, std::chrono::nano
 Result<bool> RunLog::open() {
     const bool to_create = creation && !creation->committed;
     const std::string name_now = creation ? run_file::DataFolder::next_file_of(path) : path;
-    // A file to create may exist, if an earlier commit was reported as failed and had succeeded.
+    // The file to create may already exist: an earlier commit succeeded although it was reported as failed.
     Result<std::unique_ptr<run_file::RunFile>> opened = run_file::RunFile::open(name_now, options);
     const bool is_new = to_create && !opened;
-    if (is_new) { // all first records in one transaction, so that no reader finds fewer
+    if (is_new) { // all first records in one transaction, so that a reader sees all of them or none
         opened = run_file::RunFile::begin_new(name_now, creation->identity, options);
     } else if (to_create && (*opened)->identity().run_id != creation->identity.run_id) {
         opened = exists_already(name_now);
@@ -226,7 +226,7 @@ bool RunLog::log_copy_due() {
         return false;
     }
     const std::uint32_t pages = file->database().database.log_pages();
-    if (pages < log_copy.pages) { // SQLite has restarted the log
+    if (pages < log_copy.pages) { // the log has shrunk, because SQLite restarted it
         log_copy.pages = 0;
     }
     if (pages < log_copy.pages + options.log_pages_max) {

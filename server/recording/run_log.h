@@ -1,16 +1,17 @@
-// Run log: the records that wait to be written to one run's file, and the file while it is open.
+// Run log: the records that wait to be written to the file of one run, and the file itself while it is open.
 //
-// New files    a run is created as `NAME.evod-next` and gets its name once its first records are committed. So a file
-//              `NAME.evod` without content is damaged, never incomplete. If the run replaces another one, the old file
-//              first gets its end mark and its new name. At every instant one of the two files is the world's run;
-//              replay::Archive decides which after a crash.
-// Checkpoints  a checkpoint waits beside the other records. The storage thread has it compressed on the job queue and
-//              then writes it part by part.
-// Log copies   a write-ahead log that has grown to Options::log_pages_max is copied into its file by the job queue.
-//              Background work of the file pauses meanwhile, so that SQLite can restart the log.
-// Errors       a failed write closes the file; the next one opens it again. Records stay until they are committed.
+// New files    a run is created as `NAME.evod-next` and gets its final name when its first records are committed. So a
+//              file `NAME.evod` without contents is damaged, never incomplete. If the run replaces an older one, the
+//              old file first gets its end mark and its new name. At every moment exactly one of the two files is the
+//              world's run. After a crash, replay::Archive decides which one.
+// Checkpoints  a checkpoint waits in a queue of its own. A job compresses it; then the storage thread writes it part by
+//              part.
+// Log copies   when a write-ahead log reaches Options::log_pages_max, a job copies it into its file. Meanwhile this
+//              file gets no background writes, so that SQLite can restart the log.
+// Errors       after a failed write the file is closed. The next write opens it again. Records are kept until they are
+//              committed.
 //
-// Owner        the storage thread, and used by it alone.
+// Owner        the storage thread. No other thread uses it.
 #pragma once
 
 #include "server/recording/waiting_record.h"
@@ -25,18 +26,18 @@
 
 namespace evod::recording {
 
-/// A run while its file is open here.
+/// Number of a run while its file is open here.
 using RunNumber = std::uint64_t;
 
-/// Watches that a file keeps its name: what is written to a file that was moved or deleted would be lost.
+/// Detects that a file was moved or deleted while it is open. Data written to it afterwards would be lost.
 class FileNameWatch {
   public:
-    static constexpr std::chrono::seconds interval{1}; // between two checks
+    static constexpr std::chrono::seconds interval{1}; // time between two checks
 
-    /// The next check takes the file that has the name then for the right one.
+    /// Makes the next check accept any file that has the name then.
     void forget() { known_.reset(); }
     bool is_lost() const { return known_ && known_->lost; }
-    /// Checks at most once per interval. Returns the reason if another file has the name, or none.
+    /// Checks at most once per interval. Returns a reason if the name belongs to another file, or to no file.
     std::optional<base::Refusal> check(const std::string& path, std::chrono::steady_clock::time_point now);
 
   private:
@@ -50,57 +51,58 @@ class FileNameWatch {
 };
 
 struct RunLog {
-    /// A new file, which has the name NAME.evod-next or does not exist yet.
+    /// The creation of a new file. The file has the name NAME.evod-next or does not exist yet.
     struct Creation {
         run_file::RunIdentity identity;
-        std::optional<RunNumber> replaces = {}; // the run that it replaces
-        bool committed = false;                 // its first records are
+        std::optional<RunNumber> replaces = {}; // the older run that this one replaces
+        bool committed = false;                 // its first records are committed
     };
     struct LogCopy {
-        bool running = false;    // on the job queue
-        std::uint32_t pages = 0; // of the log when it was last copied
+        bool running = false;    // a copy is on the job queue
+        std::uint32_t pages = 0; // pages in the log when it was last copied
     };
 
     RunNumber number = 0;
     std::string path = {};
     run_file::RunFile::Options options = {};
 
-    std::optional<Creation> creation = {};        // until the file has its name
-    std::unique_ptr<run_file::RunFile> file = {}; // nullptr: to be opened, or created
+    std::optional<Creation> creation = {};        // set until the new file has its final name
+    std::unique_ptr<run_file::RunFile> file = {}; // nullptr: still to be opened or created
     std::vector<WaitingRecord> waiting = {};
-    std::vector<WaitingRecord> written = {}; // committed, but not reported yet
+    std::vector<WaitingRecord> written = {}; // records that are committed, but not reported yet
     std::vector<WaitingRecord> checkpoints = {};
     std::optional<Closing> closing = {};
-    bool compressing = false; // one of its checkpoints is on the job queue
+    bool compressing = false; // one checkpoint of this run is on the job queue
     LogCopy log_copy = {};
     bool large_reported = false;
     FileNameWatch name = {};
 
     bool is_finished() const { return closing && closing->finished; }
-    /// The first checkpoint that is not compressed; nullptr for none, and while one is being compressed.
+    /// The first uncompressed checkpoint; nullptr if there is none, or while another one is being compressed.
     WaitingRecord* next_to_compress();
     void compressed(run_file::StoredCheckpoint checkpoint, std::chrono::nanoseconds took);
 
-    /// Opens the file, or creates it. true: a new file, with an open transaction.
+    /// Opens or creates the file. Returns true for a new file, which then has an open transaction.
     base::Result<bool> open();
     /// Writes records in one transaction.
     ///
-    /// returns  how long the commit took.
+    /// returns  the duration of the commit.
     base::Result<std::chrono::nanoseconds> commit(const std::vector<WaitingRecord>& records);
-    /// After a commit: reduces the retention of a file that has become too large.
+    /// To be called after a commit. Reduces the retention of a file that has become too large.
     base::Result<void> shrink();
-    /// Gives a new file its name; the file that it replaces is out of the way.
+    /// Gives a new file its final name. The file that it replaces must already have another name.
     base::Result<void> take_name();
-    /// Gives a closed file the name of an ended run, if it is to have one.
+    /// Renames a closed file to the name of an ended run, if it is to get one.
     base::Result<void> rename_ended();
-    /// Deletes or writes a little that no client waits for. `written` then has a checkpoint that is complete.
+    /// Does one small step of background work: deletes rows, or writes a part of a checkpoint. A completed checkpoint
+    /// is added to `written`.
     ///
-    /// returns  whether there was anything to do.
+    /// returns  whether there was any work.
     base::Result<bool> background_step();
 
-    /// Whether the log should be copied now; then its copy is expected to begin.
+    /// Whether the log should be copied now. If so, the caller must start the copy.
     bool log_copy_due();
-    /// A copy has ended. If the log has grown to four times its limit meanwhile, copies the rest.
+    /// To be called when a copy has ended. If the log has meanwhile grown to four times its limit, copies the rest.
     void log_copied();
 
   private:

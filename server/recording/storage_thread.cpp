@@ -126,7 +126,7 @@ bool StorageThread::enqueue(RunNumber run, std::vector<WaitingRecord> records) {
         bytes += record.bytes;
     }
     urgent_ |= records.back().done != nullptr || bytes > gathered_bytes_max;
-    // For an urgent batch, and for the first of a group.
+    // Only an urgent batch and the first batch of a group wake the thread.
     const bool wake = urgent_ || handed_over_.records.empty();
     if (handed_over_.records.empty()) {
         handed_over_since_ = std::chrono::steady_clock::now();

@@ -14,8 +14,8 @@
 namespace evod::recording {
 
 void StorageThread::Worker::work() {
-    pthread_setname_np(pthread_self(), "storage"); // as `top -H` shows it
-    constexpr int skipped_max = 8;                 // background steps in a row, however many commands there are
+    pthread_setname_np(pthread_self(), "storage"); // the name that `top -H` shows
+    constexpr int skipped_max = 8;                 // maximum number of consecutive rounds without a background step
     int skipped = 0;
     for (bool more = false;;) {
         const bool stopping = take(more);
@@ -41,7 +41,8 @@ void StorageThread::Worker::work() {
             }
             thread_.set_trouble({});
         }
-        // At the end, records that fail are lost only after everything else that can be written has been.
+        // When the server stops, tries failed records again as long as other records can still be written. Then they
+        // are lost.
         const bool advanced = std::exchange(advanced_, false);
         if (stopping && !more && !is_awaiting() && !(failed_ && advanced)) {
             if (failed_) {
@@ -117,7 +118,7 @@ bool StorageThread::Worker::commands_waiting() {
     return thread_.urgent_;
 }
 
-/// job  runs on the job queue; what it returns runs here, unless the run has ended.
+/// job  runs on the job queue. The function that it returns runs on this thread, unless the run has ended.
 void StorageThread::Worker::start_job(RunLog& run, const std::function<std::function<void(RunLog&)>()>& job) {
     ++thread_.jobs_running_;
     thread_.jobs_.add([&thread = thread_, number = run.number, job](const std::stop_token&) {
@@ -170,7 +171,7 @@ bool StorageThread::Worker::write_out() {
             others.push_back(&run);
         }
     }
-    // Each in its turn, however many commands there are.
+    // The runs take turns, even if there are many commands.
     std::stable_partition(others.begin(), others.end(),
                           [this](const RunLog* run) { return run->number > last_written_; });
     for (RunLog* run : others) {
@@ -207,7 +208,7 @@ bool StorageThread::Worker::write_out(RunLog& run) {
         return run.closing->replaced || end(run);
     }
     if (has_records && run.file) {
-        if (const auto shrunk = run.shrink(); !shrunk) { // the records stay written
+        if (const auto shrunk = run.shrink(); !shrunk) { // the records are written even if this fails
             return fail(shrunk.error());
         }
     }
@@ -276,7 +277,7 @@ bool StorageThread::Worker::end(RunLog& run) {
         }
     }
     if (!run.checkpoints.empty()) {
-        return false; // again after they are written
+        return false; // closes the file after the checkpoints are written
     }
     while (run.log_copy.running) {
         {
@@ -331,7 +332,7 @@ void StorageThread::Worker::report_written(std::vector<WaitingRecord>& records) 
     for (const WaitingRecord& record : std::exchange(records, {})) {
         bytes += record.bytes;
         if (record.done) {
-            if (record.record) { // the batch ends with a command
+            if (record.record) { // only batches with a command have both
                 thread_.times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
             }
             record.done();
@@ -354,7 +355,7 @@ void StorageThread::Worker::report_written(std::vector<WaitingRecord>& records) 
 
 bool StorageThread::Worker::fail(const base::Refusal& why) {
     if (!std::exchange(failed_, true)) {
-        thread_.set_trouble(why.message); // the first error of a round, however many runs fail
+        thread_.set_trouble(why.message); // reports only the first error of a round
     }
     return false;
 }

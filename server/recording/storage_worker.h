@@ -1,9 +1,9 @@
-// Storage worker: the loop of the storage thread: which run is written when.
+// Storage worker: the loop of the storage thread. It decides in which order the runs are written.
 //
-// A round takes what has been handed over, writes the records of all runs, those with a `done` first, and then does one
-// background step. If commands wait, it skips the background step, at most eight times in a row.
+// In each round, it takes all new records, writes the records of all runs, those with a `done` first, and then does one
+// background step. While commands wait, it skips the background step, but at most eight times in succession.
 //
-// Owner        the storage thread, and used by it alone.
+// Owner        the storage thread. No other thread uses it.
 #pragma once
 
 #include "server/recording/storage_thread.h"
@@ -18,49 +18,49 @@ class StorageThread::Worker {
   public:
     explicit Worker(StorageThread& thread) : thread_{thread} {}
 
-    /// Until the thread is to stop and everything that can be written is.
+    /// Runs until the thread must stop and everything that can be written is written.
     void work();
 
   private:
-    /// Waits for something to do, unless there is `more`, and takes what has come.
+    /// Takes the new records. Waits for work first, unless `more` is set.
     ///
     /// returns  whether the server stops.
     bool take(bool more);
     void run_results();
-    /// Whether a job is running, or something has been handed over and not taken.
+    /// Whether a job is running, or new records have not been taken yet.
     bool is_awaiting();
     bool commands_waiting();
     void start_job(RunLog& run, const std::function<std::function<void(RunLog&)>()>& job);
     void compress_next(RunLog& run);
     void copy_log_if_due(RunLog& run);
 
-    /// Writes the records of all runs, until a command comes.
+    /// Writes the records of all runs, until a command arrives.
     ///
-    /// returns  whether one has come.
+    /// returns  whether a command has arrived.
     bool write_out();
-    /// false: it failed, or has to wait for another run.
+    /// Writes the records of one run. Returns false after an error, or if the run must wait for another one.
     bool write_out(RunLog& run);
-    /// Runs with the same path use the name NAME.evod-next one after another, in the order of their creation: a run
-    /// begins after the runs before it have ended or, if it replaces the last of them, after that one has its name.
-    /// Writes the runs before it first. false: one of them is still in the way.
+    /// Whether a run may use the name NAME.evod-next. Runs with the same path use it one after another, in the order of
+    /// their creation. A run may begin when all earlier runs have ended; if it replaces the last of them, that run need
+    /// only have its name. Writes the earlier runs first. Returns false if one of them still uses the name.
     bool is_its_turn(const RunLog& run);
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
     bool take_name(RunLog& run);
     bool end(RunLog& run);
-    /// One step for one run, of each in turn. Whether there was anything to do.
+    /// Does one background step for one run; the runs take turns. Returns whether there was any work.
     bool background_step();
     bool background_step(RunLog& run);
 
-    /// Records are on the disk: calls `done` and frees their memory.
+    /// To be called when these records are on the disk. Calls `done` and frees the memory of the records.
     void report_written(std::vector<WaitingRecord>& records);
     bool fail(const base::Refusal& why);
-    /// Logs for each run what could not be written.
+    /// Logs for each run how much could not be written.
     void report_lost();
 
     StorageThread& thread_;
     std::map<RunNumber, RunLog> runs_;
     RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
-    bool failed_ = false;                              // something, in this round
+    bool failed_ = false;                              // a write has failed in this round
     bool advanced_ = false;                            // something has been written in this round
 };
 

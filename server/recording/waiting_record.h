@@ -1,4 +1,4 @@
-// Waiting record: a record on its way from the simulation thread to a run file.
+// Waiting record: a record between the simulation thread, which produced it, and the run file.
 #pragma once
 
 #include "server/run_file/run_file.h"
@@ -18,30 +18,31 @@ using Record = run_file::RunFile::Record;
 /// Called on the storage thread once the record is on the disk.
 using Done = std::function<void()>;
 
-/// The state of a run's checkpoint, shared with the recorder.
+/// The progress of a checkpoint. The storage thread and the recorder share it.
 struct CheckpointWriting {
-    std::atomic<bool> waits = false;                                          // to be written
-    std::atomic<std::chrono::nanoseconds> took = std::chrono::nanoseconds{0}; // compressing and writing the last one
+    std::atomic<bool> waits = false; // the checkpoint still has to be written
+    // Time for compressing and writing the last checkpoint.
+    std::atomic<std::chrono::nanoseconds> took = std::chrono::nanoseconds{0};
 };
 
 struct WaitingRecord {
-    std::optional<Record> record; // nothing: only `done` waits
+    std::optional<Record> record; // nullopt: only `done` waits
     Done done = {};
-    std::shared_ptr<CheckpointWriting> writing = {}; // of a checkpoint
+    std::shared_ptr<CheckpointWriting> writing = {}; // only for a checkpoint
     std::size_t bytes = 0;
-    std::chrono::steady_clock::time_point handed_over = {}; // with `done` only
-    std::chrono::nanoseconds took{0};                       // of a checkpoint: compressing and writing it
-    bool being_compressed = false;                          // `record` is an empty Checkpoint meanwhile
+    std::chrono::steady_clock::time_point handed_over = {}; // time of the hand-over, only for a record with `done`
+    std::chrono::nanoseconds took{0};                       // time for compressing and writing a checkpoint
+    bool being_compressed = false;                          // `record` is an empty Checkpoint during that time
 };
 
-/// About how much memory a record takes; 0 for checkpoints, which have a bound of their own.
+/// The approximate memory that a record takes. Returns 0 for checkpoints, which have a limit of their own.
 std::size_t bytes_of(const Record& record);
 
-/// How a run's file is closed.
+/// How the file of a run is closed.
 struct Closing {
-    std::vector<WaitingRecord> last; // its last record is the end mark
-    std::string renamed;             // the file's new path; empty: it stays
-    bool replaced = false;           // wait until the run that takes its place allows it
+    std::vector<WaitingRecord> last; // the last of these records is the end mark
+    std::string renamed;             // the new path of the file; empty: the file keeps its name
+    bool replaced = false;           // wait until the run that replaces this one allows closing
     bool marked = false, finished = false;
 };
 

@@ -24,7 +24,7 @@ Archive::Archive(run_file::DataFolder folder, const run_file::RunFile::Options& 
 
 namespace {
 
-/// Whether a file has the end mark of an ended run.
+/// Whether a file has the end mark of a run that has ended.
 Result<bool> is_over(run_file::RunFile& file) {
     const auto mark = file.end_mark();
     if (!mark) {
@@ -33,7 +33,7 @@ Result<bool> is_over(run_file::RunFile& file) {
     return *mark && (*mark)->ended;
 }
 
-/// Adds what the operator can do to the reason why a file prevents the start.
+/// Extends the reason why a file prevents the start by the actions that the operator can take.
 Refusal with_ways_out(Refusal why, const std::string& folder) {
     const std::string move = "move it, and its -wal if there is one, out of " + folder;
     if (why.code == RefusalCode::DataLoss) {
@@ -46,8 +46,8 @@ Refusal with_ways_out(Refusal why, const std::string& folder) {
     return why;
 }
 
-/// Completes or undoes the creation or reset of a world that a crash interrupted. If the old run has its end mark, the
-/// new run beside it is complete and takes its place; otherwise the new one is deleted.
+/// Completes or undoes the creation or reset of a world that was interrupted by a crash. If the old run has its end
+/// mark, the new run beside it is complete and replaces it. Otherwise the new run is deleted.
 Result<void> finish_replacing(const run_file::DataFolder& folder, const std::string& path) {
     const std::string next = run_file::DataFolder::next_file_of(path);
     std::error_code error;
@@ -136,11 +136,12 @@ void Archive::remember(const std::vector<std::string>& paths) {
     for (Ended& run : runs) {
         const auto file = run_file::RunFile::open_read_only(run.path);
         if (!file) {
-            continue; // no world depends on it; opening it later reports the reason
+            continue; // no world depends on this file; a later opening reports the reason
         }
         const std::uint64_t last = (*file)->journal().last_number();
         const std::uint64_t count = std::min<std::uint64_t>(
-            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // the command that ended the run
+            // The last answer is to the command that ended the run.
+            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1);
         if (auto entries = (*file)->journal().read(last + 1 - count)) {
             run.last = *std::move(entries);
         }
@@ -158,7 +159,7 @@ void Archive::remember(const std::vector<std::string>& paths) {
 
 Result<std::string> Archive::recover_world(const std::string& path, const run_file::RunFile::Options& options,
                                            base::Executor& executor) {
-    // With relaxed durability, a failure of the machine may leave a newer index than log on the disk.
+    // With relaxed durability, after a crash of the machine the index on the disk may be newer than the log.
     const auto index =
         options.durability == run_file::Durability::Full ? run_file::LogIndex::Read : run_file::LogIndex::Unread;
     if (auto sound = run_file::check_log(path, index); !sound) {
@@ -174,7 +175,7 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
         return over.error();
     }
     if (*over) {
-        // The server was stopped before it renamed the file.
+        // The server was stopped before it could rename the file.
         file->reset();
         const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
         if (auto renamed = run_file::rename_run_file(path, ended); !renamed) {

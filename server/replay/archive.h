@@ -1,4 +1,4 @@
-// Archive: the runs of a server in its data folder: recovers them at start, and records them afterwards.
+// Archive: all runs in a server's data folder. It recovers their worlds when the server starts, and then records them.
 //
 // Owner        the server. The simulation thread takes the laboratory and uses the recorder.
 #pragma once
@@ -16,32 +16,34 @@ namespace evod::replay {
 
 class Archive {
   public:
-    /// Of ended runs, newest first: as many answers of each as this, until they take `answers_of_ended_bytes_max` in all;
-    /// of every further run the last answer. The reply cache begins with them.
+    /// Answers of ended runs with which the reply cache begins. The newest runs come first, with up to this number of
+    /// answers each. After `answers_of_ended_bytes_max` in total, each older run contributes only its last answer.
     static constexpr std::uint32_t answers_kept_of_ended = 1000;
     static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
 
-    /// Locks the folder and recovers every world. Refused if one cannot be recovered, with its file and what to do: a
-    /// server without that world would seem to have lost it.
+    /// Locks the folder and recovers every world. Refused if a world cannot be recovered, because a server without that
+    /// world would seem to have lost it. The refusal names the file and what the operator can do.
     static base::Result<std::unique_ptr<Archive>>
     open(const std::string& path, const run_file::RunFile::Options& options, base::Executor& executor);
 
     const std::string& path() const { return folder_.path(); }
     run_file::Durability durability() const { return durability_; }
-    /// The identity of the run of a recovered world; nullptr if there is none of that name.
+    /// The identity of the run of a recovered world; nullptr if there is no recovered world with this name.
     const run_file::RunIdentity* identity_of(const std::string& world) const;
     bool holds_worlds() const { return !identities_.empty(); }
-    /// The recovered worlds, in order.
+    /// The names of the recovered worlds, in alphabetical order.
     std::vector<std::string> world_names() const;
-    /// The recovered worlds; to be called once.
+    /// Moves the recovered worlds out. To be called once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
-    /// Applied commands with their answers: those of ended runs first, within a run oldest first. To be called once.
+    /// Moves the applied commands and their answers out. Those of ended runs come first; within a run, the oldest comes
+    /// first. To be called once.
     std::vector<run_file::JournalEntry> take_answers() { return std::move(answers_); }
 
     /// nullptr after close().
     recording::StorageThread* thread() { return thread_.get(); }
     recording::Recorder& recorder() { return *recorder_; }
-    /// Writes what waits, as far as that is possible now, after the last use of the recorder. false: something is lost.
+    /// Writes everything that waits, if that is possible now. To be called after the last use of the recorder. Returns
+    /// false if data was lost.
     bool close() {
         const bool all_written = thread_->finish();
         thread_.reset();
@@ -50,9 +52,10 @@ class Archive {
 
   private:
     Archive(run_file::DataFolder folder, const run_file::RunFile::Options& options);
-    /// Reads the answers of ended runs; they come before those of recovered worlds.
+    /// Reads the answers of ended runs. Their place is before the answers of recovered worlds.
     void remember(const std::vector<std::string>& paths);
-    /// Recovers one world. Returns the new path of a run that has ended; empty: the world continues.
+    /// Recovers one world. Returns an empty text if the world continues. If its run has ended, returns the new path of
+    /// the file.
     base::Result<std::string> recover_world(const std::string& path, const run_file::RunFile::Options& options,
                                             base::Executor& executor);
 

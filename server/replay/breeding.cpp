@@ -39,7 +39,7 @@ Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreedin
     return generation;
 }
 
-/// Repeats the migration before breeding. Returns the migrants that came to the island.
+/// Repeats the migration before the breeding. Returns the migrants that arrived on the island.
 std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const parameters::Parameters& parameters,
                                         base::Seed seed, std::uint32_t island) {
     const std::uint64_t generation = parents.ended->generation;
@@ -102,7 +102,7 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
     Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
     const base::Seed seed = file.identity().seed;
     const bool shuffled = bred.parameters.shuffle_fitness;
-    std::vector<std::vector<double>> own; // fitness per island before shuffling
+    std::vector<std::vector<double>> own; // per island, the fitness before shuffling
     for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
         own.push_back(parents->ended->outcomes[island].fitness);
     }

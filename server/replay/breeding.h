@@ -1,4 +1,4 @@
-// Breeding: recomputes how a generation of a run bred the next one, from the records of both in its file.
+// Breeding: recomputes how one generation bred the next, from the records of both generations in the run file.
 //
 // Determinism  the recomputed descendants are compared with the stored ones.
 #pragma once
@@ -13,24 +13,25 @@
 namespace evod::replay {
 
 struct WantedBreeding {
-    std::optional<std::uint64_t> generation; // of the parents; nothing: the last one before `seen_from`
-    std::uint64_t seen_from = 0;             // a viewer's present generation
+    std::optional<std::uint64_t> generation; // generation of the parents; nullopt: the last one before `seen_from`
+    std::uint64_t seen_from = 0;             // the generation that a viewer shows now
     std::uint32_t island = 0;
     evolution::WantedRows rows;
 };
 
 struct Bred {
-    std::uint64_t generation = 0; // of the parents
+    std::uint64_t generation = 0; // generation of the parents
     std::uint32_t island = 0;
-    parameters::Parameters parameters; // in effect when it bred
+    parameters::Parameters parameters; // the parameters in effect for this breeding
     evolution::BreedingRecord record;
 };
 
-/// file  with a pinned snapshot.
-/// stop  cancels the work: refused with UNAVAILABLE.
+/// file  must have a pinned snapshot.
+/// stop  cancels the work, which is then refused with UNAVAILABLE.
 ///
-/// Refused where GenerationReader is, if there is no such generation or island, if no generation has bred yet, if the run
-/// follows another model, and with DATA_LOSS if the stored descendants differ.
+/// Refused for the same reasons as in GenerationReader. Also refused if the generation or the island does not exist, if
+/// no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored descendants
+/// differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
                                const std::stop_token& stop);
 

@@ -1,4 +1,4 @@
-// Columns: the columns of tables that two programs write, or that evod reads again.
+// Columns: the columns of tables that two programs write, or that evod reads back.
 #pragma once
 
 #include "server/replay/table.h"
@@ -13,7 +13,7 @@ namespace evod::replay {
 std::vector<std::string> statistics_columns();
 void write_row(Table& table, const simulation::GenerationStatistics& statistics);
 
-/// The columns of a population with which a world can begin.
+/// The columns of a table with a population that another world can begin with.
 std::vector<std::string> population_columns();
 
 } // namespace evod::replay

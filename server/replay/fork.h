@@ -1,16 +1,17 @@
-// Fork: creates a run that begins within another one, with the same seed, organisms and parameters. So every later
-// difference between the two runs is caused by a command (common random numbers).
+// Fork: creates a run that begins with a moment of another run, with the same seed, organisms and parameters. So every
+// later difference between the two runs is caused by a command (common random numbers).
 #pragma once
 
 #include "server/run_file/run_file.h"
 
 namespace evod::replay {
 
-/// Creates the file `path` for a run that begins with the first moment of a generation of `origin`, or with its last
-/// moment. The file needs no other one. It contains no commands, so the world waits to be run.
+/// Creates the file `path` for a run that begins with the first moment of a generation of `origin`. Without a
+/// generation, it begins with the last moment of `origin`. The file does not depend on any other file. It contains no
+/// commands, so the world waits for a command to run.
 ///
-/// returns  that moment. Refused if `path` exists, or if the origin has no such generation, is damaged there or follows
-///          another model.
+/// returns  the moment with which the run begins. Refused if `path` exists, if the origin does not contain the
+///          generation, if it is damaged there, or if it follows another model.
 base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<std::uint64_t> generation,
                                       const std::string& path, const std::string& name, const simulation::RunId& run_id,
                                       base::Executor& executor);

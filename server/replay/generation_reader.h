@@ -1,6 +1,6 @@
-// Generation reader: reads whole generations of a run file, and simulates those that are not retained.
+// Generation reader: reads whole generations of a run file. If a generation is not retained, simulates it again.
 //
-// Determinism  the same bits as the first time; the stored statistics of such a generation are compared.
+// Determinism  a simulated generation has the same bits as the original. Its stored statistics are compared.
 #pragma once
 
 #include "server/base/executor.h"
@@ -16,23 +16,23 @@ namespace evod::replay {
 
 struct WholeGeneration {
     run_file::GenerationBegun begun;
-    std::optional<run_file::GenerationEnded> ended; // nothing before its end
+    std::optional<run_file::GenerationEnded> ended; // nullopt if the generation has not ended
 };
 
-/// Whether a generation that has begun can be read: it is retained, or this program can simulate it again.
+/// Whether a generation that has begun can be read, because it is retained or this program can simulate it again.
 inline bool is_in_reach(run_file::RunFile& file, std::uint64_t generation) {
     return !file.other_model() || file.retention().at_or_before(generation) == generation;
 }
 
 class GenerationReader {
   public:
-    /// file  with a pinned snapshot; file and executor outlive the reader.
-    /// stop  cancels the simulation: read() is refused with UNAVAILABLE.
+    /// file  must have a pinned snapshot. The file and the executor must outlive the reader.
+    /// stop  cancels the simulation; then read() is refused with UNAVAILABLE.
     GenerationReader(run_file::RunFile& file, base::Executor& executor, std::stop_token stop = {})
         : file_{file}, executor_{executor}, stop_{std::move(stop)} {}
 
-    /// Reads a generation that has begun. Generations that are not retained are cheapest in order. Refused if the file is
-    /// damaged there, or the generation is not retained and follows another model.
+    /// Reads a generation that has begun. Reading generations that are not retained is fastest in ascending order.
+    /// Refused if the file is damaged there, or if the generation is not retained and follows another model.
     base::Result<WholeGeneration> read(std::uint64_t generation);
 
   private:
@@ -44,8 +44,8 @@ class GenerationReader {
     run_file::RunFile& file_;
     base::Executor& executor_;
     std::stop_token stop_;
-    std::optional<std::vector<ParameterChange>> changes_; // of the run; read when first needed
-    std::optional<Rerun> rerun_;                          // in the last simulated generation
+    std::optional<std::vector<ParameterChange>> changes_; // changes of the run; read at the first use
+    std::optional<Rerun> rerun_;                          // a world in the generation that was simulated last
 };
 
 } // namespace evod::replay

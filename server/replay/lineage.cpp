@@ -16,10 +16,10 @@ namespace {
 using base::Refusal;
 using base::Result;
 
-/// The part of a generation that lineage needs.
+/// The data of a generation that lineage needs.
 struct Births {
     std::uint64_t generation = 0;
-    parameters::Parameters parameters; // with which it was bred
+    parameters::Parameters parameters; // the parameters with which the generation was bred
     struct Island {
         std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
         std::vector<evolution::Parents> parents;
@@ -43,9 +43,9 @@ Births births_of(WholeGeneration whole) {
     return births;
 }
 
-using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // by island, then organism
+using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // indexed by island, then organism
 
-/// The organism in every place of `parents` when `children` were bred; nothing if not known.
+/// For every place of `parents`, the organism that lived there when `children` were bred; nullopt if unknown.
 std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile& file, const Births& parents,
                                                         const Births& children) {
     std::vector<std::vector<Place>> places(parents.islands.size());
@@ -74,7 +74,7 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
     return places;
 }
 
-/// Empty if not known.
+/// The parents of all organisms in `children`; empty if unknown.
 Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& children, const Births& parents) {
     const auto places = breeders(file, parents, children);
     if (!places) {
@@ -95,7 +95,7 @@ Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& chi
     return found;
 }
 
-/// next  the generation after it, with its parents; nullptr if there is none, or it cannot be read.
+/// next  the following generation with its parents; nullptr if there is none or it cannot be read.
 std::vector<Family> families_of(const Births& births, ParentPlaces parents, const Births* next,
                                 const ParentPlaces& next_parents) {
     std::vector<Family> families;
@@ -124,7 +124,7 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
     return families;
 }
 
-/// Reads backwards, from one retained generation to the one before.
+/// Reads backwards, from one retained generation to the previous retained one.
 class BackwardReader {
   public:
     BackwardReader(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop)
@@ -148,7 +148,7 @@ class BackwardReader {
   private:
     run_file::RunFile& file_;
     GenerationReader reader_;
-    std::map<std::uint64_t, Births> read_; // generations that are not retained, and the retained one before them
+    std::map<std::uint64_t, Births> read_; // generations that are not retained, and the retained generation before them
 };
 
 } // namespace
@@ -165,7 +165,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
             if (!opening) {
                 return opening.error();
             }
-            if (!*opening) { // a damaged number of the last generation may be very large
+            if (!*opening) { // if the number of the last generation is damaged, it may be very large
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
                                           ", but not generation " + std::to_string(generation),

@@ -14,7 +14,7 @@ using simulation::IslandState;
 using Found = std::optional<Mismatch>;
 
 std::string text_of(double value) {
-    return base::number_text(value + 0.0); // SQLite keeps −0 as 0
+    return base::number_text(value + 0.0); // SQLite stores −0 as 0
 }
 /// "3 4.5 6"
 template <class... Numbers>
@@ -63,8 +63,8 @@ Found compare_part(const std::string& part, const T& stored, const T& simulated)
     return Mismatch{part, text_of(stored), text_of(simulated)};
 }
 
-/// of_island  " on island 3"
-/// name       "the fitness of organism"
+/// of_island  the island as text, such as " on island 3".
+/// name       the value of one organism, such as "the fitness of organism".
 template <class T>
 Found compare_each(const std::string& name, const std::string& of_island, std::span<const T> stored,
                    std::span<const T> simulated) {
@@ -77,7 +77,7 @@ Found compare_each(const std::string& name, const std::string& of_island, std::s
     }
     return compare_part(name + " " + std::to_string(one - stored.begin()) + of_island, *one, *other);
 }
-/// name       "the fitness"
+/// name       the value of all organisms, such as "the fitness".
 template <class T>
 Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
                         std::span<const T> simulated) {
@@ -99,7 +99,7 @@ Found compare_part(const std::string& which, const parameters::Parameters& store
                     parameters::to_text(parameter.get(stored)), parameters::to_text(parameter.get(simulated))};
 }
 
-/// Equal if no account is stored: then it is not known.
+/// A missing stored account is unknown and counts as equal.
 Found compare_account(const std::string& name, const std::string& of_island,
                       const std::optional<evolution::SelectionAccount>& stored,
                       const std::optional<evolution::SelectionAccount>& simulated) {
@@ -258,7 +258,7 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
     if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
         return found;
     }
-    // After a reset, a run continues the revision numbers of the run before.
+    // After a reset, a run continues the revision numbers of the previous run.
     if (stored.moment.generation > 1) {
         if (auto found = compare_part("the revision of the parameters", stored.parameters.revision,
                                       simulated.parameters.revision)) {

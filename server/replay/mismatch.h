@@ -1,4 +1,4 @@
-// Mismatch: finds the first difference between a stored record and the same one simulated again.
+// Mismatch: finds the first difference between a stored record and the same record after a new simulation.
 #pragma once
 
 #include "server/run_file/records.h"
@@ -9,17 +9,17 @@
 
 namespace evod::replay {
 
-/// One differing number, as text.
+/// The first number that differs, as text.
 struct Mismatch {
     std::string part; // "the fitness of organism 3 on island 0"
     std::string stored, simulated;
 };
 
-// The first difference; nothing if there is none. Numbers are compared exactly, except that −0 equals 0: SQLite stores
-// −0 as 0.
+// Each function returns the first difference; nullopt if there is none. Numbers are compared exactly, but −0 equals 0,
+// because SQLite stores −0 as 0.
 
 std::optional<Mismatch> compare(const simulation::Opening& stored, const simulation::Opening& simulated);
-// One entry per island.
+// Both vectors have one entry per island.
 std::optional<Mismatch> compare(const std::vector<evolution::NextGeneration>& stored,
                                 const std::vector<evolution::NextGeneration>& simulated);
 std::optional<Mismatch> compare(const simulation::Founders& stored, const simulation::Founders& simulated);
@@ -29,7 +29,7 @@ std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatisti
                                 const std::vector<simulation::GenerationStatistics>& simulated);
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
 std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
-/// Of requested parameters.
+/// Compares requested parameters.
 std::optional<Mismatch> compare_requested(const parameters::Parameters& stored,
                                           const parameters::Parameters& simulated);
 

@@ -1,11 +1,12 @@
-// Recovery: restores a world at the last moment that its run file contains.
+// Recovery: restores a world at the last moment in its run file.
 //
-// A server calls it at start for every world of its data folder (archive.h); a fork of a run's end calls it too.
-// Recovery simulates the run from its last checkpoint, so it is part of replay, not of recording: replay may include
-// recording and hand the recovered worlds to it, and recording needs no simulation.
+// A server recovers every world of its data folder when it starts (archive.h). A fork of the end of a run uses recovery
+// too. Recovery simulates the run from its last checkpoint, so it belongs to replay and not to recording. Replay may
+// include recording and pass the recovered worlds to it; recording needs no simulation.
 //
 // Threads      none of its own.
-// Determinism  the restored world has the bits of the original one; every stored state hash on the way is compared.
+// Determinism  the restored world has the same bits as the original one. All stored state hashes after the start are
+//              compared.
 #pragma once
 
 #include "server/base/executor.h"
@@ -21,8 +22,8 @@ struct Recovered {
     std::vector<run_file::JournalEntry> journal;
 };
 
-/// Reads the journal once and simulates the run from its last checkpoint to its last tick. Refused where Rerun::at is,
-/// and where a state hash differs from the stored one.
+/// Reads the journal once and simulates the run from its last checkpoint to its last tick. Refused for the same reasons
+/// as Rerun::at(), and if a state hash differs from the stored one.
 base::Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor);
 
 } // namespace evod::replay

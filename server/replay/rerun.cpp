@@ -25,7 +25,7 @@ Refusal not_to_be_had(const std::string& path, const ParameterChange& change) {
                    "entry " + std::to_string(change.entry) + " of its journal has parameters that no world can have");
 }
 
-/// The command in a request; nothing if it is none that this program knows.
+/// The command in a serialized request; nullopt if this program does not recognise it as a command.
 std::optional<simulation::Command> command_of(const std::string& request) {
     v1::Request message;
     if (!message.ParseFromString(request)) {
@@ -157,7 +157,7 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
             file, simulation::World{identity.parameters, identity.seed, identity.first_population, identity.schedule},
             changes, 0);
     }
-    // A run that begins within a generation starts from the checkpoint of its first tick.
+    // A run that begins within a generation starts from the checkpoint at its first tick.
     std::optional<run_file::StoredCheckpoint> first;
     if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
         auto found = file.checkpoints().last(identity.first_tick);
@@ -193,7 +193,8 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
                             begun.founders,
                             file.identity().schedule};
     if (checkpoint == nullptr) {
-        // The beginning of a generation contains the changes between the end of the generation before and its first tick.
+        // The stored beginning already contains the changes between the end of the previous generation and its first
+        // tick.
         const auto first = opening.generation == file.identity().first_generation
                                ? changes.begin()
                                : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
@@ -214,7 +215,8 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
     if (world.hash() != checkpoint->hash) {
         return unusable("its state hash differs from the stored one");
     }
-    // Some changes after the same tick may be older than the checkpoint, and some newer.
+    // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
+    // entry.
     return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
 }
 

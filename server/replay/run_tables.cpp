@@ -17,7 +17,7 @@ using base::Refusal;
 using base::Result;
 using run_file::RunFile;
 
-/// Calls `of_generation` for each generation that has begun, in order, while rows can be written.
+/// Calls `of_generation` for each generation that has begun, in order, as long as rows can be written.
 template <class OfGeneration>
 Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
     const std::uint64_t last = file.generations().last();
@@ -26,7 +26,7 @@ Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& ou
         if (!opening) {
             return opening.error();
         }
-        if (!*opening) { // the number of the last generation is damaged, and may be very large
+        if (!*opening) { // if the number of the last generation is damaged, it may be very large
             return Refusal{.code = base::RefusalCode::DataLoss,
                            .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
                                       ", but not generation " + std::to_string(generation),
@@ -49,7 +49,7 @@ const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, s
     return organism < survivors ? "survivor" : "child";
 }
 
-/// ended  of the same island; nothing before the end of the generation.
+/// ended  the outcome of the same island; nullopt before the end of the generation.
 struct EndedIsland {
     const run_file::IslandOutcome& outcome;
     const simulation::GenerationStatistics& statistics;
@@ -84,7 +84,7 @@ Refusal no_such(base::Violation violation) {
             .reason = base::Reason::OrganismNotFound};
 }
 
-/// Why a generation that has begun cannot be read; nothing if it can.
+/// The reason why a generation that has begun cannot be read; nullopt if it can be read.
 std::optional<Refusal> out_of_reach(run_file::RunFile& file, const char* field, std::uint64_t generation) {
     if (is_in_reach(file, generation)) {
         return std::nullopt;
@@ -111,7 +111,7 @@ std::optional<base::Violation> wrong_place(const OrganismName& name, const std::
     return std::nullopt;
 }
 
-/// The organisms whose rows are wanted: by island, then organism.
+/// Which organisms are requested, by island, then organism.
 using Wanted = std::vector<std::vector<bool>>;
 
 void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {
@@ -145,7 +145,7 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<Fa
     }
 }
 
-/// The parents of the wanted organisms.
+/// The parents of the requested organisms.
 Wanted parents_of(const Wanted& wanted, const std::vector<Family>& families) {
     Wanted parents;
     for (std::size_t island = 0; island < families.size(); ++island) {
@@ -301,7 +301,7 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
             v1::Request request;
             std::string json;
             const bool parsed = request.ParseFromString(entry.origin.request);
-            // With them another client could send this client's next command.
+            // These two fields would allow another client to send the next command under the identity of this one.
             request.clear_client_key();
             request.clear_request_id();
             if (!parsed || !MessageToJsonString(request, &json, json_options).ok()) {
@@ -333,7 +333,7 @@ std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
         for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
             const auto opening = file.generations().opening_of(generation);
             if (!opening || !*opening) {
-                break; // damaged: reading the generation reports it
+                break; // the file is damaged; reading the generation reports it
             }
             count += !is_in_reach(file, generation);
         }

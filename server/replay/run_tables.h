@@ -1,12 +1,12 @@
-// Run tables: the contents of a run file as rows for other programs.
+// Run tables: writes the contents of a run file as rows for other programs.
 //
 //   generations  statistics, one row per generation and island, as `evod run --csv` writes them
 //   organisms    one row per organism: parents, genes, fitness, death
-//   lineage      one row per organism: its parents with their islands, and its number of children
-//   population   one row per organism of one generation: genes; another world can begin with them
+//   lineage      one row per organism: its parents with their islands, and the number of its children
+//   population   one row per organism of one generation: its genes. Another world can begin with this table.
 //   events       the journal: one row per applied command
 //
-// Rows are written generation by generation; generations that are not retained are simulated again.
+// Rows are written generation by generation. Generations that are not retained are simulated again.
 #pragma once
 
 #include "server/base/executor.h"
@@ -30,28 +30,32 @@ struct OrganismName {
 struct WantedTable {
     RunTable table = RunTable::Generations;
     Table::Format format = Table::Format::Csv;
-    std::optional<std::uint64_t> generation = {}; // of the population; nothing: the last that has begun
-    std::optional<OrganismName> of = {}; // of the lineage: it and its ancestors, newest first; nothing: all organisms
-    bool only_users = false; // of the events: name only the user who sent a command, without program and address
+    // Only for the population; nullopt: the last generation that has begun.
+    std::optional<std::uint64_t> generation = {};
+    // Only for the lineage: this organism and its ancestors, newest first; nullopt: all organisms.
+    std::optional<OrganismName> of = {};
+    // Only for the events: write the user who sent a command, but not the program and the address.
+    bool only_users = false;
 };
 
-/// A run file with a pinned snapshot, and an executor for what has to be simulated again. `stop` cancels.
+/// A run file with a pinned snapshot, an executor to simulate generations again, and a token that cancels the work.
 struct RunSource {
     run_file::RunFile& file;
     base::Executor& executor;
     std::stop_token stop = {};
 };
 
-/// Refused if the file is damaged, has no such generation or organism, or does not retain it and follows another model
-/// (fields "generation", "of.generation", "of.island", "of.organism"); earlier rows are written all the same. Tables of
-/// all organisms leave out generations that cannot be read, and leave fields empty that are not known. The state of `out`
-/// shows whether the rows could be written.
+/// Writes a table. Refused if the file is damaged, or if it does not contain the generation or the organism. Also
+/// refused if that generation is not retained and the run follows another model. Violations name the fields
+/// "generation", "of.generation", "of.island" and "of.organism". Rows before the error are still written. Tables of all
+/// organisms leave out generations that cannot be read, and leave unknown fields empty. The state of `out` shows
+/// whether all rows could be written.
 base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out);
 
-/// The number of generations whose organisms are lost: they are not retained, and the run follows another model.
+/// The number of generations whose organisms are lost, because they are not retained and the run follows another model.
 std::uint64_t generations_out_of_reach(run_file::RunFile& file);
 
-/// Writes a population that is in no run file as such a table.
+/// Writes a population that is not from a run file as a table `population`.
 void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out);
 
 } // namespace evod::replay

@@ -58,7 +58,7 @@ Result<SeekTarget> find(run_file::RunFile& file, const WantedMoment& wanted, con
         }
         last = *next ? (*next)->moment.tick : last;
     }
-    // A fork may begin within its first generation.
+    // A fork may begin in the middle of its first generation.
     const std::uint64_t begins = std::max(first, there.first_tick) - first;
     const std::uint64_t tick = wanted.tick.value_or(begins);
     if (tick < begins || tick > last - first) {

@@ -1,9 +1,10 @@
-// Stored run: the file of a run as replays use it: which moments it contains, and from where each can be simulated.
+// Stored run: the file of a run, for replays: which moments it contains, and from which stored state each can be
+// simulated.
 //
-// The file is opened for each use, and found under the name of an ended run too. So the run may continue, be reset or be
-// purged meanwhile.
+// The file is opened again for each use. It is also found if it has been renamed because the run ended. So the run may
+// be continued, reset or purged between two uses.
 //
-// Threads      none of its own; any thread uses a copy of its own.
+// Threads      no threads of its own. Each thread uses its own copy of this object.
 #pragma once
 
 #include "server/replay/rerun.h"
@@ -15,66 +16,68 @@
 
 namespace evod::replay {
 
-/// A requested moment. Without both fields: the last known one.
+/// A requested moment. If both fields are empty, it is the last known moment.
 struct WantedMoment {
     std::optional<std::uint64_t> generation;
-    std::optional<std::uint64_t> tick; // of the generation; of the run if no generation is given
+    std::optional<std::uint64_t> tick; // tick of the generation, or of the run if no generation is given
 };
 
-/// An existing moment. The last tick of a generation and the beginning of the next are different moments.
+/// A moment of the run. The last tick of a generation and the beginning of the next generation are different moments.
 struct SeekTarget {
     std::uint64_t generation = 1;
-    std::uint64_t tick = 0; // since the run began
+    std::uint64_t tick = 0; // ticks since the run began
 };
 
 /// A moment and the stored state from which it is simulated.
 struct SeekStart {
     simulation::Replay there; // the moments of the run; replay_of is empty
     SeekTarget to;
-    Rerun from; // the last stored state up to that moment
+    Rerun from; // at the last stored state at or before the moment
 };
 
-/// The moment up to which a live run has been handed over to the storage thread. Once that is written, the file reaches as
-/// far or further. Zeros: only the file's contents are known.
+/// The moment up to which a live run has been passed to the storage thread. When this data has been written, the file
+/// reaches this moment or a later one. If both are 0, only the contents of the file are known.
 struct RecordedUntil {
     std::uint64_t generation = 0, tick = 0;
 };
 
-/// The records that a live run has written since an earlier reading.
+/// The records that a live run has added since they were last read.
 struct NewRecords {
-    simulation::Replay there;                      // replay_of is empty
-    std::string path;                              // of its file
-    std::uint64_t after_entry = 0, last_entry = 0; // of the journal: the changes after the first up to the second
+    simulation::Replay there; // replay_of is empty
+    std::string path;         // path of the run's file
+    // Range of the journal entries in `changes`: from after_entry + 1 to last_entry.
+    std::uint64_t after_entry = 0, last_entry = 0;
     std::vector<ParameterChange> changes;
 };
 
 class StoredRun {
   public:
-    /// A replay has the statistics of at most so many generations before its first moment.
+    /// Maximum number of generations before the first moment whose statistics a replay has.
     static constexpr std::size_t history_generations_known = 1'000;
 
-    /// paths  of the run's file, now and after its end.
+    /// paths  the paths of the run's file: the present path, and the path after the run has ended.
     StoredRun(std::vector<std::string> paths, const simulation::RunId& run_id)
         : paths_{std::move(paths)}, run_id_{run_id} {}
-    /// The run of a file. Refused if there is no file, or it cannot be simulated again.
+    /// Opens the run in a file. Refused if the file does not exist, or if the run cannot be simulated again.
     static base::Result<StoredRun> of_file(const std::string& path);
 
     const simulation::RunId& run_id() const { return run_id_; }
-    /// The name of the run's world, from the file.
+    /// The name of the run's world, read from the file.
     base::Result<std::string> world_name() const;
 
-    /// Refused if the run has no such moment; the message contains the allowed range.
+    /// Finds a moment and the stored state to start from. Refused if the run does not contain the moment; the message
+    /// then contains the allowed range.
     ///
-    /// wanted  nothing: the first.
-    /// known   taken before the caller waited for the disk, so that the file contains every command until then and the
-    ///         beginning of that generation.
+    /// wanted  nullopt: the first moment.
+    /// known   must be determined before the caller waits for the disk. The file then contains every command up to this
+    ///         moment, and the beginning of its generation.
     base::Result<SeekStart> start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil known,
                                        base::Executor& executor) const;
 
-    /// after_entry  the journal's entries up to this one are skipped.
+    /// after_entry  the journal entries up to and including this one are skipped.
     base::Result<NewRecords> new_records(std::uint64_t after_entry) const;
 
-    /// Opens its file for reading, wherever it is now.
+    /// Opens the file of the run for reading, under its present name.
     base::Result<std::unique_ptr<run_file::RunFile>> open() const;
 
   private:

@@ -1,5 +1,5 @@
-// Table: writes rows for other programs: as CSV with a heading (RFC 4180, but lines end with "\n"), or as JSON Lines,
-// one object per row.
+// Table: writes rows for other programs, either as CSV with a heading or as JSON Lines with one object per row. The CSV
+// follows RFC 4180, but its lines end with "\n".
 #pragma once
 
 #include <charconv>
@@ -19,9 +19,9 @@ class Table {
     /// Writes the heading of a CSV table.
     Table(std::ostream& out, Format format, std::vector<std::string> columns);
 
-    // The columns of a row in order, then end_row().
+    // Call these for the columns of a row, in order, then end_row().
 
-    /// The shortest text that reads back as the same number.
+    /// Writes the shortest text that reads back as the same number.
     template <class T>
     requires std::is_arithmetic_v<T> Table& number(T value) {
         if constexpr (std::is_floating_point_v<T>) {
@@ -35,9 +35,9 @@ class Table {
         return *this;
     }
     Table& text(std::string_view value);
-    /// value  JSON on one line.
+    /// value  JSON text on one line.
     Table& json(std::string_view value);
-    /// A value that is not known: an empty field, or null.
+    /// Writes an unknown value: an empty field in CSV, null in JSON.
     Table& nothing();
     void end_row();
 

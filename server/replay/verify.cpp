@@ -19,24 +19,24 @@ using base::Result;
 using evolution::NextGeneration;
 using simulation::World;
 
-/// The records of a generation. `born` and `outcomes` are empty if it is not retained; `outcomes` and `statistics` are
-/// empty if it has not ended.
+/// The stored records of a generation. `born` and `outcomes` are empty if the generation is not retained. `outcomes`
+/// and `statistics` are empty if it has not ended.
 struct StoredGeneration {
     simulation::Opening opening;
     std::vector<NextGeneration> born;
-    simulation::Founders founders; // empty: not known
+    simulation::Founders founders; // empty: unknown
     std::vector<run_file::IslandOutcome> outcomes;
     std::vector<simulation::GenerationStatistics> statistics;
     std::vector<run_file::HashRecord> hashes;
     std::vector<run_file::StoredCheckpoint> checkpoints;
-    std::uint64_t last_tick = 0; // of this generation in the file
+    std::uint64_t last_tick = 0; // last tick of this generation in the file
 };
 
-/// A retained generation and the following ones that are not retained.
+/// A retained generation and all following generations up to the next retained one.
 using Stretch = std::vector<StoredGeneration>;
 
-/// Whether a stored beginning is valid; the core relies on that. An invalid one differs from what the generation before
-/// bred, and is reported as that difference.
+/// Whether a stored beginning is valid, which the core assumes. An invalid beginning differs from the result of the
+/// previous generation and is reported as that difference.
 bool can_be_simulated(const StoredGeneration& generation) {
     const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
@@ -48,13 +48,13 @@ bool can_be_simulated(const StoredGeneration& generation) {
 
 class StretchCheck {
   public:
-    /// following  the generation after the stretch; nullptr for none.
+    /// following  the first generation after the stretch; nullptr if there is none.
     StretchCheck(const run_file::RunFile& file, const Stretch& stretch, const StoredGeneration* following,
                  base::Executor& executor)
         : file_{file}, stretch_{stretch}, following_{following}, executor_{executor} {}
 
-    /// changes   of the run, up to the stretch's last tick.
-    /// progress  called with the number of ticks since its last call.
+    /// changes   all changes of the run up to the last tick of the stretch.
+    /// progress  called with the number of ticks since the previous call.
     Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> progress) {
         const StoredGeneration& first = stretch_.front();
         agrees_with_beginning_of(first);
@@ -94,7 +94,7 @@ class StretchCheck {
                                       .stored = std::move(mismatch.stored),
                                       .simulated = std::move(mismatch.simulated)};
     }
-    /// Whether no difference was found.
+    /// Records a difference, if there is one. Returns whether there was none.
     bool same(const StoredMoment& moment, std::optional<Mismatch> mismatch) {
         if (mismatch) {
             differ(moment, *std::move(mismatch));
@@ -111,7 +111,8 @@ class StretchCheck {
         agreeing_part_ = "the beginning of the generation";
     }
 
-    /// The checkpoint with which the run begins within the stretch's first generation; nullptr for none.
+    /// The checkpoint with which the run begins, if it begins within the first generation of the stretch; otherwise
+    /// nullptr.
     const run_file::StoredCheckpoint* beginning() const {
         const StoredGeneration& first = stretch_.front();
         return first.opening.moment.tick < file_.identity().first_tick ? &first.checkpoints.front() : nullptr;
@@ -125,7 +126,7 @@ class StretchCheck {
             const run_file::GenerationBegun begun = run_file::beginning_of(world);
             (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
         } else {
-            // The beginning of a fork does not follow from its file, except for the requested parameters.
+            // Only the requested parameters of a fork can be derived from its file; its beginning cannot.
             const run_file::StoredCheckpoint* within = beginning();
             const parameters::ParameterSet& set = within ? within->parameters : first.opening.parameters;
             (void)same(agrees_, compare_requested(set.requested, identity.parameters));
@@ -186,7 +187,7 @@ class StretchCheck {
         progress(world.moment().tick - progress_tick);
     }
 
-    /// Whether no difference was found.
+    /// Compares the world with a checkpoint. Returns whether they are equal.
     bool check_checkpoint(const World& world, const run_file::StoredCheckpoint& stored) {
         const StoredMoment now{world.moment().generation, world.moment().tick};
         simulation::WorldState state{
@@ -247,12 +248,12 @@ class StretchCheck {
     const Stretch& stretch_;
     const StoredGeneration* following_;
     base::Executor& executor_;
-    StoredMoment agrees_; // the last equal moment
+    StoredMoment agrees_; // the last moment without a difference
     const char* agreeing_part_ = "";
     Verified done_;
 };
 
-/// Reads a file's generations in order, each once.
+/// Reads the generations of a file once, in order.
 class Reader {
   public:
     explicit Reader(run_file::RunFile& file)
@@ -260,7 +261,8 @@ class Reader {
 
     const run_file::EndMark& contents() const { return contents_; }
 
-    /// The next stretches: at most `count`, and only until they have `organisms`; empty after the last.
+    /// Reads the next stretches: at most `count`, and no further ones once they have `organisms` organisms. Returns an
+    /// empty vector after the last stretch.
     Result<std::vector<Stretch>> read(std::size_t count, std::size_t organisms) {
         if (!following_ && next_ <= contents_.generations) {
             if (auto read = read_following(); !read) {
@@ -285,7 +287,7 @@ class Reader {
         }
         return stretches;
     }
-    /// The generation after the ones read last; nullptr for none.
+    /// The first generation after those read last; nullptr if there is none.
     const StoredGeneration* following() const { return following_ ? &*following_ : nullptr; }
 
   private:
@@ -295,7 +297,7 @@ class Reader {
             return {};
         }
         const std::uint64_t number = next_++;
-        // check() has made sure that no record is missing.
+        // check() has verified that no record is missing.
         StoredGeneration& generation = following_.emplace();
         auto begun = file_.generations().beginning_of(number);
         if (!begun) {
@@ -327,10 +329,10 @@ class Reader {
         return {};
     }
 
-    /// The hashes and checkpoints of a generation, after the next generation has been read.
+    /// Reads the hashes and checkpoints of a generation. The next generation must have been read before.
     Result<void> read_hashes(StoredGeneration& generation) {
         generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
-        // A fork may begin within a generation, at a tick whose hash is in the file of its origin.
+        // A fork may begin within a generation. The hash of its first tick is in the file of its origin.
         const std::uint64_t first_tick = std::max(generation.opening.moment.tick, file_.identity().first_tick);
         auto hashes = file_.hashes(first_tick, generation.last_tick);
         if (!hashes) {
@@ -347,7 +349,7 @@ class Reader {
 
     run_file::RunFile& file_;
     const run_file::EndMark contents_;
-    std::uint64_t next_; // generation to be read
+    std::uint64_t next_; // number of the next generation to read
     std::optional<StoredGeneration> following_;
 };
 
@@ -383,7 +385,7 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
         return changes.error();
     }
 
-    // Enough to keep every thread busy although some stretches take longer; bounded to limit memory.
+    // Enough stretches to keep all threads busy although some take longer; bounded to limit memory.
     const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
     constexpr std::size_t organisms_at_once = 1'000'000;
     Reader reader{file};

@@ -5,8 +5,9 @@
 
 namespace evod::run_file {
 
-/// "3f2a91c0d4e5 by GNU 12.2.0 for x86_64, Release": the commit where it is known, with a + if files were changed
-/// since; the compiler and its version; the processor; the type of build.
+/// The commit, the compiler with its version, the processor and the build type, as one text:
+/// "3f2a91c0d4e5 by GNU 12.2.0 for x86_64, Release". The commit is missing if it is unknown. A + after the commit means
+/// that files were changed since.
 std::string build_text();
 
 } // namespace evod::run_file

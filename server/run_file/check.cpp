@@ -11,7 +11,7 @@ namespace {
 using base::RefusalCode;
 using base::Result;
 
-/// A generation of which only the opening and the statistics are retained.
+/// Checks a generation that is not retained. Only its opening and statistics are stored.
 Result<void> check_purged_generation(RunFile& file, std::uint64_t generation) {
     const auto opening = file.generations().opening_of(generation);
     if (!opening) {
@@ -63,7 +63,7 @@ Result<void> check_hashes(RunFile& file, const EndMark& contents) {
             if (file.database().number("SELECT max(tick) FROM state_hash") >= static_cast<std::int64_t>(next)) {
                 return file.damaged(row_text(StateHashTable::name, next));
             }
-            break; // the end mark shows whether the last ones are missing
+            break; // the end mark shows whether the last hashes are missing
         }
         for (const HashRecord& hash : *hashes) {
             if (hash.tick != next) {
@@ -80,7 +80,7 @@ Result<void> check_checkpoints(RunFile& file, const EndMark& contents) {
     const RunIdentity& identity = file.identity();
     const std::int64_t newest = file.database().number("SELECT max(tick) FROM checkpoint");
     for (std::int64_t after = -1; after < newest && !file.database().failed();) {
-        // One at a time, because they may be large.
+        // Reads one checkpoint at a time, because checkpoints may be large.
         const auto next = file.checkpoints().next(after);
         if (!next) {
             return next.error();

@@ -10,16 +10,17 @@ namespace evod::run_file {
 
 class RunFile;
 
-/// Whether SQLite finds the file sound, and every row is as it was written.
+/// Checks that SQLite finds no damage, that no row is missing, and that every row has the right checksum.
 ///
-/// progress  called with each generation before it is read.
+/// progress  called with the number of each generation before that generation is read.
 base::Result<void> check(RunFile& file, base::FunctionRef<void(std::uint64_t generation)> progress);
 base::Result<void> check(RunFile& file);
 
-/// Whether the file contains as much as its end mark states; succeeds if there is no end mark.
+/// Checks that the file contains as many rows as its end mark states. Succeeds if there is no end mark.
 base::Result<void> check_end_mark(RunFile& file);
 
-/// Whether SQLite finds a table and its indices sound; "1": the whole file, up to the first fault.
+/// Lets SQLite check a table and its indices for damage. For table "1", SQLite checks the whole file up to the first
+/// fault.
 base::Result<void> check_tree(RunDatabase& database, const std::string& table);
 
 } // namespace evod::run_file

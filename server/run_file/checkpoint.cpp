@@ -29,7 +29,8 @@ Refusal refusal(const char* message) {
     return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
 }
 
-/// Calls visit(range, member) for every column in order: the elements, and a function that returns their member.
+/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` returns the value of
+/// an element in this column.
 template <class Island, class Visit>
 void for_each_column(Island& island, Visit&& visit) {
     visit(
@@ -80,7 +81,7 @@ std::size_t bytes_of_statistics() {
     return bytes;
 }
 
-/// The size of the uncompressed state, its first byte included.
+/// The size of the uncompressed state in bytes, including its first byte.
 std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
     std::size_t bytes = 1;
     for (const IslandShape& shape : shapes) {
@@ -102,7 +103,7 @@ class Packer {
         EVOD_ASSERT(context_ != nullptr);
         ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, compression_level);
     }
-    /// zstd writes the size of the contents, so that a reader can check it before it allocates.
+    /// Makes zstd store the uncompressed size, so that a reader can check it before it allocates memory.
     void expect(std::size_t bytes) { ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes); }
 
     template <class T>
@@ -149,10 +150,10 @@ class Packer {
 
     std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context_;
     std::string packed_;
-    std::size_t used_ = 0; // of packed_
+    std::size_t used_ = 0; // bytes used in packed_
 };
 
-/// Reads values from the front; the caller has checked the size.
+/// Reads values from the front. The caller has already checked the size.
 class Columns {
   public:
     explicit Columns(std::string_view bytes) : bytes_{bytes} {}

@@ -1,7 +1,8 @@
 // Checkpoint: encodes the islands of a world's state as columns, compressed by zstd. The layout: docs/RUN_FILE.md.
 //
-// Bytes that are read come from an untrusted file. Their number follows from the shapes of the islands at the beginning
-// of the generation, so decoding allocates no more than that. World::restore() checks the values.
+// The bytes that are read come from an untrusted file. The shapes of the islands at the beginning of the generation
+// determine the size of the uncompressed state, so decoding allocates no more memory than that. World::restore() checks
+// the values.
 #pragma once
 
 #include "server/base/result.h"
@@ -14,17 +15,17 @@
 
 namespace evod::run_file {
 
-/// state.islands and state.ended, compressed.
+/// Encodes state.islands and state.ended as columns and compresses them.
 std::string pack(const simulation::WorldState& state);
 
-/// The form that a run file stores.
+/// Converts a checkpoint to the form that a run file stores.
 StoredCheckpoint pack(const Checkpoint& checkpoint);
 
-/// Fills in state.islands and state.ended. Refused unless the bytes are a compressed state of such islands.
+/// Decodes state.islands and state.ended. Refused unless `packed` is a compressed state of islands with these shapes.
 base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
                           simulation::WorldState& state);
 
-/// The same from uncompressed bytes.
+/// Like unpack(), but reads uncompressed bytes.
 base::Result<void> read_columns(std::string_view bytes, std::span<const simulation::IslandShape> shapes,
                                 simulation::WorldState& state);
 

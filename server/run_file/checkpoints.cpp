@@ -53,7 +53,7 @@ Result<std::vector<StoredCheckpoint>> Checkpoints::read_where(const std::string&
     CheckpointRowTable::Row row;
     StoredCheckpoint checkpoint;
     Result<void> parts;
-    // While its row is being read, a server cannot delete any of its parts.
+    // While this row is being read, a server cannot delete the parts of its checkpoint.
     row.parts.read = [&] {
         checkpoint.state.clear();
         parts = read_parts(row.moment.tick, checkpoint.state, row.parts.values);
@@ -97,8 +97,8 @@ void Checkpoints::write(const StoredCheckpoint& checkpoint) {
 bool Checkpoints::is_written(const StoredCheckpoint& checkpoint) {
     const std::uint64_t tick = checkpoint.moment.tick;
     const bool begun = unfinished_ && unfinished_->tick == tick;
-    // A run has one state after a tick. So a row with this tick holds this checkpoint: an earlier commit was reported as
-    // failed and had succeeded.
+    // A run has only one state after a given tick. So a row with this tick contains this checkpoint: an earlier commit
+    // succeeded although it was reported as failed.
     const bool written =
         !retention_.is_retained(checkpoint.moment.generation) ||
         (!begun && database_.number("SELECT count(*) FROM checkpoint WHERE tick = " + std::to_string(tick)) != 0);
@@ -123,7 +123,8 @@ void Checkpoints::part_written(bool was_last) {
 }
 
 bool Checkpoints::write_next(const StoredCheckpoint& checkpoint, Unfinished& unfinished) {
-    if (unfinished.checksums.empty()) { // parts of a server that was killed, or of a checkpoint that is replaced
+    // Parts from a server that was killed, or of a checkpoint that is being replaced.
+    if (unfinished.checksums.empty()) {
         database_.run("DELETE FROM checkpoint_part WHERE tick = " + std::to_string(unfinished.tick));
     }
     const auto rest = std::as_bytes(std::span{checkpoint.state}).subspan(unfinished.checksums.size() * part_bytes_);

@@ -1,8 +1,8 @@
 // Checkpoints: the tables `checkpoint` and `checkpoint_part` of a run file.
 //
-// A large state is written in parts, each in a transaction of its own, so that commands need not wait for all of it.
-// The row of `checkpoint` comes last: parts without such a row belong to a checkpoint that was not completed or has been
-// deleted. They are orphans, which readers ignore and delete_orphans() removes.
+// A large state is written in parts, each in its own transaction, so that commands do not wait until the whole state is
+// written. The row of `checkpoint` is written last. Parts without such a row are orphans: their checkpoint was not
+// completed or has been deleted. Readers ignore orphans; delete_some_orphans() and delete_all_orphans() delete them.
 //
 // Owner        a RunFile.
 #pragma once
@@ -20,10 +20,10 @@ namespace evod::run_file {
 
 class Checkpoints {
   public:
-    /// How many of the newest stay, beside the one with which the run begins.
+    /// Number of newest checkpoints that are retained, in addition to the checkpoint with which the run begins.
     static constexpr int retained_count = 3;
 
-    /// part_bytes  at most so many in a part. Everything passed in outlives this.
+    /// part_bytes  maximum size of one part. All references that are passed in must outlive this object.
     Checkpoints(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets, Retention& retention,
                 std::size_t part_bytes)
         : database_{database}
@@ -32,45 +32,46 @@ class Checkpoints {
         , retention_{retention}
         , part_bytes_{part_bytes} {}
 
-    /// Those after tick `after` up to tick `until`, in order of ticks.
+    /// The checkpoints after tick `after`, up to and including tick `until`, in order of ticks.
     base::Result<std::vector<StoredCheckpoint>> read(std::uint64_t after, std::uint64_t until);
-    /// The last one up to a tick; nothing if there is none.
+    /// The last checkpoint at or before tick `until`; nullopt if there is none.
     base::Result<std::optional<StoredCheckpoint>> last(std::uint64_t until);
-    /// The first one after a tick, which may be −1; nothing if there is none.
+    /// The first checkpoint after tick `after`, which may be −1; nullopt if there is none.
     base::Result<std::optional<StoredCheckpoint>> next(std::int64_t after);
 
-    /// Writes a whole checkpoint within the current transaction; does nothing if its generation is not retained.
+    /// Writes a whole checkpoint within the current transaction. Does nothing if its generation is not retained.
     void write(const StoredCheckpoint& checkpoint);
     void write(const Checkpoint& checkpoint);
 
-    /// Whether nothing of the checkpoint is left to be written: it is in the file, or its generation is not retained.
+    /// Whether the checkpoint needs no further writing: it is in the file, or its generation is not retained.
     bool is_written(const StoredCheckpoint& checkpoint);
-    /// Writes the next part within the current transaction; all parts of one checkpoint come before another's first.
+    /// Writes the next part of a checkpoint within the current transaction. All parts of one checkpoint must be written
+    /// before the first part of another.
     ///
-    /// returns  whether it was the last.
+    /// returns  whether this was the last part.
     bool write_part(const StoredCheckpoint& checkpoint);
-    /// The part is committed.
+    /// To be called after the transaction with a part has been committed.
     void part_written(bool was_last);
 
-    /// Rows of `checkpoint` have been deleted elsewhere.
+    /// To be called after other code has deleted rows of `checkpoint`.
     void expect_orphans() { may_have_orphans_ = true; }
     bool may_have_orphans() const { return may_have_orphans_; }
-    /// Whether there is an orphan, other than parts of a checkpoint that is being written.
+    /// Whether the file contains orphans. Parts of a checkpoint that is being written do not count.
     bool has_orphans();
-    /// Deletes some orphans within the current transaction.
+    /// Deletes one batch of orphans within the current transaction.
     void delete_some_orphans();
-    /// Deletes all of them, those of a checkpoint that is being written included.
+    /// Deletes all orphans within the current transaction, and all parts of a checkpoint that is being written.
     void delete_all_orphans();
 
   private:
     /// A checkpoint whose last part has not been written.
     struct Unfinished {
         std::uint64_t tick = 0;
-        std::vector<std::int64_t> checksums = {}; // of the parts that have been
+        std::vector<std::int64_t> checksums = {}; // checksums of the parts written so far
     };
     base::Result<std::vector<StoredCheckpoint>> read_where(const std::string& condition,
                                                            const std::vector<std::int64_t>& values);
-    /// Appends all parts of a state but the last, which is in the row of its checkpoint.
+    /// Appends all parts of a state except the last part, which is in the row of the checkpoint.
     base::Result<void> read_parts(std::uint64_t tick, std::string& state, std::vector<std::int64_t>& checksums);
     bool write_next(const StoredCheckpoint& checkpoint, Unfinished& unfinished);
     std::string orphans_condition() const;

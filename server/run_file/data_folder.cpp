@@ -93,8 +93,8 @@ base::Result<DataFolder::Files> DataFolder::files() const {
 
 base::Result<void> rename_run_file(const std::string& from, const std::string& to) {
     std::error_code error, ignored;
-    // While a program reads the file, the log may be the only place of the last commits. So the log is linked under the
-    // new name before the file is renamed, where the file system supports links.
+    // While a program reads the file, the last commits may be in the log only. So the log gets a hard link with the new
+    // name before the file is renamed, if the file system supports links.
     struct Companion {
         const char* suffix;
         bool exists = false, linked = false;

@@ -1,10 +1,10 @@
-// Data folder: the folder with a server's run files, and renaming and deleting such files.
+// Data folder: the folder with the run files of one server. Lists these files, renames them and deletes them.
 //
 //   NAME.evod         the run of the world NAME
 //   NAME.RUNID.evod   a run that has ended
 //   NAME.evod-next    a run that is being created; it becomes NAME.evod
 //
-// Owner        one server. It locks the file `lock`, so a second server is refused.
+// Owner        one server. It locks the file `lock`, so that a second server for the same folder is refused.
 #pragma once
 
 #include "server/base/result.h"
@@ -17,7 +17,8 @@ namespace evod::run_file {
 
 class DataFolder {
   public:
-    /// Creates the folder if there is none. Refused if another server has it, or it cannot be used.
+    /// Opens the folder, and creates it if it does not exist. Refused if another server uses it, or if it is not
+    /// usable.
     static base::Result<DataFolder> open(const std::string& path);
 
     DataFolder(DataFolder&& other) noexcept;
@@ -29,9 +30,10 @@ class DataFolder {
     std::string ended_file_of(const std::string& world, const simulation::RunId& run_id) const;
     static std::string next_file_of(const std::string& file) { return file + "-next"; }
     struct Files {
-        std::vector<std::string> of_worlds, ended; // paths, sorted
-        std::vector<std::string> replaced;         // paths that have a next_file_of(), whether they exist or not
-        std::vector<std::string> strange;          // end in .evod, but the rest is no name of a world
+        std::vector<std::string> of_worlds, ended; // paths of the current runs of worlds, and of ended runs; sorted
+        // Paths for which next_file_of(path) exists; the path itself may not exist.
+        std::vector<std::string> replaced;
+        std::vector<std::string> strange; // paths that end in .evod but contain no valid world name
     };
     base::Result<Files> files() const;
 
@@ -41,15 +43,15 @@ class DataFolder {
     int lock_; // file descriptor
 };
 
-/// Renames a file that this thread does not have open, with SQLite's files beside it. Programs that read it continue to
-/// read it, and no file is left under the old name.
+/// Renames a run file and the SQLite files beside it. This thread must not have the file open. Programs that are
+/// reading the file can continue. No file keeps the old name.
 base::Result<void> rename_run_file(const std::string& from, const std::string& to);
 
-/// Deletes a file that no thread has open, with SQLite's files beside it.
+/// Deletes a run file and the SQLite files beside it. No thread may have the file open.
 base::Result<void> remove_run_file(const std::string& path);
 
-/// Refused for a folder, a device, a symbolic link or a file with a hard link. Two servers might write to a file with two
-/// names: neither sees the other's lock, and SQLite keeps a log for each name.
+/// Refuses a folder, a device, a symbolic link, and a file with a hard link. Two servers might write to a file that has
+/// two names: neither sees the other's lock, and SQLite keeps a separate log for each name.
 base::Result<void> expect_file_with_one_name(const std::string& path);
 
 } // namespace evod::run_file

@@ -41,16 +41,16 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     if (failed()) {
         return;
     }
-    // Another program that reads the file may hold a lock for a moment.
+    // Another program that reads the file may hold a lock for a short time.
     sqlite3_busy_timeout(handle, 2000);
-    // Damage is reported, never worked around; nothing in a file may run code.
+    // SQLite must report damage instead of working around it. Nothing in a file may run code.
     sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     run("PRAGMA cell_size_check = ON");
     if (reads) {
         return;
     }
-    // Replaces SQLite's own hook, which would copy a long log within a commit.
+    // Replaces SQLite's own hook, which would copy a long log into the file during a commit.
     sqlite3_wal_hook(
         handle,
         [](void* self, sqlite3*, const char*, int pages) {
@@ -145,7 +145,7 @@ void Statement::bind(int parameter, std::span<const std::byte> bytes) {
     if (!database_.failed()) {
         database_.check(sqlite3_bind_blob64(handle_.get(), parameter + 1,
                                             bytes.empty() ? "" : static_cast<const void*>(bytes.data()), bytes.size(),
-                                            SQLITE_TRANSIENT)); // nullptr would be NULL
+                                            SQLITE_TRANSIENT)); // nullptr would bind NULL
     }
 }
 

@@ -1,7 +1,7 @@
 // Database: the part of SQLite's interface that run files need.
 //
-// Errors       the first error is kept, and every later call is skipped. So a caller reads or writes everything and calls
-//              failed() once, at the end.
+// Errors       the object keeps the first error and skips every later call. So a caller can read or write everything
+//              and call failed() once, at the end.
 // Owner        one thread at a time.
 #pragma once
 
@@ -20,32 +20,33 @@ namespace evod::run_file {
 class Database {
   public:
     enum class Mode {
-        Create, // a new file; fails if there is one
+        Create, // creates a new file; fails if the file exists
         Write,
         Read,
-        ReadAtRest, // a file to which no program writes: takes no lock and needs no write access to its folder
+        ReadAtRest, // opens a file that no program writes to; needs no lock and no write access to the folder
     };
     /// vfs  the name of an SQLite VFS (its interface to the disk); nullptr is the default one.
     Database(const std::string& path, Mode mode, const char* vfs = nullptr);
-    Database(const Database&) = delete; // SQLite keeps its address
+    Database(const Database&) = delete; // SQLite stores the address of this object
     Database& operator=(const Database&) = delete;
 
     bool failed() const { return !error_.empty(); }
-    /// One sentence; empty for none.
+    /// The first error as one sentence; empty if there is none.
     const std::string& error() const { return error_; }
-    /// Whether the error is that the file is no database, or a damaged one.
+    /// Whether the error means that the file is not a database or is damaged.
     bool damaged() const { return damaged_; }
 
-    /// Runs statements without parameters or rows.
+    /// Runs SQL statements that have no parameters and return no rows.
     void run(const char* sql);
-    /// The whole number that a query returns; 0 for none.
+    /// The integer that a query returns; 0 if it returns no row.
     std::int64_t number(const char* sql);
-    /// How many pages the write-ahead log has after the last commit here. SQLite does not copy it into the file by itself.
+    /// Number of pages in the write-ahead log after the last commit of this object. SQLite does not copy them into the
+    /// file on its own.
     std::uint32_t log_pages() const { return log_pages_; }
-    /// Copies pages of the log into the file, except those that a reader of an older snapshot prevents. At most one
-    /// thread at a time may do it for a file.
+    /// Copies pages of the write-ahead log into the file, except pages that a reader of an older snapshot blocks. At
+    /// most one thread at a time may call this for one file.
     void copy_log();
-    /// Copies this database to a new file; within a read transaction, its snapshot.
+    /// Copies this database to a new file. Within a read transaction, copies the snapshot of that transaction.
     void copy_to(const std::string& path);
 
   private:
@@ -61,21 +62,21 @@ class Database {
     std::uint32_t log_pages_ = 0;
 };
 
-/// A prepared statement; the database outlives it.
+/// A prepared statement. The database must outlive it.
 class Statement {
   public:
     Statement(Database& database, const std::string& sql);
 
-    // Parameters and columns count from 0.
+    // Parameters and columns are numbered from 0.
     void bind(int parameter, std::int64_t value);
     void bind(int parameter, double value);
     void bind(int parameter, std::string_view text);
     void bind(int parameter, std::span<const std::byte> bytes);
     void bind_null(int parameter);
 
-    /// Steps to the next row. false: there is none, or an error; then the statement may be run again.
+    /// Moves to the next row. Returns false if there is none, or after an error; then the statement may be run again.
     bool row();
-    /// Runs a statement without rows.
+    /// Runs a statement that returns no rows.
     void done();
 
     std::int64_t integer(int column) const;

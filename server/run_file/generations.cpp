@@ -86,7 +86,8 @@ Result<std::vector<evolution::NextGeneration>> Generations::born_in(const simula
     while (rows.next(row)) {
         const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
         if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
-            (!row.born.parents.empty() && row.born.parents.size() != organisms)) { // the first generation has none
+            // Organisms of the first generation have no parents.
+            (!row.born.parents.empty() && row.born.parents.size() != organisms)) {
             return bad();
         }
         islands.push_back(std::move(row.born));
@@ -245,7 +246,7 @@ Result<simulation::World::History> Generations::history(std::uint64_t before, st
     if (auto read = read_history(StatisticsTable::name, std::max(first, own), before, history); !read) {
         return read.error();
     }
-    if (first + history.size() < std::min(before, last())) { // every generation before the last has ended
+    if (first + history.size() < std::min(before, last())) { // every generation before the last must have ended
         return database_.damaged(row_text(StatisticsTable::name, first + history.size()));
     }
     return history;
@@ -255,10 +256,10 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
                                        simulation::World::History& history) {
     const std::vector<std::int64_t> range{static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
     TableReader<StatisticsTable> numbers{database_.database, from_generation_to, range, table};
-    // The accounts of the same generations, and of one more if the last has not ended.
+    // Reads the selection accounts of the same generations, and of one more if the last generation has not ended.
     TableReader<SelectionAccountTable> accounts{database_.database, from_generation_to, range};
     std::uint64_t expected = first;
-    std::vector<simulation::GenerationStatistics> rows; // of the generation `expected`
+    std::vector<simulation::GenerationStatistics> rows; // rows of the generation `expected`
     simulation::GenerationStatistics statistics;
     SelectionAccountTable::Row account;
     while (numbers.next(statistics)) {
@@ -306,7 +307,7 @@ void Generations::write(const GenerationBegun& begun) {
             FoundersTable::View{generation, island, begun.founders.empty() ? unknown : begun.founders[island]});
         writers().account.write(SelectionAccountTable::Row{generation, island, born.account});
     }
-    // The generation before was retained only while it was the last.
+    // The previous generation was retained only while it was the newest.
     const std::uint64_t before = generation - 1;
     if (before <= identity_.first_generation || (before - identity_.first_generation) % retention_.keep_every() == 0) {
         return;

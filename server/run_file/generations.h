@@ -1,5 +1,5 @@
-// Generations: the tables of a run file that describe generations: how each began, its populations, founders and
-// selection accounts, and what came of it, its outcomes and statistics.
+// Generations: the tables of a run file that describe generations: how each generation began, its populations,
+// founders, selection accounts, outcomes and statistics.
 //
 // Owner        a RunFile.
 #pragma once
@@ -18,27 +18,28 @@ namespace evod::run_file {
 
 class Generations {
   public:
-    /// Everything passed in outlives this.
+    /// All references that are passed in must outlive this object.
     Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
                 Retention& retention);
     ~Generations();
 
-    /// The newest generation that has begun; 0 for none.
+    /// The newest generation that has begun; 0 if none has begun.
     std::uint64_t last() { return database_.natural("SELECT max(generation) FROM generation"); }
-    /// The newest generation that has ended; 0 for none.
+    /// The newest generation that has ended; 0 if none has ended.
     std::uint64_t last_ended() { return database_.natural("SELECT max(generation) FROM statistics"); }
-    /// The generation in which the run was after this tick; the first if the run had not begun.
+    /// The generation of the run after this tick; the first generation if the run had not begun.
     std::uint64_t at_tick(std::uint64_t tick);
 
-    /// Nothing if the generation has not begun.
+    /// The opening of a generation; nullopt if the generation has not begun.
     base::Result<std::optional<simulation::Opening>> opening_of(std::uint64_t generation);
-    /// Nothing if the generation has not begun, or is not retained.
+    /// The beginning of a generation; nullopt if the generation has not begun or is not retained.
     base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
-    /// Nothing if the generation has not ended, or is not retained.
+    /// The outcome of a generation; nullopt if the generation has not ended or is not retained.
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
-    /// One entry per island; empty if the generation has not ended.
+    /// The statistics of a generation, one entry per island; empty if the generation has not ended.
     base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
-    /// The statistics of the last `count` generations before this one, oldest first; a fork's include inherited ones.
+    /// The statistics of the last `count` generations before generation `before`, oldest first. For a fork, they
+    /// include inherited statistics.
     base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
 
     void write(const Inherited& inherited);
@@ -51,9 +52,11 @@ class Generations {
 
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
     base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
-    /// One per island; also of generations that a fork inherited.
+    /// The selection accounts of a generation, one per island. A fork also has them for the generations that it
+    /// inherited.
     base::Result<Accounts> accounts_of(std::uint64_t generation, std::size_t island_count);
-    /// Appends to `history` the generations of a table of statistics from `first` up to, not including, `end`.
+    /// Reads statistics from a table and appends them to `history`, from generation `first` up to but not including
+    /// `end`.
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
                                     simulation::World::History& history);
     Writers& writers();

@@ -31,10 +31,10 @@ std::optional<simulation::RunId> run_id_from(const std::string& text) {
     return high && low ? std::optional{simulation::RunId{*high, *low}} : std::nullopt;
 }
 
-/// A key of the table `run`.
+/// How one key of the table `run` is converted to text and back.
 struct Key {
     std::function<std::string(const StoredIdentity&)> text;
-    std::function<bool(const std::string&, StoredIdentity&)> read; // false: the text is no such value
+    std::function<bool(const std::string&, StoredIdentity&)> read; // false: the text is not a valid value
     bool required = true;
 };
 
@@ -61,7 +61,7 @@ Key text_key(std::string RunIdentity::*member, bool required) {
             required};
 }
 
-/// In the order in which they are written.
+/// All keys, in the order in which they are written.
 const std::vector<std::pair<std::string, Key>>& keys() {
     static const std::vector<std::pair<std::string, Key>> all = {
         {"name", text_key(&RunIdentity::name, true)},
@@ -119,7 +119,8 @@ const std::vector<std::pair<std::string, Key>>& keys() {
     return all;
 }
 
-/// A fork may begin with any parameters; another run begins with those of its schedule for generation 1.
+/// Whether the parameters fit the schedule. A fork may begin with any parameters. Any other run must begin with the
+/// values of its schedule for generation 1.
 bool begins_with_its_schedule(const RunIdentity& identity) {
     return identity.forked_from || std::ranges::all_of(identity.schedule.at(1), [&](const auto& scheduled) {
                return parameters::find_parameter(scheduled.name)->get(identity.parameters) == scheduled.value;
@@ -147,7 +148,7 @@ Result<void> read_first_population(RunDatabase& database, RunIdentity& identity)
         return {};
     }
     identity.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
-    // A fork does not begin with it.
+    // Only a run that begins with generation 1 uses the first population.
     if (identity.first_generation == 1 &&
         !simulation::faults_of(identity.first_population, identity.parameters, "first_population").empty()) {
         return database.damaged("its table first_population");

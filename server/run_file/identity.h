@@ -1,4 +1,4 @@
-// Identity: the tables `run` and `first_population` of a run file: what the run began with.
+// Identity: the tables `run` and `first_population` of a run file. They store what the run began with.
 #pragma once
 
 #include "server/run_file/records.h"
@@ -8,12 +8,12 @@ namespace evod::run_file {
 
 struct StoredIdentity {
     RunIdentity run;
-    std::uint64_t keep_every = 1; // Retention::keep_every()
+    std::uint64_t keep_every = 1; // the value of Retention::keep_every()
 };
 
 void write_identity(RunDatabase& database, const StoredIdentity& identity);
 
-/// DATA_LOSS where a row is damaged, missing or contradicts another one.
+/// Reads both tables. Returns DATA_LOSS if a row is damaged, is missing or contradicts another row.
 base::Result<StoredIdentity> read_identity(RunDatabase& database);
 
 } // namespace evod::run_file

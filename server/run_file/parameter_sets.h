@@ -1,4 +1,4 @@
-// Parameter sets: the table `parameters` of a run file, to which generations and checkpoints refer by number.
+// Parameter sets: the table `parameters` of a run file. Generations and checkpoints refer to its rows by number.
 //
 // Owner        a RunFile.
 #pragma once
@@ -15,9 +15,9 @@ class ParameterSets {
     explicit ParameterSets(RunDatabase& database) : database_{database} {}
 
     base::Result<parameters::ParameterSet> read(std::int64_t number);
-    /// Writes the set unless it equals the one that was written last.
+    /// Writes the set, unless it equals the set that was written last.
     ///
-    /// returns  its number.
+    /// returns  the number of the set in the table.
     std::int64_t number_of(const parameters::ParameterSet& set);
 
   private:
@@ -26,7 +26,8 @@ class ParameterSets {
         parameters::ParameterSet set;
     };
     RunDatabase& database_;
-    std::optional<Numbered> written_, read_; // the last ones; most generations have the set of the one before
+    // The last set written and the last set read; consecutive generations mostly have the same set.
+    std::optional<Numbered> written_, read_;
 };
 
 } // namespace evod::run_file

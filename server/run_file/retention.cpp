@@ -81,11 +81,11 @@ bool Retention::exceeds(std::int64_t bytes) {
 
 Result<bool> Retention::halve() {
     const std::uint64_t last = last_generation();
-    // The storage thread may still write to the last two.
+    // The storage thread may still write to the last two generations.
     if (purge_ || last < identity_.first_generation + 2 || last - 2 <= rule_.until_generation) {
         return false;
     }
-    // Once only the first of the older generations is left, there is nothing to halve.
+    // Nothing is left to halve if only the first of the older generations is retained.
     const std::uint64_t twice = rule_.keep_every > last ? 1 : 2;
     RetentionRule next{
         .keep_every = twice * std::max(rule_.keep_every, keep_every_), .until_generation = last - 2, .until_tick = 0};
@@ -132,7 +132,7 @@ Result<void> Retention::purge_generations() {
     const auto free_pages = [this] { return database_.number("PRAGMA freelist_count"); };
     const std::int64_t enough = free_pages() + pages_at_once;
     for (std::size_t i = 0; i < generations.size() && free_pages() < enough; ++i) {
-        // The population last: the query above finds a generation by it until all of it is deleted.
+        // Deletes the population last, because the query above finds a generation only while it has a population.
         for (const char* table : {OutcomeTable::name, FoundersTable::name, PopulationTable::name}) {
             if (free_pages() < enough) {
                 database_.run("DELETE FROM " + std::string{table} +

@@ -1,11 +1,12 @@
-// Retention: which generations of a run file are stored whole, and deleting the others.
+// Retention: decides which generations of a run file are stored whole, and deletes the data of all other generations.
 //
-// A new file keeps each keep_every-th generation, counted from its first, and the last one while it is the last. A file
-// that exceeds its size limit loses half of its older generations and state hashes, evenly, and again when it is as
-// large again. The first generation, the last ones, the journal and all statistics stay.
+// A new file retains every keep_every-th generation, counted from its first one. It also retains the newest generation
+// until the next one begins. If a file exceeds its size limit, half of its older generations and state hashes are
+// deleted, evenly spaced. The same happens whenever the file reaches the limit again. The first generation, the newest
+// generations, the journal and all statistics stay.
 //
-// A rule takes effect with its commit; from then on what it excludes is not read. purge_step() deletes it later, in
-// small transactions.
+// A rule takes effect when its transaction is committed. From then on, readers ignore the rows that the rule excludes.
+// purge_step() deletes these rows later, in small transactions.
 //
 // Owner        a RunFile.
 #pragma once
@@ -19,39 +20,39 @@ namespace evod::run_file {
 
 class Retention {
   public:
-    /// identity, keep_every  of the file; both may be read from it later.
+    /// identity, keep_every  values of this file. They are kept as references, so they may be read from the file later.
     Retention(RunDatabase& database, const RunIdentity& identity, const std::uint64_t& keep_every)
         : database_{database}, identity_{identity}, keep_every_{keep_every} {}
 
-    /// Reads the rule that holds now.
+    /// Reads the rule that is in effect.
     base::Result<void> read();
 
-    /// Each of how many generations a new file keeps; does not change during the life of a file.
+    /// A new file retains every keep_every-th generation. The value never changes during the life of a file.
     std::uint64_t keep_every() const { return keep_every_; }
     bool is_retained(std::uint64_t generation);
-    /// The last retained generation up to this one; itself if the run has not begun it.
+    /// The last retained generation at or before this one. Returns this one if the run has not begun it.
     std::uint64_t at_or_before(std::uint64_t generation);
-    /// The first retained generation from this one on; the run has begun this one.
+    /// The first retained generation at or after this one. The run must have begun this one.
     std::uint64_t at_or_after(std::uint64_t generation);
-    /// Whether the state hash after this tick, a multiple of ticks_per_hash, is retained.
+    /// Whether the state hash after this tick is retained. The tick must be a multiple of ticks_per_hash.
     bool is_hash_retained(std::uint64_t tick) const;
-    /// The first tick after this one whose state hash is retained.
+    /// The first tick after this one with a retained state hash.
     std::uint64_t next_hash_after(std::uint64_t tick) const;
 
-    /// Whether the rows of the file take more bytes than this. false while a purge is under way.
+    /// Whether the rows of the file occupy more than this number of bytes. Returns false during a purge.
     bool exceeds(std::int64_t bytes);
-    /// Halves what is retained of the older generations, in a transaction of its own, and begins a purge.
+    /// Reduces the number of retained older generations by half, in its own transaction, and begins a purge.
     ///
-    /// returns  false if there is nothing left to halve.
+    /// returns  false if nothing is left to halve.
     base::Result<bool> halve();
-    /// After a file has been opened: an earlier purge may be incomplete.
+    /// To be called after a file has been opened, because an earlier purge may be incomplete.
     void resume_purge();
     bool is_purging() const { return purge_.has_value(); }
-    /// Deletes one batch, in a transaction of its own; at the end of the purge nothing.
+    /// Deletes one batch in its own transaction. Deletes nothing when the purge is complete.
     base::Result<void> purge_step();
 
   private:
-    /// Up to this generation, then up to this tick for hashes, the purge is complete.
+    /// Progress of a purge: it is complete up to this generation and, for state hashes, up to this tick.
     struct Purge {
         std::uint64_t generation = 0, tick = 0;
     };

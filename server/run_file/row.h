@@ -1,8 +1,8 @@
-// Row: writes and reads single rows of a table with their checksum.
+// Row: writes and reads single rows of a table together with their checksums.
 //
-// Every row of a run file ends with a column `checksum`: XXH3 (64 bits) of the name of its table and of its other
-// columns, in order. A column is hashed as a letter for its type, eight bytes (the number itself, or the length of what
-// follows), then the text or bytes; lowest byte first.
+// Every row of a run file ends with a column `checksum`: the XXH3 hash (64 bits) of the name of its table and of its
+// other columns, in order. Each column is hashed as a letter for its type, then eight bytes, then the contents of a
+// text or BLOB. The eight bytes are the number itself or the length of the contents, lowest byte first.
 #pragma once
 
 #include "server/run_file/database.h"
@@ -39,20 +39,20 @@ class RowChecksum {
     XXH3_state_s* state_;
 };
 
-/// Writes rows of one table; a row with the same key is replaced.
+/// Writes rows of one table. A new row replaces an existing row with the same key.
 class RowWriter {
   public:
-    /// columns  without `checksum`.
+    /// columns  names of the columns, without `checksum`.
     RowWriter(Database& database, const std::string& table, const std::vector<std::string>& columns);
 
-    // The columns of a row in order, then finish().
+    // Call these for the columns of a row, in order, then finish().
     RowWriter& integer(std::int64_t value);
     RowWriter& integer(std::optional<std::int64_t> value);
     RowWriter& real(double value);
     RowWriter& real(std::optional<double> value);
     RowWriter& text(std::string_view value);
     RowWriter& bytes(std::span<const std::byte> value);
-    /// Adds the checksum of another row to the checksum of this one.
+    /// Includes the checksum of another row in the checksum of this row.
     RowWriter& covers(std::int64_t checksum);
     /// returns  the checksum of the row.
     std::int64_t finish();
@@ -63,28 +63,28 @@ class RowWriter {
     int column_ = 0;
 };
 
-/// Reads rows of one table.
+/// Reads rows of one table, in the order of the query.
 class RowReader {
   public:
-    /// condition  in SQL, with "?" for the numbers of `values`; may be followed by ORDER BY and LIMIT.
+    /// condition  SQL condition with one "?" for each number in `values`. ORDER BY and LIMIT may follow it.
     RowReader(Database& database, const std::string& table, const std::vector<std::string>& columns,
               const std::string& condition, const std::vector<std::int64_t>& values);
 
-    /// false: there are no more rows, or the database has failed.
+    /// Moves to the next row. Returns false if there is none, or if the database has failed.
     bool next();
 
-    // The columns of a row in order, then sound().
+    // Call these for the columns of a row, in order, then sound().
     std::int64_t integer();
     std::optional<std::int64_t> optional_integer();
     double real();
     std::optional<double> optional_real();
     std::string text();
     std::string bytes();
-    /// As RowWriter::covers().
+    /// Includes the checksum of another row, like RowWriter::covers().
     void covers(std::int64_t checksum) { checksum_.add(checksum); }
-    /// The stored checksum; after all columns have been read.
+    /// The stored checksum. To be called after all columns have been read.
     std::int64_t checksum() const { return statement_.integer(column_); }
-    /// Whether the stored checksum is that of the columns.
+    /// Whether the stored checksum equals the computed one.
     bool sound();
 
   private:

@@ -1,6 +1,6 @@
-// Rows: every table of a run file, declared once (table.h). What the columns mean: docs/RUN_FILE.md.
+// Rows: declares every table of a run file, each once (table.h). docs/RUN_FILE.md explains the columns.
 //
-// The declarations are the format. A change of a name, type or order makes another format.
+// The declarations define the file format. A different name, type or order is a different format.
 #pragma once
 
 #include "server/run_file/records.h"
@@ -136,7 +136,7 @@ struct FoundersTable {
     template <class Founders>
     struct RowOf {
         std::uint64_t generation, island;
-        Founders founders; // empty: not known
+        Founders founders; // empty: unknown
     };
     using Row = RowOf<std::vector<std::uint32_t>>;
     using View = RowOf<const std::vector<std::uint32_t>&>;
@@ -195,7 +195,7 @@ struct StatisticsTable {
     }
 };
 
-/// The statistics of the generations of its origin before a fork's first one.
+/// A fork's copy of its origin's statistics, for the generations before the fork's first one.
 struct InheritedStatisticsTable : StatisticsTable {
     static constexpr const char* name = "inherited_statistics";
 };
@@ -221,8 +221,8 @@ struct CheckpointRowTable {
         std::int64_t parameters = 0; // ParametersTable::Row::number
         std::uint64_t journal_entries = 0;
         base::StateHash hash;
-        CoveredChecksums parts; // of the rows of CheckpointPartTable, in order
-        State state;            // what follows the parts
+        CoveredChecksums parts; // checksums of the rows with the parts of this checkpoint, in order
+        State state;            // the bytes after the parts
     };
     using Row = RowOf<std::string>;
     using View = RowOf<const std::span<const std::byte>&>;
@@ -259,7 +259,7 @@ struct CheckpointPartTable {
     }
 };
 
-/// The retention rules of a file; the row with the greatest number holds.
+/// The retention rules of a file. The row with the greatest number is in effect.
 struct ThinnedTable {
     static constexpr const char* name = "thinned";
     static constexpr std::size_t key_columns = 1;

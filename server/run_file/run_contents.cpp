@@ -32,7 +32,7 @@ Result<std::vector<HashRecord>> RunContents::hashes(std::uint64_t after, std::ui
         if (!reader.sound()) {
             return database_.damaged(row_text(StateHashTable::name, hash.tick));
         }
-        if (retention_.is_hash_retained(hash.tick)) { // the others are about to be deleted
+        if (retention_.is_hash_retained(hash.tick)) { // skips hashes that the next purge deletes
             hashes.push_back(hash);
         }
     }
@@ -54,7 +54,8 @@ Result<std::optional<EndMark>> RunContents::end_mark() {
 
 std::uint64_t RunContents::last_tick() {
     std::uint64_t last = 0;
-    // The recorder writes a generation after its first tick; the first one of a run, before it.
+    // The recorder writes a generation after its first tick. It writes the first generation of a run before its first
+    // tick.
     const std::string bred =
         "SELECT max(first_tick + 1) FROM generation WHERE generation > " + std::to_string(identity().first_generation);
     for (const char* sql :

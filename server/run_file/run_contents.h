@@ -1,7 +1,7 @@
-// Run contents: the tables of an open run file, for reading.
+// Run contents: read access to the tables of an open run file.
 //
-// Errors       DATA_LOSS names the row that differs from what was written.
-// Owner        a RunFile, which adds opening and writing.
+// Errors       DATA_LOSS names the row whose contents differ from what was written.
+// Owner        a RunFile, which also opens the file and writes to it.
 #pragma once
 
 #include "server/base/result.h"
@@ -24,7 +24,7 @@ class RunContents {
   public:
     const std::string& path() const { return database_.path; }
     const RunIdentity& identity() const { return identity_.run; }
-    /// Refused unless this program follows the model version of the run.
+    /// Returns a refusal if the run has a model version other than that of this program.
     std::optional<base::Refusal> other_model() const;
 
     Journal& journal() { return journal_; }
@@ -32,13 +32,13 @@ class RunContents {
     Checkpoints& checkpoints() { return checkpoints_; }
     Retention& retention() { return retention_; }
     const Retention& retention() const { return retention_; }
-    /// The retained state hashes after tick `after` up to tick `until`, in order of ticks.
+    /// The retained state hashes after tick `after`, up to and including tick `until`, in order of ticks.
     base::Result<std::vector<HashRecord>> hashes(std::uint64_t after, std::uint64_t until);
-    /// Nothing while a server has the file open, and after a server that was killed.
+    /// The end mark; nullopt while a server has the file open, or after a server was killed.
     base::Result<std::optional<EndMark>> end_mark();
-    /// The end mark that the present rows would have.
+    /// The end mark that would describe the present rows.
     EndMark contents();
-    /// The last tick that any row contains.
+    /// The latest tick in any row.
     std::uint64_t last_tick();
 
     RunDatabase& database() { return database_; }

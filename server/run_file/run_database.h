@@ -15,14 +15,14 @@ namespace evod::run_file {
 struct RunDatabase {
     const std::string path;
     Database database;
-    bool has_end_mark = false; // it may; the first transaction deletes it
+    bool has_end_mark = false; // whether there may be an end mark; the first transaction deletes it
 
     RunDatabase(std::string file, Database::Mode mode, const char* vfs)
         : path{std::move(file)}, database{path, mode, vfs} {}
 
     bool failed() const { return database.failed(); }
     void run(const std::string& sql) { database.run(sql.c_str()); }
-    /// The whole number that a query returns; 0 for none.
+    /// The integer that a query returns; 0 if it returns no row.
     std::int64_t number(const std::string& sql) { return database.number(sql.c_str()); }
     std::uint64_t natural(const std::string& sql) { return static_cast<std::uint64_t>(number(sql)); }
 
@@ -32,18 +32,18 @@ struct RunDatabase {
             run("DELETE FROM end_mark");
         }
     }
-    /// After a failure it is not known whether the transaction is in the file.
+    /// After a failed commit, it is unknown whether the file contains the transaction.
     base::Result<void> commit() {
         run("COMMIT");
         has_end_mark = has_end_mark && failed();
         return unless_failed();
     }
 
-    /// The error of the database, with the path: DATA_LOSS if SQLite found damage, otherwise UNAVAILABLE.
+    /// The error of the database, with the path of the file: DATA_LOSS if SQLite found damage, otherwise UNAVAILABLE.
     base::Refusal failure() const;
-    /// DATA_LOSS: `what` differs from what was written.
+    /// A DATA_LOSS refusal with the message that `what` differs from what was written.
     base::Refusal damaged(const std::string& what) const;
-    /// The value, or failure() if the database has failed.
+    /// Returns the value, or failure() if the database has failed.
     template <class T>
     base::Result<T> unless_failed(T value) const {
         if (failed()) {

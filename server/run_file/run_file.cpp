@@ -24,7 +24,7 @@ Refusal exists_already(const std::string& path) {
     return refusal(RefusalCode::AlreadyExists, path + " is there already");
 }
 
-/// SQLite takes a file of one byte or less for an empty database, and deletes the log beside it.
+/// SQLite treats a file of one byte or less as an empty database, and deletes the log beside it.
 Result<void> expect_bytes(const std::string& path) {
     std::error_code error;
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1) {
@@ -33,7 +33,8 @@ Result<void> expect_bytes(const std::string& path) {
     return {};
 }
 
-/// SQLite reads a truncated last page as if zeros followed. If there is a write-ahead log, it may have the whole page.
+/// SQLite reads a truncated last page as if zeros followed. This is allowed if the page may be complete in the
+/// write-ahead log.
 Result<void> expect_whole_pages(RunDatabase& database) {
     const auto bytes_of = [](const std::string& path) {
         std::error_code error;
@@ -79,7 +80,7 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
         return exists_already(path);
     }
     const std::string next = DataFolder::next_file_of(path);
-    if (auto removed = remove_run_file(next); !removed) { // an earlier attempt may have been interrupted
+    if (auto removed = remove_run_file(next); !removed) { // left by an earlier attempt that was interrupted
         return removed.error();
     }
     auto file = begin_new(next, identity, options);
@@ -109,7 +110,7 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
     if (auto single = expect_file_with_one_name(path); !single) {
         return single.error();
     }
-    if (auto sound = check_log(path, LogIndex::Unread); !sound) { // SQLite would drop what follows a damaged frame
+    if (auto sound = check_log(path, LogIndex::Unread); !sound) { // SQLite would drop all frames after a damaged one
         return sound.error();
     }
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
@@ -136,8 +137,8 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     }
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
     auto read = file->read_beginning();
-    // A reader takes part in the log beside the file, so SQLite must be able to write there. Where it is not, a file
-    // with an empty log can be read alone.
+    // A reader uses the log beside the file, so SQLite must be able to write to the folder. If it cannot, a file with
+    // an empty log can be read without the log.
     const auto log_bytes = std::filesystem::file_size(path + "-wal", error);
     if (!read && read.error().code == RefusalCode::Unavailable && (error || log_bytes == 0)) {
         file.reset(new RunFile{path, Database::Mode::ReadAtRest, {}});
@@ -157,7 +158,7 @@ Result<std::unique_ptr<RunFile>> RunFile::open_checked(const std::string& path) 
 }
 
 Result<void> RunFile::read_beginning() {
-    database_.run("BEGIN"); // one snapshot for all of it
+    database_.run("BEGIN"); // makes all checks read one snapshot
     if (auto sound = check_schema(database_); !sound) {
         return sound;
     }

@@ -1,8 +1,8 @@
-// Run file: one world's run as an SQLite database, `NAME.evod`. Tables and columns: docs/RUN_FILE.md.
+// Run file: the run of one world, stored as an SQLite database, `NAME.evod`. Tables and columns: docs/RUN_FILE.md.
 //
-// Every row has a checksum, and the rows of each table are numbered without gaps. So a reader finds damage in what it
-// reads, and names it. The beginning of every retained generation is stored whole; everything after it is simulated
-// again (replay/).
+// Every row has a checksum, and the rows of each table are numbered without gaps. So a reader detects damage in the
+// rows that it reads, and names the damaged row. The beginning of every retained generation is stored whole; everything
+// after it can be simulated again (replay/).
 //
 //   run_contents                                      the tables: journal · generations · checkpoints · retention
 //   schema · identity                                 what a file must have before anything else is read
@@ -25,65 +25,68 @@
 namespace evod::run_file {
 
 enum class Durability {
-    Full,    // what has been committed is on the disk
-    Relaxed, // what has been committed survives the program, but perhaps not the machine
+    Full,    // every commit is on the disk
+    Relaxed, // a commit survives a crash of the program, but possibly not of the machine
 };
 
 class RunFile : public RunContents {
   public:
     struct Options {
         Durability durability = Durability::Full;
-        const char* vfs = nullptr;                           // of SQLite, as Database takes it
+        const char* vfs = nullptr;                           // name of an SQLite VFS, as for Database
         std::int64_t file_bytes_max = std::int64_t{2} << 30; // see shrink_if_large()
-        std::uint64_t keep_every = 1;                        // of new files: see Retention
-        std::size_t part_bytes = 256 << 10;                  // of a checkpoint, at most: see write_checkpoint_part()
-        std::uint32_t log_pages_max = 1000;                  // a longer log is copied into its file
+        std::uint64_t keep_every = 1;                        // for new files: see Retention
+        // Maximum size of a checkpoint part: see write_checkpoint_part().
+        std::size_t part_bytes = 256 << 10;
+        std::uint32_t log_pages_max = 1000; // a log with more pages is copied into its file
     };
     using Record = std::variant<JournalEntry, Inherited, GenerationBegun, GenerationEnded, HashRecord, Checkpoint,
                                 StoredCheckpoint, EndMark>;
 
-    /// Creates a file with these first records; refused if there is one. After a failure there is no file of that name.
+    /// Creates a file with these first records. Refused if the file exists. After a failure, no file has that name.
     static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
                                                          const Options& options, const std::vector<Record>& first = {});
-    /// Creates a file in an open transaction, as after begin(). Until commit() the file is empty.
+    /// Creates a file and begins its first transaction, as begin() does. The file is empty until commit().
     static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
                                                             const Options& options);
     /// Opens a file to continue its run. The first commit deletes the end mark.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
-    /// Opens a file to read it; a server may write to it meanwhile.
+    /// Opens a file for reading. A server may write to the file at the same time.
     static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
-    /// The same, but refused if its write-ahead log is damaged. Not for a file that this process has open already.
+    /// Like open_read_only(), but refused if the write-ahead log is damaged. This process must not have the file open
+    /// already.
     static base::Result<std::unique_ptr<RunFile>> open_checked(const std::string& path);
 
-    // Reading: RunContents.
+    // RunContents declares the functions for reading.
 
-    /// Reads from now on what the file contains now, whatever a server writes meanwhile.
+    /// From now on, reads only the current contents of the file, even if a server writes to it.
     base::Result<void> pin_snapshot();
     /// Copies the pinned snapshot to a new file.
     base::Result<void> copy_to(const std::string& path);
 
-    // Writing. After an error nothing more is written: commit() reports it, and the caller opens the file again. A row
-    // that is written again replaces the row with the same key.
+    // Writing. After an error, nothing more is written: commit() reports the error, and the caller must open the file
+    // again. A row replaces an existing row with the same key.
 
     void begin();
-    /// The end mark's numbers of rows are counted here; its other fields are those of the record.
+    /// Writes a record. If it is an end mark, this function counts the rows of the file and ignores the counts in the
+    /// record.
     void write(const Record& record);
-    /// Refused with the reason; then it is not known whether the records since begin() are in the file.
+    /// A refusal contains the reason. It is then unknown whether the file contains the records since begin().
     base::Result<void> commit();
-    /// Writes the next part of a checkpoint in a transaction of its own; not between begin() and commit().
+    /// Writes the next part of a checkpoint in its own transaction. Not allowed between begin() and commit().
     ///
-    /// returns  whether nothing of it is left to be written.
+    /// returns  whether the checkpoint needs no further writing.
     base::Result<bool> write_checkpoint_part(const StoredCheckpoint& checkpoint);
-    /// Deletes one batch of orphaned checkpoint parts and of what is not retained, in a transaction of its own; not
-    /// between begin() and commit(). A file that has only been opened stays unchanged.
+    /// Deletes one batch of orphaned checkpoint parts and of rows that are not retained, in its own transaction. Not
+    /// allowed between begin() and commit(). Does not change a file that has only been opened.
     ///
-    /// returns  whether there was anything to delete, or may be more.
+    /// returns  false if there was nothing to delete; true if there may be more.
     base::Result<bool> purge_step();
-    /// Reduces the retention if the file exceeds Options::file_bytes_max; not between begin() and commit(). The file may
-    /// exceed it all the same, because the journal and all statistics stay.
+    /// Reduces the retention if the file exceeds Options::file_bytes_max. Not allowed between begin() and commit(). The
+    /// file may still exceed the limit afterwards, because the journal and all statistics stay.
     base::Result<void> shrink_if_large();
     bool is_large() { return retention_.exceeds(options_.file_bytes_max); }
-    /// Moves everything committed from the log into the file.
+    /// Copies all committed pages from the log into the file.
     base::Result<void> merge_log();
 
   private:
@@ -95,10 +98,10 @@ class RunFile : public RunContents {
     std::optional<TableWriter<StateHashTable>> hash_writer_;
 };
 
-/// Whether a file from RunFile::begin_new() is still empty: it was not committed.
+/// Whether a file from RunFile::begin_new() is still empty because its first transaction was not committed.
 base::Result<bool> is_empty_file(const std::string& path);
 
-/// Copies the log of a file that another thread has open into the file.
+/// Copies the write-ahead log of a file into the file, while another thread has the file open.
 void copy_log(const std::string& path, const RunFile::Options& options);
 
 } // namespace evod::run_file

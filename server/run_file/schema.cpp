@@ -38,7 +38,7 @@ void create_all_tables(Database& database) {
                   CheckpointRowTable, CheckpointPartTable, FoundersTable, SelectionAccountTable>(database);
 }
 
-/// Files that began with a format before 4 may lack this table.
+/// Files that were created in a format before 4 may lack this table.
 constexpr std::string_view optional_table = FirstPopulationTable::name;
 
 const Schema& expected_schema() {
@@ -54,7 +54,7 @@ const Schema& expected_schema() {
     return expected;
 }
 
-/// As a message names it: `the table "run"`. The name may come from an untrusted file.
+/// The description of a row in an error message: `the table "run"`. The name may come from an untrusted file.
 std::string described(const SchemaRow& row) {
     constexpr std::size_t name_bytes_max = 64;
     std::string text = "the " + row.type.substr(0, name_bytes_max) + " \"" + row.name.substr(0, name_bytes_max) + '"';
@@ -77,7 +77,7 @@ Result<void> check_tables(RunDatabase& database) {
         return database.failure();
     }
     const Schema& expected = expected_schema();
-    for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // a table before its indices
+    for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // reports a missing table before its indices
         if (!found.contains(*row) && row->table != optional_table) {
             return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks " + described(*row));
         }

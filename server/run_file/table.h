@@ -1,7 +1,7 @@
-// Table: a table of a run file, declared once. Its CREATE, INSERT and SELECT statements and the checksum of its rows
-// follow from that declaration.
+// Table: one declaration per table of a run file. The CREATE, INSERT and SELECT statements of the table and the
+// checksum of its rows are derived from the declaration.
 //
-// A table is a type with these members (rows.h has all of them):
+// A table is a type with these members (rows.h declares all tables):
 //
 //   name                   the table's name in the file
 //   key_columns            how many of the first columns form the primary key
@@ -9,8 +9,8 @@
 //   columns(row, column)   calls column("name", member) for each column, in order; a template, so that a struct with the
 //                          same member names can be written without copying its contents into a Row
 //
-// The type of a member determines the type of its column: whole numbers, bool and enumerators INTEGER, double REAL,
-// std::string TEXT, Blob BLOB; std::optional allows NULL.
+// The type of a member determines the type of its column. Whole numbers, bool and enumerators are INTEGER, double is
+// REAL, std::string is TEXT, and Blob is BLOB. std::optional allows NULL.
 #pragma once
 
 #include "server/evolution/chromosome.h"
@@ -28,7 +28,8 @@
 
 namespace evod::run_file {
 
-/// A member that is stored as a BLOB, lowest byte first: a string, a span, a vector of numbers or a matrix of genes.
+/// A member that is stored as a BLOB, lowest byte first. It may be a string, a span, a vector of numbers or a matrix of
+/// genes.
 template <class Container>
 struct Blob {
     Container& value;
@@ -36,7 +37,7 @@ struct Blob {
 template <class Container>
 Blob(Container&) -> Blob<Container>;
 
-/// One INTEGER column for the two flags of a run's control: 0 running, 1 paused, 2 paused until a lease ends.
+/// One INTEGER column for the two pause flags of a run: 0 running, 1 paused, 2 paused until a lease ends.
 template <class Flag>
 struct PauseColumn {
     Flag &paused, &leased;
@@ -48,14 +49,15 @@ struct AccountColumns {
     Account& account;
 };
 
-/// No column: checksums of other rows that the row's checksum covers at this place.
+/// Adds no column. Contains checksums of other rows, which the checksum of this row covers at this position.
 struct CoveredChecksums {
     std::vector<std::int64_t> values;
-    std::function<void()> read = {}; // fills in `values` when a row is read; called after the columns before this place
+    // Fills in `values` when a row is read; called after the columns before this position.
+    std::function<void()> read = {};
 };
 
 struct Column {
-    std::string name, type; // "REAL NOT NULL"
+    std::string name, type; // type: SQL type, such as "REAL NOT NULL"
 };
 
 /// Collects the columns of a table.
@@ -108,7 +110,7 @@ std::vector<std::string> column_names() {
     return names;
 }
 
-/// The CREATE statement. Its text is part of every file: a file whose schema has another one is refused.
+/// The CREATE statement. SQLite stores its text in every file. A file with any other text is refused.
 std::string create_statement(const std::string& table, const std::vector<Column>& columns, std::size_t key_columns,
                              bool one_line);
 
@@ -169,7 +171,7 @@ class PutColumns {
     RowWriter& writer_;
 };
 
-/// Reads the columns of a row; well_formed is false if a BLOB has a size that its member cannot have.
+/// Reads the columns of a row. well_formed is false if the size of a BLOB does not fit its member.
 class GetColumns {
   public:
     explicit GetColumns(RowReader& reader) : reader_{reader} {}
@@ -241,7 +243,7 @@ class GetColumns {
     RowReader& reader_;
 };
 
-/// Writes rows of a table; a row with the same key is replaced.
+/// Writes rows of a table. A new row replaces an existing row with the same key.
 template <class Table>
 class TableWriter {
   public:
@@ -266,12 +268,12 @@ class TableWriter {
 template <class Table>
 class TableReader {
   public:
-    /// condition  in SQL, with "?" for the numbers of `values`; may be followed by ORDER BY and LIMIT.
+    /// condition  SQL condition with one "?" for each number in `values`. ORDER BY and LIMIT may follow it.
     TableReader(Database& database, const std::string& condition, const std::vector<std::int64_t>& values = {},
                 const std::string& table = Table::name)
         : reader_{database, table, column_names<Table>(), condition, values} {}
 
-    /// false: there are no more rows, or the database has failed.
+    /// Reads the next row. Returns false if there is none, or if the database has failed.
     bool next(typename Table::Row& row) {
         if (!reader_.next()) {
             return false;
@@ -282,7 +284,7 @@ class TableReader {
         sound_ = reader_.sound() && get.well_formed;
         return true;
     }
-    /// Whether the row that was read last has the checksum of its contents.
+    /// Whether the stored checksum of the last row equals the computed one.
     bool sound() const { return sound_; }
     std::int64_t checksum() const { return checksum_; }
 

@@ -38,7 +38,7 @@ struct Checksum {
     friend bool operator==(const Checksum&, const Checksum&) = default;
 };
 
-/// Continues a checksum with more bytes; their number is a multiple of 8.
+/// Extends a checksum by more bytes. The number of bytes must be a multiple of 8.
 Checksum add(Checksum sum, Bytes bytes, bool words_are_big_endian) {
     const auto add_words = [&](auto word) {
         for (std::size_t at = 0; at < bytes.size(); at += 8) {
@@ -61,7 +61,7 @@ Salts salts_at(Bytes bytes, std::size_t at) {
 struct LogHead {
     bool sound = false;
     bool words_are_big_endian = false;
-    std::size_t page_bytes = 4096; // of evod's files, if the header is damaged
+    std::size_t page_bytes = 4096; // page size of evod's files, for a log with a damaged header
     Salts salts{};
     Checksum checksum;
 };
@@ -87,7 +87,7 @@ class Frame {
     explicit Frame(const LogHead& head)
         : bytes_(frame_head_bytes + head.page_bytes), words_are_big_endian_{head.words_are_big_endian} {}
 
-    /// false: the log ends before this frame does.
+    /// Reads a frame. Returns false if the log ends before the end of the frame.
     bool read(ReadAt log, std::uint64_t index) { return log(offset(index), bytes_) == bytes_.size(); }
     std::uint64_t offset(std::uint64_t index) const { return log_head_bytes + index * bytes_.size(); }
 
@@ -95,7 +95,7 @@ class Frame {
     bool is_commit() const { return big_endian(bytes_, 4) != 0; }
     Salts salts() const { return salts_at(bytes_, 8); }
     Checksum stored() const { return {big_endian(bytes_, 16), big_endian(bytes_, 20)}; }
-    /// The checksum that follows from that of the frame before.
+    /// Computes the checksum of this frame from the checksum of the previous frame.
     Checksum computed(Checksum before) const {
         const Bytes bytes{bytes_};
         return add(add(before, bytes.first(8), words_are_big_endian_), bytes.subspan(frame_head_bytes),
@@ -107,7 +107,7 @@ class Frame {
     bool words_are_big_endian_;
 };
 
-/// The number of frames with these salts that the log's index counts; 0 if the index belongs to another log.
+/// The number of frames with these salts according to the log's index; 0 if the index belongs to another log.
 std::uint64_t frames_known_to(ReadAt index, const Salts& salts) {
     constexpr std::size_t head_bytes = 48;
     std::array<std::byte, 2 * head_bytes> both; // the index has two copies of its header
@@ -135,7 +135,7 @@ std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index) {
     const Salts salts = head.sound ? head.salts : frame.salts();
     const std::uint64_t frames_known = frames_known_to(index, salts);
 
-    // Up to the first frame with a wrong checksum.
+    // Finds the first frame with a wrong checksum.
     Checksum sum = head.checksum;
     std::uint64_t bad = 0;
     while (head.sound && frame.has_page() && frame.salts() == salts && frame.computed(sum) == frame.stored()) {
@@ -149,10 +149,10 @@ std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index) {
         return damage;
     }
 
-    // Whether a frame behind it continues a commit.
+    // Checks whether a frame after the bad one continues a commit.
     struct {
         bool is_commit;
-        Checksum stored, computed; // of the bad frame; either may be the right one
+        Checksum stored, computed; // checksums of the bad frame; either may be the right one
     } before{frame.is_commit(), frame.stored(), frame.computed(sum)};
     for (std::uint64_t next = bad + 1; frame.read(log, next); ++next) {
         const Checksum stored = frame.stored();
@@ -181,8 +181,8 @@ Result<void> check_log(const std::string& path_of_run_file, LogIndex index) {
     const auto read_index = [&](std::uint64_t offset, std::span<std::byte> bytes) {
         return index_file && *index_file ? (*index_file)->read_at(offset, bytes) : 0;
     };
-    // While a server writes, this may read a frame before it is complete, and later frames after they are. A second
-    // reading finds it complete.
+    // While a server writes, this code may read a frame before it is complete, and later frames after they are
+    // complete. A second reading then finds the frame complete.
     std::optional<std::uint64_t> damage;
     Salts salts{};
     constexpr int attempts = 5;
