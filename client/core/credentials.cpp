@@ -20,7 +20,8 @@ void add_options(command_line::Command& app, Credentials& credentials) {
     app.add_flag("--tls", &credentials.tls, "TLS with a server whose certificate this system trusts");
     app.add_option("--cert", &credentials.files.certificate,
                    "PEM file of the client's certificate, if the server requires one");
-    app.add_option("--key", &credentials.files.key, "PEM file with the private key for --cert, if it is not in that file");
+    app.add_option("--key", &credentials.files.key,
+                   "PEM file with the private key for --cert, if it is not in that file");
 }
 
 Result<void> apply(const Credentials& credentials, Options& options) {

@@ -228,8 +228,9 @@ void add_run_command(command_line::Command& app) {
     command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
     command.add_option("--set", &options.changes, "Parameters as NAME=VALUE; evod parameters lists them");
     command.add_option("--csv", &options.csv, "CSV file to write with the statistics of every generation");
-    command.add_flag("--ask", &options.ask,
-                     "Ask on the terminal for population, food, poison, time and every option of the genetic algorithm");
+    command.add_flag(
+        "--ask", &options.ask,
+        "Ask on the terminal for population, food, poison, time and every option of the genetic algorithm");
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
                    "2 a value is not allowed.");
     command.action([&] { return run(options); });

@@ -297,17 +297,17 @@ void add_sweep_command(command_line::Command& app) {
         command.add_flag("--run-files", &options.run_files, "Also write a run file per run: FOLDER/run-files");
     const auto with_array_index =
         command
-            .add_option(
-                "--array-index", &options.array_index,
-                "Run only this cell, counted from 0, as one task of a job array; after all tasks, "
-                "use --gather")
+            .add_option("--array-index", &options.array_index,
+                        "Run only this cell, counted from 0, as one task of a job array; after all tasks, "
+                        "use --gather")
             .check(any_number);
-    const auto with_gather = command
-                                 .add_flag("--gather", &options.gather,
-                                           "Do not run anything: write FOLDER/runs.csv, or print which runs are missing")
-                                 .excludes(with_jobs)
-                                 .excludes(with_run_files)
-                                 .excludes(with_array_index);
+    const auto with_gather =
+        command
+            .add_flag("--gather", &options.gather,
+                      "Do not run anything: write FOLDER/runs.csv, or print which runs are missing")
+            .excludes(with_jobs)
+            .excludes(with_run_files)
+            .excludes(with_array_index);
     command.add_flag("--dry-run", &options.dry_run, "Write nothing: print cells and seeds")
         .excludes(with_gather)
         .excludes(with_jobs)

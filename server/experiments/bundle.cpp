@@ -193,7 +193,8 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
 Result<void> write_bundle(const replay::RunSource& run, const std::string& folder) {
     std::error_code error;
     if (!fs::create_directory(folder, error)) {
-        return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot create the folder " + folder + ": " + error.message())
+        return error ? refusal(RefusalCode::Unavailable,
+                               "--bundle: cannot create the folder " + folder + ": " + error.message())
                      : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " exists already");
     }
     Result<void> filled = fill(run, folder);

@@ -1,7 +1,8 @@
 // Camera: maps a part of an island to a part of the window.
 //
-// Two coordinate systems, both with +x right and +y down: the world, in px of the model, and the screen, in pixels of
-// the window. The viewport is the part of the window in which the island is drawn; no text strip covers it.
+// There are two coordinate systems, both with +x to the right and +y down. World coordinates are in px, the model's
+// unit of length. Screen coordinates are in pixels of the window. The viewport is the part of the window in which the
+// island is drawn. No text strip covers it.
 //
 // Owner        a pane of the stage.
 // Threads      none; used on the drawing thread.
@@ -27,12 +28,14 @@ class Camera {
   public:
     static constexpr double zoom_max = 64;     // pixels per px of the world
     static constexpr double wall_pixels = 6;   // thickness of the walls at any zoom
-    static constexpr double margin_pixels = 6; // around the walls of a fitted island
+    static constexpr double margin_pixels = 6; // space around the walls when the whole island is shown
 
-    /// Sets the viewport. A fitted island stays fitted; otherwise centre and zoom stay.
+    /// Sets the viewport. If the whole island was fitted into the old viewport, it is fitted into the new one;
+    /// otherwise the centre and the zoom do not change.
     void set_viewport(Rectangle screen);
 
-    /// Sets the size of the island, in px of the world. A new size is fitted.
+    /// Sets the size of the island, in px of the world. If the size has changed, fits the whole island into the
+    /// viewport.
     void set_island(double width, double height);
 
     /// Shows the whole island with its walls as large as possible.
@@ -45,20 +48,21 @@ class Camera {
     /// Centres the viewport on a point of the world, clamped to the island.
     void look_at(Point world);
 
-    /// Zooms by `factor` around the point at `screen`, which stays in place; clamped to zoom_min() to zoom_max.
+    /// Multiplies the zoom by `factor`, clamped to zoom_min() to zoom_max. The world point under `screen` does not
+    /// move.
     void zoom_at(Point screen, double factor);
 
-    /// Takes centre and zoom of `other`; if that is fitted, fits.
+    /// Copies the centre and the zoom of `other`. If `other` shows its whole island, shows this whole island instead.
     void follow(const Camera& other);
 
     Point to_screen(Point world) const;
     Point to_world(Point screen) const;
 
     const Rectangle& viewport() const { return viewport_; }
-    Point centre() const { return centre_; } // of the viewport, in the world
+    Point centre() const { return centre_; } // the point of the world in the middle of the viewport
     double zoom() const { return zoom_; }    // pixels per px of the world
-    double zoom_min() const;                 // half of the fitted one
-    Rectangle visible() const;               // of the world
+    double zoom_min() const;                 // half of the zoom that fit() sets
+    Rectangle visible() const;               // the visible part of the world
 
   private:
     double zoom_to_fit() const;

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
 
 ImFont* load_font(const char* name, float pixels) {
-    // Latin-1, and the further characters evoview uses: ω, …, → and −.
+    // Latin-1, and the other characters that evoview displays: ω, …, → and −.
     static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026,
                                          0x2190, 0x2193, 0x2212, 0x2212, 0};
     const std::string path = std::string{font_folder} + name;
@@ -32,14 +32,14 @@ ImFont* load_font(const char* name, float pixels) {
     return font;
 }
 
-/// The index of a mouse button in Dear ImGui; -1 for buttons it does not know.
+/// The index of a mouse button in Dear ImGui; -1 for buttons that Dear ImGui does not support.
 int button_index(sf::Mouse::Button button) {
     return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
 }
 
 using Key = sf::Keyboard;
 
-/// Keys that Dear ImGui needs by name; letters only together with Ctrl.
+/// A key that Dear ImGui must receive as a key event. Letters are needed only together with Ctrl.
 struct NamedKey {
     ImGuiKey name;
     Key::Key key;
@@ -139,7 +139,7 @@ bool Gui::pass_on(const sf::Event& event, Received& received) {
     ImGuiIO& io = ImGui::GetIO();
     switch (event.type) {
     case sf::Event::MouseMoved:
-        if (received.button) { // the press or release belongs to the previous position
+        if (received.button) { // the press or release happened at the previous position
             return false;
         }
         io.MousePos = {static_cast<float>(event.mouseMove.x), static_cast<float>(event.mouseMove.y)};
@@ -168,7 +168,7 @@ bool Gui::pass_on(const sf::Event& event, Received& received) {
         if (received.key || received.button) {
             return false;
         }
-        if (event.text.unicode >= ' ' && event.text.unicode != 127) { // control characters arrive as keys
+        if (event.text.unicode >= ' ' && event.text.unicode != 127) { // control characters arrive as key events
             received.text = true;
             io.AddInputCharacter(event.text.unicode);
         }
@@ -195,7 +195,7 @@ bool Gui::close_popup() {
     bool visible = false;
     while (!open.empty() && !visible) {
         const ImGuiWindow* window = open.back().Window;
-        visible = window == nullptr || window->Active; // otherwise its panel is hidden
+        visible = window == nullptr || window->Active; // a popup whose window is not active belongs to a hidden panel
         ImGui::ClosePopupToLevel(open.Size - 1, true);
     }
     return visible;

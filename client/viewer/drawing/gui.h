@@ -1,7 +1,8 @@
 // Gui: Dear ImGui in an SFML window. It loads the fonts and draws all text of evoview.
 //
-// Events are queued until the next frame. Dear ImGui reads keys and buttons once per frame, so a press and its release
-// within one frame are passed on in two frames: no input is lost at a low frame rate.
+// Events are queued until the next frame. Dear ImGui reads the state of keys and buttons once per frame. If a key is
+// pressed and released within one frame, Gui therefore passes the release on in the next frame. No input is lost at a
+// low frame rate.
 //
 // Owner        the window. One instance per process, because Dear ImGui has one context.
 // Needs        OpenGL 3.3, current on the calling thread for the lifetime of this object.
@@ -20,7 +21,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// The kinds of events that widgets consume at present.
+/// The kinds of events that widgets use at present.
 struct Captured {
     bool keyboard = false, mouse = false;
 };
@@ -29,7 +30,7 @@ class Gui {
   public:
     static constexpr double scale_min = 0.5, scale_max = 4;
 
-    /// scale  of fonts and widgets; 1 suits 96 dots per inch.
+    /// scale  size of fonts and widgets; 1 suits a display with 96 dots per inch.
     /// Throws std::runtime_error if a font is missing; the message names the package to install.
     explicit Gui(double scale = 1);
     ~Gui();
@@ -38,7 +39,7 @@ class Gui {
 
     void handle(const sf::Event& event);
     Captured captured() const;
-    /// Closes the topmost menu, list or dialog; called between two frames. Returns false if none is open.
+    /// Closes the topmost menu, list or dialog. Call it between two frames. Returns false if none is open.
     bool close_popup();
     /// Whether Dear ImGui has received every queued event.
     bool settled() const { return waiting_.empty(); }
@@ -53,7 +54,7 @@ class Gui {
     ImFont& label() const { return *label_; }
 
   private:
-    /// The kinds of events this frame has already received.
+    /// The kinds of events that Dear ImGui has already received in this frame.
     struct Received {
         bool key = false, text = false, button = false;
     };
@@ -67,7 +68,7 @@ class Gui {
     ImFont* label_ = nullptr;
     std::deque<sf::Event> waiting_;
     std::unique_ptr<Spots> spots_ = std::make_unique<Spots>();
-    std::string clipboard_; // the last text read for Dear ImGui
+    std::string clipboard_; // the last text that Dear ImGui read from the clipboard
 };
 
 } // namespace evod::viewer

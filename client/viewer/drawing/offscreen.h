@@ -11,8 +11,8 @@
 
 namespace evod::viewer {
 
-/// Returns what `draw` renders to a framebuffer of this size, opaque. Restores the framebuffer that was bound before.
-/// Throws std::runtime_error if the graphics driver does not support this size.
+/// Calls `draw` with a framebuffer of this size bound, and returns the result as an opaque image. Afterwards binds the
+/// previous framebuffer again. Throws std::runtime_error if the graphics driver does not support this size.
 sf::Image draw_off_screen(unsigned width_pixels, unsigned height_pixels, const std::function<void()>& draw);
 
 } // namespace evod::viewer

@@ -1,7 +1,7 @@
 // Palette: every colour of the window.
 //
 // Food and poison differ in lightness as well as in hue, so that red-green colour-blind users can distinguish them.
-// Colours of numbers come from a ramp of rising lightness, colours of kinds from Okabe and Ito.
+// Ordered numbers use a ramp of rising lightness. Categories use the colours of Okabe and Ito.
 //
 // Owner        none: constants.
 // Threads      any.
@@ -36,7 +36,7 @@ constexpr Colour selected{255, 255, 255};
 constexpr Colour food_radius{62, 176, 76, 220};
 constexpr Colour poison_radius{140, 8, 24, 220};
 constexpr Colour trail{70, 30, 100};
-constexpr Colour unknown{140, 140, 144}; // no value, or a lineage without a colour
+constexpr Colour unknown{140, 140, 144}; // for organisms without a value, or in a lineage without a colour
 
 constexpr Colour strip{230, 230, 232};
 constexpr Colour strip_edge{150, 150, 154};
@@ -52,7 +52,7 @@ constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
 
-/// Colours for rising numbers.
+/// Colour ramps for numbers. Lightness rises with the number.
 enum class Ramp { Viridis, Cividis };
 constexpr std::array<Ramp, 2> ramps{Ramp::Viridis, Ramp::Cividis};
 std::string_view name_of(Ramp ramp);
@@ -63,9 +63,9 @@ std::string_view name_of(Ramp ramp);
 ///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
 Colour at(Ramp ramp, double share);
 
-/// Colours for kinds, distinguishable with every kind of colour vision.
+/// Colours for categories, distinguishable with every kind of colour vision.
 ///
-/// Source   Okabe & Ito 2002, "Color Universal Design", without black, the colour of walls.
+/// Source   Okabe & Ito 2002, "Color Universal Design", without black, which is the colour of the walls.
 constexpr std::array<Colour, 7> kinds{{
     {230, 159, 0},  // orange
     {86, 180, 233}, // sky blue
@@ -76,14 +76,14 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
-// The choice of an organism.
+// What an organism has chosen to do.
 constexpr Colour wanders{90, 90, 96};
 constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
 
 constexpr Colour plot_background{252, 252, 253};
 constexpr Colour plot_grid{226, 226, 230};
-// Series.
+// Lines and bars of plots.
 constexpr Colour series_orange = kinds[0];
 constexpr Colour series_sky = kinds[1];
 constexpr Colour series_green = kinds[2];
@@ -104,7 +104,8 @@ constexpr Colour glass_elite{20, 20, 24};
 constexpr Colour glass_survivor{104, 104, 112};
 constexpr Colour glass_child{184, 184, 192};
 
-/// Black or white, the one with more contrast on `paper`; a translucent colour is seen over a light background.
+/// Black or white, whichever has more contrast with `paper`. If `paper` is translucent, it is assumed to lie on a light
+/// background.
 Colour text_on(Colour paper);
 
 } // namespace palette

@@ -12,7 +12,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The pixels without alpha, row after row.
+/// The red, green and blue bytes of all pixels, row by row.
 std::string rgb_of(const sf::Image& image) {
     const std::size_t pixels = std::size_t{image.getSize().x} * image.getSize().y;
     std::string rgb(3 * pixels, '\0');
@@ -49,7 +49,7 @@ void write_file(const std::string& path, const std::string& bytes) {
     }
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     const int error = errno;
-    if (std::fclose(file) != 0 || !written) { // fclose() writes what is left in the buffer
+    if (std::fclose(file) != 0 || !written) { // fclose() writes the rest of the buffer, so it can fail too
         errno = written ? errno : error;
         fail();
     }

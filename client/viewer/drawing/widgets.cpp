@@ -12,7 +12,7 @@ void Spots::begin_frame() {
     panel_.clear();
 }
 
-/// Calls `act` for each name of a widget: "Panel/name" and "name".
+/// Calls `act` for both names of a widget: "Panel/name" and "name".
 template <class Do>
 void Spots::each_name(std::string_view name, Do act) {
     if (!panel_.empty()) {
@@ -53,7 +53,7 @@ const std::vector<std::string>* Spots::choices(const std::string& name) const {
 }
 
 bool Spots::lingers(Point corner, double now_s, bool clicked) {
-    constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws four frames per second
+    constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws only four frames per second
     if (corner != hovered_ || now_s - hovered_last_s_ > gap_s) {
         hovered_ = corner;
         hovered_since_s_ = now_s;
@@ -68,7 +68,7 @@ namespace widgets {
 
 namespace {
 
-/// Small text, broken into lines here, because Dear ImGui would break lines within numbers.
+/// Writes small text. Breaks the lines here, because Dear ImGui would also break them within numbers.
 void write_lines(std::string_view text, float width_max) {
     const std::string lines = in_lines(text, width_max, [](std::string_view line) {
         return ImGui::CalcTextSize(line.data(), line.data() + line.size()).x;
@@ -76,7 +76,7 @@ void write_lines(std::string_view text, float width_max) {
     ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
 }
 
-/// Null if nothing of the rectangle is visible.
+/// The register of widgets; null if no part of this rectangle is visible.
 Spots* spots_of(ImVec2 least, ImVec2 most) {
     return ImGui::IsRectVisible(least, most) ? static_cast<Spots*>(ImGui::GetIO().UserData) : nullptr;
 }
@@ -107,7 +107,7 @@ bool checkbox(const char* label, bool& on) {
 }
 
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name) {
-    // While it is open, the last widget is its list, so the position is taken before.
+    // After an open list is drawn, Dear ImGui's "last widget" is that list, so the position is read before.
     const ImVec2 least = ImGui::GetCursorScreenPos();
     const ImVec2 most{least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()};
     if (Spots* spots = spots_of(least, most)) {
@@ -127,7 +127,7 @@ bool choice(std::string_view drop_down, const std::string& name, bool chosen) {
 
 bool window_pressed() {
     constexpr ImGuiHoveredFlags in_any_case =
-        ImGuiHoveredFlags_AllowWhenBlockedByActiveItem; // for example an edited field
+        ImGuiHoveredFlags_AllowWhenBlockedByActiveItem; // for example, while a field is being edited
     return ImGui::IsWindowHovered(in_any_case) && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1));
 }
 

@@ -1,8 +1,8 @@
 // Widgets: helpers that all panels use, and the register by which a script finds widgets on the screen.
 //
-// mark() registers a widget by name; find() returns it in the next frame, as long as the widget is drawn. Names are the
-// labels that users read. "Panel/name" is unique where two panels have the same label. A choice of an open drop-down
-// has the name "drop-down: choice".
+// mark() registers a widget by name. In the next frame, find() returns its position if it was drawn. The name is the
+// label that users read. If two panels have widgets with the same label, "Panel/name" is unique. A choice of an open
+// drop-down has the name "drop-down: choice".
 //
 // Owner        Spots belongs to the Gui; the rest are functions.
 // Needs        called between Gui::begin() and Gui::draw().
@@ -24,21 +24,22 @@ namespace evod::viewer {
 class Spots {
   public:
     void begin_frame();
-    /// Widgets registered from here on belong to the panel of this title; empty: to none.
+    /// Assigns the widgets registered after this call to the panel with this title. Empty: they belong to no panel.
     void begin_panel(std::string_view title) { panel_ = title; }
     void add(std::string_view name, Point centre);
     void add_drop_down(std::string_view name, Point centre);
-    /// A visible choice of an open drop-down.
+    /// Registers a visible choice of an open drop-down.
     void add_choice(std::string_view drop_down, std::string_view choice, Point centre);
 
-    /// name  "Apply", or "Parameters/Apply"
+    /// name  the label "Apply", or "Parameters/Apply" with the panel
     std::optional<Point> find(const std::string& name) const;
-    /// The visible choices of the drop-down of this name, empty while it is closed; null if there is no such drop-down.
+    /// The visible choices of the drop-down with this name. Empty while the drop-down is closed. Null if there is no
+    /// such drop-down.
     const std::vector<std::string>* choices(const std::string& name) const;
 
-    /// Whether the mouse has rested long enough on the widget with this corner to show its note. Called in every frame
-    /// in which the mouse is on it. After a click the answer is no until the mouse has left the widget, so that the
-    /// note does not cover the effect of the click.
+    /// Whether the mouse has rested on the widget with this corner long enough to show its note. Must be called in
+    /// every frame in which the mouse is on the widget. After a click, returns false until the mouse has left the
+    /// widget, so that the note does not cover the effect of the click.
     bool lingers(Point corner, double now_s, bool clicked);
 
   private:
@@ -53,38 +54,38 @@ class Spots {
     std::map<std::string, Spot> shown_, building_;
     Point hovered_;
     double hovered_since_s_ = 0, hovered_last_s_ = -1;
-    bool clicked_ = false; // since hovered_since_s_
+    bool clicked_ = false; // a click happened since hovered_since_s_
 };
 
 namespace widgets {
 
-/// Registers the last widget under this name; does nothing if the widget is clipped.
+/// Registers the widget that was drawn last under this name. Does nothing if the widget is clipped.
 void mark(std::string_view name);
 
-/// ImGui::Button(), marked.
+/// ImGui::Button(), registered by mark().
 bool button(const char* label);
 
-/// ImGui::Checkbox(), marked.
+/// ImGui::Checkbox(), registered by mark().
 bool checkbox(const char* label, bool& on);
 
-/// ImGui::BeginCombo(), marked as a drop-down. Call choice() for each entry between it and ImGui::EndCombo().
+/// ImGui::BeginCombo(), registered as a drop-down. Call choice() for each entry before ImGui::EndCombo().
 ///
-/// name  to register if it differs from the label
+/// name  the name to register, if it differs from the label
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name = {});
-/// ImGui::Selectable(), marked as a choice of the drop-down of this name.
+/// ImGui::Selectable(), registered as a choice of the drop-down with this name.
 bool choice(std::string_view drop_down, const std::string& name, bool chosen);
 
-/// Whether a mouse button is pressed in this frame on the current window or on a widget in it.
+/// Whether a mouse button is pressed in this frame on the current window or on one of its widgets.
 bool window_pressed();
 
-/// Small text in a muted colour, or in the given one, wrapped at the edge of the panel.
+/// Writes small text in `colour`, wrapped at the edge of the panel.
 void say(std::string_view text, Colour colour = palette::text_quiet);
 
-/// Whether the mouse rests on the last widget, so that its note is due.
+/// Whether the mouse has rested on the last widget long enough to show its note.
 bool wants_note();
 /// Shows a note at the mouse, in lines of a readable length.
 void note(std::string_view text);
-/// Shows the note if wants_note().
+/// Shows the note of the last widget if wants_note().
 void explain(std::string_view text);
 
 } // namespace widgets

@@ -8,7 +8,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The size of one of `count` equal parts, with gaps between them, of `whole` pixels.
+/// The size in pixels of each of `count` equal parts of `whole` pixels, with gaps between the parts.
 double share(double whole, std::size_t count) {
     return std::max(std::floor((whole - gap_pixels * static_cast<double>(count - 1)) / static_cast<double>(count)),
                     1.0);

@@ -17,7 +17,7 @@ namespace evod::viewer {
 namespace {
 
 constexpr float label_pixels = 14;      // height of the numbers, at scale 1
-constexpr double label_zoom_min = 0.45; // below it organisms are smaller than their numbers
+constexpr double label_zoom_min = 0.45; // at a smaller zoom, organisms are smaller than their numbers
 
 const ShapeStyle food_style{.fill = palette::food, .half_pixels_min = 1};
 const ShapeStyle poison_style{.fill = palette::poison, .half_pixels_min = 1};
@@ -34,7 +34,7 @@ const ShapeStyle pointed_at_style{
 const ShapeStyle wall_style{
     .form = Form::Rectangle, .fill = {0, 0, 0, 0}, .edge = palette::wall, .edge_pixels = float(Camera::wall_pixels)};
 
-// A coloured disc; if large enough, with a dark outline.
+// The style of coloured organisms: a disc, with a dark outline if it is large enough.
 const ShapeStyle coloured_style{.edge = palette::organism_outline, .edge_pixels = 1, .half_pixels_min = 1.5f};
 const ShapeStyle coloured_small_style{.half_pixels_min = 1.5f};
 constexpr double outline_zoom_min = 0.3;
@@ -45,7 +45,7 @@ const ShapeStyle food_radius_style{.fill = {0, 0, 0, 0}, .edge = palette::food_r
 const ShapeStyle poison_radius_style{.fill = {0, 0, 0, 0}, .edge = palette::poison_radius, .edge_pixels = 1};
 const ShapeStyle arrow_style{.form = Form::Arrow, .line_pixels = 2};
 const ShapeStyle target_style{.form = Form::Line, .line_pixels = 1};
-constexpr double marks_zoom_min = 0.05; // below it rings and arrows would cover everything
+constexpr double marks_zoom_min = 0.05; // at a smaller zoom, rings and arrows would cover everything
 
 constexpr double density_cell_pixels = 5;
 
@@ -55,7 +55,7 @@ ShapeStyle trail_style(double age_share) {
     return style;
 }
 
-/// The index of a gene by its name; nullopt if the world has no such gene.
+/// The index of the gene with this name; nullopt if the world has no such gene.
 std::optional<std::size_t> gene_named(std::string_view name, const IslandView& island_view) {
     const auto& names = island_view.gene_names();
     const auto place = std::ranges::find(names, name);
@@ -83,7 +83,7 @@ std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapsho
     const Point world = camera.to_world(screen);
     const double slack = 3 / camera.zoom();
     std::optional<std::size_t> found;
-    double nearest = 0; // squared
+    double nearest = 0; // squared distance of the nearest organism so far
     for (std::size_t i = 0; i < organisms.x_px.size(); ++i) {
         const double x = organisms.x_px[i] - world.x, y = organisms.y_px[i] - world.y, distance = x * x + y * y;
         const double reach = snapshot.organisms.radius_px[i] + slack;
@@ -121,7 +121,7 @@ void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::DecodedS
         set_circles(poison_, snapshot->poison, item_radius);
         set_boxes(obstacles_, snapshot->obstacles, snapshot->obstacles.x_px, snapshot->obstacles.y_px);
     }
-    // The walls are outside the island, and equally thick at any zoom.
+    // The walls lie outside the island and have the same thickness on the screen at any zoom.
     const auto half_width = static_cast<float>(snapshot->about.width_px() / 2);
     const auto half_height = static_cast<float>(snapshot->about.height_px() / 2);
     const auto thickness = static_cast<float>(Camera::wall_pixels / camera.zoom());
@@ -140,7 +140,7 @@ void IslandRenderer::draw(core::WorldView& view, double blend, const Camera& cam
         painter_.draw(walls_, wall_style);
         painter_.draw(obstacles_, obstacle_style);
         painter_.draw(crates_, crate_style);
-        // After a switch to another detail, densities are drawn until the first snapshot of that detail arrives.
+        // After a change of the level of detail, draw densities until the first snapshot with the new detail arrives.
         const bool has_densities = std::ranges::any_of(
             snapshot->tiles, [](const auto& tile) { return tile.detail == evod::v1::DETAIL_DENSITY; });
         if (island_view.shows_density(camera) || has_densities) {
@@ -168,7 +168,7 @@ void IslandRenderer::draw(core::WorldView& view, double blend, const Camera& cam
 void IslandRenderer::draw_items(const codec::DecodedSnapshot& snapshot) {
     painter_.draw(poison_, poison_style);
     painter_.draw(food_, food_style);
-    // Tiles sent as dots contain only positions.
+    // Tiles streamed as dots contain only positions.
     const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px,
                                const ShapeStyle& style) {
         shapes_.clear();
@@ -218,7 +218,7 @@ void IslandRenderer::draw_organisms(const codec::DecodedSnapshot& snapshot, cons
 void IslandRenderer::draw_density(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
                                   const IslandView& island_view) {
     auto grids = densities_of(snapshot);
-    if (grids.empty()) { // a whole snapshot, or tiles that are still sent in full
+    if (grids.empty()) { // a whole snapshot, or tiles with complete organisms
         grids.push_back(density_of(at, camera.visible(), viewer::density_cell_px(camera, density_cell_pixels)));
     }
     density_cell_px_ = grids.front().cell_px;
@@ -319,7 +319,8 @@ void IslandRenderer::draw_labels(core::WorldView& view, double blend, const Came
         const Point centre = camera.to_screen({organisms.x_px[i], organisms.y_px[i]});
         const double radius = snapshot->organisms.radius_px[i] * camera.zoom();
         const double width = size_of(digits, font).x;
-        // A black number is invisible on the black wall: near a side it moves inwards, near the top below the organism.
+        // A black number is invisible on the black wall. Near a side wall the number moves inwards; near the top wall
+        // it moves below the organism.
         const double above = centre.y - radius - font.FontSize - 1;
         const double top = above < corner.y ? centre.y + radius + 1 : above;
         const double left = std::max(std::min(centre.x - width / 2, other.x - width - 1), corner.x + 1);

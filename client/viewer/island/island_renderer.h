@@ -1,9 +1,9 @@
 // IslandRenderer: draws an island: walls, food, poison, crates, obstacles, organisms with their health above them, and
-// what the view options add: colours, radii, forces, trails, densities.
+// whatever the view options switch on: colours, radii, forces, trails and densities.
 //
-// Pure functions (marks.h) compute the shapes; IslandRenderer keeps them in graphics memory and draws all of a kind in one
-// call. Items are uploaded once per snapshot. Organisms and crates, which are interpolated between two snapshots, are
-// uploaded in each frame.
+// Pure functions (marks.h) compute the shapes. IslandRenderer keeps the shapes in graphics memory and draws all shapes
+// of one kind in one call. Items are uploaded once per snapshot. Organisms and crates are uploaded in each frame,
+// because they are interpolated between two snapshots.
 //
 // Owner        WindowRenderer, one per tile.
 // Threads      none; used by the thread that draws.
@@ -29,10 +29,12 @@ namespace evod::viewer {
 /// Health as it is displayed: rounded up, so that a living organism never shows 0.
 unsigned shown_health(float health);
 
-/// Whether the health numbers are readable: organisms are large enough, and few enough for the numbers not to overlap.
+/// Whether the health numbers are readable: organisms must be large enough, and few enough that the numbers do not
+/// overlap.
 bool labels_are_readable(const Camera& camera, std::size_t visible_count);
 
-/// The organism at a point of the screen; of several the one with the nearest centre. Up to 3 pixels beside it is a hit.
+/// The organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If several
+/// organisms are hit, returns the one whose centre is nearest.
 ///
 /// returns  an index in snapshot.organisms
 std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& snapshot,
@@ -40,17 +42,17 @@ std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapsho
 
 class IslandRenderer {
   public:
-    /// Highlighted organisms, by index in the snapshot.
+    /// The highlighted organisms, by their index in the snapshot.
     struct Highlighted {
         std::optional<std::size_t> pointed_at, selected;
     };
 
-    /// Draws the latest snapshot of `view`, with its organisms and crates interpolated at `blend`; without a snapshot only
-    /// the background.
+    /// Draws the latest snapshot of `view`, with organisms and crates interpolated at `blend`. Draws only the
+    /// background if `view` has no snapshot.
     void draw(core::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
               const IslandView& island_view, const Highlighted& highlighted);
 
-    /// The scale of the densities that the last draw() drew; nullopt if it drew none.
+    /// The colour scale of the densities in the last draw(); nullopt if draw() drew no densities.
     const std::optional<ColourScale>& density_scale() const { return density_scale_; }
     double density_cell_px() const { return density_cell_px_; }
 
@@ -77,7 +79,7 @@ class IslandRenderer {
     ShapePainter painter_;
     Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
     Layer dots_, density_, radii_, arrows_, targets_, trail_ends_;
-    /// The lines between two neighbouring snapshots of the trails, uploaded once.
+    /// The trail lines between two consecutive snapshots; uploaded once.
     struct TrailSegment {
         std::shared_ptr<const codec::DecodedSnapshot> from, to;
         std::unique_ptr<Layer> layer;
@@ -90,7 +92,7 @@ class IslandRenderer {
     std::vector<Line> lines_;
     std::vector<Colour> colours_;
     ColouredLines arrow_lines_, target_lines_;
-    std::vector<std::size_t> labelled_; // visible organisms
+    std::vector<std::size_t> labelled_; // indices of the visible organisms
 };
 
 } // namespace evod::viewer

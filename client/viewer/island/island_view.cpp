@@ -36,7 +36,7 @@ std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod:
 }
 
 void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
-    if (world.feed.all_islands()) { // a view would apply to all islands
+    if (world.feed.all_islands()) { // a view would restrict the snapshots of all islands
         region_.forget();
         return;
     }
@@ -125,7 +125,7 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
     if (organism_history_) {
         organism_history_->add(*snapshot);
         if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
-            world.feed.select(std::nullopt); // the id belongs to another organism now
+            world.feed.select(std::nullopt); // the id now belongs to another organism
         }
     }
     trails_.add(snapshot);

@@ -1,5 +1,5 @@
-// IslandView: how a pane shows its chosen island: the view options, the data they need from the server, the organism that
-// is selected and followed, and the region that is streamed.
+// IslandView: how a pane shows its chosen island: the view options, the data that these options need from the server,
+// the selected and followed organism, and the region that is streamed.
 //
 // Owner        Pane.
 // Threads      none; used by the thread that draws.
@@ -19,24 +19,24 @@
 
 namespace evod::viewer {
 
-/// What of an island is drawn, and how: the switches of the View panel.
+/// The switches of the View panel: which parts of an island are drawn, and how.
 struct ViewOptions {
     ColourBy colour_by = ColourBy::Nothing;
-    std::size_t gene = 0; // coloured by, as an index in the world's genes
+    std::size_t gene = 0; // index of the gene that colours organisms, in the world's list of genes
     palette::Ramp ramp = palette::Ramp::Viridis;
     bool radii = false, forces = false, trails = false;
-    bool density = true; // densities replace organisms that are too small to see
-    bool minimap = true; // while part of the island is out of sight
+    bool density = true; // draw densities in place of organisms that are too small to see
+    bool minimap = true; // show the minimap while part of the island is out of sight
 };
 
-/// The region and detail in which a large island is streamed. The region is twice as wide and high as the visible part,
-/// so that panning does not leave it at once. It changes at most once per `interval`.
+/// Chooses the region and the level of detail in which a large island is streamed. The region is twice as wide and high
+/// as the visible part, so that a small pan stays inside it. The region changes at most once per `interval`.
 class StreamedRegion {
   public:
     using Clock = core::WorldView::Clock;
     static constexpr std::chrono::milliseconds interval{200};
 
-    /// The view to request now; nullopt: the one returned last still serves.
+    /// The view to request now; nullopt if the view returned last is still suitable.
     std::optional<evod::v1::View> update(const Camera& camera, evod::v1::Detail detail, Clock::time_point now);
     void forget() { *this = StreamedRegion{}; }
 
@@ -51,33 +51,35 @@ class IslandView {
     using Clock = core::WorldView::Clock;
 
     ViewOptions options;
-    /// Colours by the next of: nothing, each gene, health, lineage; then by nothing again.
+    /// Switches to the next colouring in this cycle: nothing, each gene, health, lineage.
     void next_colouring();
 
-    /// Organisms born per generation from which an island is streamed in part; smaller islands are streamed whole.
+    /// Islands with at least this many organisms per generation are streamed in part. Smaller islands are streamed
+    /// whole.
     static constexpr std::uint32_t streamed_in_part_min = 5'000;
 
-    /// Takes in the newest snapshot, requests what the options need, and moves the streamed region.
+    /// Reads the newest snapshot, requests the data that the options need, and moves the streamed region.
     void update(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
-    /// Keeps the followed organism in the middle. Ends when a person moves the camera, or the organism dies.
+    /// Keeps the followed organism in the centre. Following ends when the user moves the camera or the organism dies.
     void follow(ViewedWorld& world, Camera& camera, double blend);
     bool following() const { return followed_.has_value(); }
-    /// Follows the selected organism, or stops following.
+    /// Starts following the selected organism, or stops following it.
     void toggle_following(ViewedWorld& world);
 
-    // What is known.
+    // Data received from the server.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
-    /// Of the island and generation of the newest snapshot; null until known.
+    /// The population of the newest snapshot's island and generation; null until it has been received.
     const Population* population() const {
         const Population* complete = population_poll_.complete();
         return complete != nullptr && complete->generation() == generation_ ? complete : nullptr;
     }
-    /// Why the population is not known, as a sentence; empty if it is known or on its way.
+    /// Why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const { return population_poll_.problem(); }
     const FamilyColours& family_colours() const { return family_colours_; }
     const Trails& trails() const { return trails_; }
-    /// Of the organism that was selected last, also after its generation has ended; null: none was.
+    /// The history of the organism that was selected last, even after its generation has ended. Null if no organism has
+    /// been selected.
     const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
     /// Whether densities are shown because organisms are too small.
     bool shows_density(const Camera& camera) const {
@@ -87,7 +89,7 @@ class IslandView {
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for values that change in every tick
 
-    /// What is shown; on a change everything is forgotten.
+    /// The place and run that are shown. When one of them changes, all data about the old ones is cleared.
     struct Shown {
         std::uint64_t number = 0; // WorldFeed::place_number()
         std::string run_id;       // empty before the first snapshot
@@ -108,20 +110,20 @@ class IslandView {
     std::vector<std::string> gene_names_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
-    std::uint64_t taken_count_ = 0;                         // complete populations
-    std::uint64_t population_tick_ = 0, organism_tick_ = 0; // of the newest snapshot when they were requested
+    std::uint64_t taken_count_ = 0;                         // complete populations received
+    std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     FamilyColours family_colours_;
     Trails trails_;
     std::optional<OrganismHistory> organism_history_;
 
     struct Followed {
         std::uint32_t id = 0;
-        std::optional<Point> centre{}; // where follow() put the camera
+        std::optional<Point> centre{}; // centre of the camera set by the last follow()
         double zoom = 0;
     };
     std::optional<Followed> followed_;
     StreamedRegion region_;
-    bool in_part_ = false; // streamed in part: the island is large
+    bool in_part_ = false; // whether the island is large and therefore streamed in part
 };
 
 } // namespace evod::viewer

@@ -1,4 +1,4 @@
-// Legend: what the colours mean, drawn in the lower left corner of the island.
+// Legend: explains the colours of the organisms. It is drawn in the lower left corner of the island.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
@@ -16,7 +16,7 @@ namespace evod::viewer {
 
 struct Legend {
     struct Ramp {
-        std::string title; // with the unit
+        std::string title; // includes the unit
         ColourScale scale;
     };
     struct Entry {
@@ -28,12 +28,12 @@ struct Legend {
     bool empty() const { return !ramp && entries.empty(); }
 };
 
-/// "food_radius, px"
+/// The gene's name with its unit: "food_radius, px".
 std::string gene_title(const std::string& name);
 
-/// The legend for what is drawn of a snapshot; empty if organisms are not coloured by a property.
+/// The legend for a drawn snapshot; empty if organisms are not coloured by a property.
 ///
-/// density  the scale of the densities, if they are drawn
+/// density  the colour scale of the densities; nullopt if no densities are drawn
 Legend legend_of(const IslandView& island_view, const codec::DecodedSnapshot& snapshot,
                  const std::optional<ColourScale>& density, double density_cell_px);
 

@@ -9,7 +9,8 @@ namespace evod::viewer {
 
 namespace {
 
-/// A colour scale as a table of 256 colours: faster to look up, and as fine as 8-bit colours are.
+/// A colour scale as a table of 256 colours. A look-up is faster than computing the colour, and 8-bit colours are no
+/// finer.
 class Table {
   public:
     explicit Table(const ColourScale& scale) : scale_{scale} {
@@ -28,7 +29,7 @@ class Table {
     std::array<Colour, last + 1> colours_;
 };
 
-/// Whether a circle may overlap a rectangle. True for some that miss its corners.
+/// Whether a circle may overlap a rectangle. Also returns true for some circles that just miss a corner.
 bool may_touch(const Rectangle& rectangle, float x, float y, float radius) {
     return x + radius >= rectangle.left && x - radius <= rectangle.left + rectangle.width &&
            y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
@@ -121,7 +122,7 @@ void add_radii(const codec::DecodedOrganisms& organisms, const Positions& at, co
 
 void add_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
                 const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets) {
-    constexpr float reach_px = 200; // no organism perceives further
+    constexpr float reach_px = 200; // no organism perceives farther than this
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
         const std::uint32_t id = organisms.id[i];
         const float x = at.x_px[i], y = at.y_px[i];

@@ -13,7 +13,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t cells_max = 60; // along the longer side
+constexpr std::size_t cells_max = 60; // along the island's longer side
 
 ImVec2 vector(Point point) {
     return {static_cast<float>(point.x), static_cast<float>(point.y)};
@@ -83,10 +83,10 @@ void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int numb
             list.AddRectFilled(from, {std::min(from.x + cell, other.x), std::min(from.y + cell, other.y)}, ink(colour));
         }
     }
-    list.PushClipRectFullScreen(); // half of each line is outside the window
+    list.PushClipRectFullScreen(); // half of each line lies outside the minimap's window
     list.AddRect(corner, other, ink(palette::wall));
     const Rectangle part = place.visible_part(camera.visible());
-    // At least this large, to be easy to find.
+    // Draw the frame at least this large, so that it is easy to find.
     const ImVec2 middle = vector(part.centre());
     const ImVec2 half{std::max(static_cast<float>(part.width) / 2, 3 * pixel),
                       std::max(static_cast<float>(part.height) / 2, 3 * pixel)};

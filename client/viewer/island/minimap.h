@@ -1,5 +1,5 @@
-// Minimap: the whole island in a corner of the viewport, with a rectangle around the visible part. It is drawn while part
-// of the island is out of sight. A press on it moves the camera there.
+// Minimap: shows the whole island in a corner of the viewport, with a rectangle around the visible part. It is drawn
+// while part of the island is out of sight. Pressing the mouse on the minimap moves the camera there.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace evod::viewer {
 
-/// The position of the minimap on the screen, and its coordinates.
+/// The position of the minimap on the screen, and its conversion between screen and world coordinates.
 struct MinimapPlace {
     static constexpr double side_pixels_max = 180, margin_pixels = 12; // at scale 1
 
@@ -25,13 +25,13 @@ struct MinimapPlace {
         return {(on_screen.x - screen.left) / zoom, (on_screen.y - screen.top) / zoom};
     }
     Point to_screen(Point world) const { return {screen.left + world.x * zoom, screen.top + world.y * zoom}; }
-    /// The visible part on the screen, clipped at the walls.
+    /// The rectangle on the screen that marks the visible part of the world, clipped at the walls.
     Rectangle visible_part(const Rectangle& visible) const;
 };
 
-/// In the lower right corner of the viewport.
+/// Places the minimap in the lower right corner of the viewport.
 ///
-/// scale  of its pixels
+/// scale  factor for sizes given in pixels at scale 1
 MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height, double scale = 1);
 
 /// Whether the whole island is visible.
@@ -39,15 +39,16 @@ bool sees_all(const Camera& camera, double island_width, double island_height);
 
 class Minimap {
   public:
-    /// Draws the minimap, and moves the camera to where it is pressed. Call between Gui::begin() and Gui::draw().
+    /// Draws the minimap. If the user presses a point of it, moves the camera there. Call between Gui::begin() and
+    /// Gui::draw().
     ///
-    /// number  unique among the minimaps of a window
+    /// number  distinguishes the minimaps of a window
     void build(ViewedWorld& world, Camera& camera, const Gui& gui, int number);
-    /// Whether a mouse button was pressed on it since the last call.
+    /// Whether a mouse button was pressed on the minimap since the last call.
     bool take_press() { return std::exchange(pressed_, false); }
 
   private:
-    std::shared_ptr<const codec::DecodedSnapshot> counted_; // the snapshot that grid_ counts
+    std::shared_ptr<const codec::DecodedSnapshot> counted_; // the snapshot whose organisms grid_ counts
     DensityGrid grid_;
     bool pressed_ = false;
 };

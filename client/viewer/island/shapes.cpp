@@ -13,8 +13,8 @@ namespace evod::viewer {
 
 namespace {
 
-// The shader subtracts the camera's centre from a position before it multiplies by the zoom: the difference is exact in
-// floats, the product would not be.
+// The shader subtracts the camera's centre from a position before it multiplies by the zoom. The difference of nearby
+// positions is exact in floats, but each product would be rounded.
 constexpr const char* vertex_source = R"(#version 330 core
 uniform samplerBuffer shapes;        // centre, half size; of lines and arrows: begin and end
 uniform samplerBuffer colours;
@@ -50,7 +50,7 @@ void main() {
 }
 )";
 
-// The coverage of a pixel is computed from the distance of its centre to the outline.
+// The shader computes how much of a pixel a shape covers from the distance between the pixel's centre and the outline.
 constexpr const char* fragment_source = R"(#version 330 core
 in vec2 place;
 flat in vec2 half_size;

@@ -1,8 +1,8 @@
 // Shapes: draws many circles, rectangles, lines or arrows in one call.
 //
-// A Layer stores shapes of one style in graphics memory: four numbers each, and a colour each if they differ. The shader
-// computes the outline of a shape per pixel from the distance to its edge, so it is smooth at any zoom, and a camera
-// movement uploads nothing.
+// A Layer stores shapes of one style in graphics memory: four numbers for each shape, and a colour for each if the
+// colours differ. The shader computes the outline per pixel from the distance to the edge, so it is smooth at any zoom.
+// Moving the camera uploads nothing.
 //
 // Needs        a current OpenGL 3.3 context on the calling thread, from construction to destruction.
 // Threads      used by the thread that draws.
@@ -16,12 +16,12 @@
 
 namespace evod::viewer {
 
-/// Centre and half size, in px of the world; a circle's half width is its radius.
+/// A circle or rectangle: its centre and half size, in px of the world. The half width of a circle is its radius.
 struct Shape {
     float x = 0, y = 0, half_width = 0, half_height = 0;
 };
 
-/// Begin and end, in px of the world; an arrow has its tip at the end.
+/// A line or arrow from its begin to its end, in px of the world. The tip of an arrow is at the end.
 struct Line {
     float x = 0, y = 0, end_x = 0, end_y = 0;
 };
@@ -30,9 +30,9 @@ enum class Form { Circle, Rectangle, Line, Arrow };
 
 struct ShapeStyle {
     Form form = Form::Circle;
-    Colour fill{}, edge{};     // fill is for layers without colours of their own
-    float edge_pixels = 0;     // width of the edge, inside the outline; 0: none; lines and arrows have none
-    float half_pixels_min = 0; // smaller shapes are drawn at this size, to stay visible
+    Colour fill{}, edge{};     // `fill` is used by layers that have no colours per shape
+    float edge_pixels = 0;     // width of the edge, drawn inside the outline; 0: none; unused for lines and arrows
+    float half_pixels_min = 0; // a smaller shape is drawn with this half size, so that it stays visible
     float line_pixels = 1.5f;  // thickness of lines and arrows
 };
 
@@ -40,7 +40,7 @@ class Layer {
   public:
     Layer();
 
-    /// colours  as many as shapes, or none
+    /// colours  one for each shape, or empty
     void set(std::span<const Shape> shapes, std::span<const Colour> colours = {});
     void set(std::span<const Line> lines, std::span<const Colour> colours = {});
 
@@ -48,7 +48,7 @@ class Layer {
     friend class ShapePainter;
     void upload(std::span<const std::byte> shapes, std::span<const Colour> colours);
 
-    /// Numbers in graphics memory that the shader fetches by index.
+    /// An array in graphics memory; the shader reads its elements by index.
     struct Column {
         explicit Column(unsigned format);
         ~Column();
@@ -69,13 +69,13 @@ class ShapePainter {
     ShapePainter(const ShapePainter&) = delete;
     ShapePainter& operator=(const ShapePainter&) = delete;
 
-    /// Clears the camera's viewport and directs drawing to it until end().
+    /// Fills the camera's viewport with `background` and restricts drawing to it until end().
     void begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background);
     void draw(const Layer& layer, const ShapeStyle& style);
     void end();
 
   private:
-    unsigned program_ = 0, vertex_array_ = 0; // no vertex attributes: the shader fetches shapes by index
+    unsigned program_ = 0, vertex_array_ = 0; // there are no vertex attributes: the shader reads shapes by index
     int pixel_size_ = 0, origin_ = 0, centre_ = 0, zoom_ = 0, form_ = 0, coloured_ = 0, fill_ = 0, edge_ = 0,
         edge_pixels_ = 0, half_pixels_min_ = 0, line_pixels_ = 0;
 };

@@ -14,7 +14,8 @@ namespace evod::viewer {
 
 namespace {
 
-/// A gene as a bar between the least and the greatest value of the generation; a line across the bar marks the mean.
+/// Draws a gene as a bar whose ends are the least and the greatest value in the generation. A line across the bar marks
+/// the mean.
 void build_gene(const std::string& name, float value, const Population::Range& range, float pixel) {
     const float height = 12 * pixel;
     ImGui::TextUnformatted(name.c_str());

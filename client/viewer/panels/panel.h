@@ -1,5 +1,5 @@
-// Panel: a window of widgets over the island that the user can show and hide. It queries and commands the server only
-// through the ViewedWorld, so everything it does uses the public protocol.
+// Panel: a window of widgets over the island that the user can show and hide. It sends queries and commands only
+// through the ViewedWorld, which uses the public protocol.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -23,17 +23,17 @@ class Panel {
         const Gui& gui;
         core::WorldView::Clock::time_point now;
         IslandView& island_view;
-        /// First frame since the panel was hidden: it has missed the events in between.
+        /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };
     struct Size {
         float width, height; // in pixels at scale 1
     };
 
-    /// A key that the panel handles while it has the keyboard focus, and its text in the help.
+    /// A key that the panel handles while it has the keyboard focus, and the text that explains it in the help.
     struct Key {
         sf::Keyboard::Key key;
-        std::string_view help; // empty: the same as the key before
+        std::string_view help; // empty: this key has the same effect as the key before it
         bool control = false, shift = false;
     };
 
@@ -42,15 +42,15 @@ class Panel {
     /// The title of the window and of its section in the help: "Parameters".
     virtual std::string_view title() const = 0;
 
-    /// The size until the user changes it.
+    /// The size of the panel until the user changes it.
     virtual Size first_size() const { return {380, 480}; }
 
-    /// All other keys go to the main window, also while this panel has the focus.
+    /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
     virtual std::span<const Key> keys() const { return {}; }
-    /// Whether the keys have something to act on now.
+    /// Whether pressing these keys would have an effect now.
     virtual bool takes_keys() const { return true; }
 
-    /// Builds the widgets; called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
+    /// Builds the widgets. Called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
     virtual void build(Context& context) = 0;
 };
 

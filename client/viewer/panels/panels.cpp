@@ -108,7 +108,8 @@ void Panels::build_strip(const Gui& gui) {
         width += ImGui::CalcTextSize(name_of(i).c_str()).x + 16 * scale;
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        // If the names do not fit, show the keys only, and each name as a note at the mouse.
+        // If the names do not fit into the strip, the buttons show only the keys, and resting the mouse on a button
+        // shows the name.
         const std::string name = width <= window.x || panel_key(i).empty() ? name_of(i) : panel_key(i);
         ImGui::PushStyleColor(ImGuiCol_Button,
                               places_[i].shown ? ImGui::GetStyleColorVec4(ImGuiCol_ButtonHovered) : ImVec4{0, 0, 0, 0});
@@ -142,7 +143,7 @@ Rectangle Panels::place_for(std::size_t index, float scale) const {
     if (const auto free = free_place(wanted, room_, taken, margin)) {
         return *free;
     }
-    // Cascade: each pair is a little lower and further inside, so that every title bar stays visible.
+    // Cascade the panels: each pair is placed a little lower and farther inside, so that every title bar stays visible.
     const double step = margin + 26 * scale * static_cast<double>(index / 2 % 6);
     const double right = room_.left + room_.width - wanted.width, bottom = room_.top + room_.height - wanted.height;
     return {wanted.at_right ? std::max(right - step, room_.left) : std::min(room_.left + step, right),
@@ -155,7 +156,7 @@ void Panels::build(Panel::Context context, Rectangle room) {
     if (room != room_) {
         room_ = room;
         for (Place& place : places_) {
-            if (place.at == place.put_at) { // otherwise the user has moved it
+            if (place.at == place.put_at) { // the user has not moved it
                 place.at = {};
             }
         }

@@ -32,7 +32,7 @@ EffectWords words_of(evod::v1::ParameterEffect effect) {
     }
 }
 
-/// Doubles every %, for use in a format.
+/// Doubles every % sign, so that printf-style functions print the text unchanged.
 std::string as_format(const std::string& text) {
     std::string escaped;
     for (const char sign : text) {
@@ -41,7 +41,7 @@ std::string as_format(const std::string& text) {
     return escaped;
 }
 
-/// Shows the note of a parameter if the mouse rests on the last widget.
+/// Shows the description of a parameter if the mouse rests on the last widget.
 void explain(const ParameterDescription& about, const ParameterEdits& edits, std::size_t i,
              std::string_view more = "") {
     if (!widgets::wants_note()) {
@@ -100,7 +100,7 @@ void ParametersPanel::build(Context& context) {
     ImGui::EndDisabled();
     ImGui::EndChild();
     apply_ = apply_ && may;
-    if (apply_ && !edits_.busy()) { // in the frame in which the user released the slider
+    if (apply_ && !edits_.busy()) { // apply_ is set in the frame in which the user releases a slider
         apply_ = false;
         send(context, edits_.apply(world.feed.name()));
     }
@@ -121,7 +121,7 @@ void ParametersPanel::follow(const Context& context) {
         stale_ = true;
     }
     const std::uint64_t connected_count = world.server.status().connected_count;
-    // The panel may have missed events.
+    // Request the values again if the panel may have missed events.
     stale_ = stale_ || context.just_shown || world.feed.place_number() != place_number_ ||
              connected_count != connected_count_;
     place_number_ = world.feed.place_number();
@@ -134,10 +134,10 @@ void ParametersPanel::follow(const Context& context) {
         } else if (event.kind_case() == Kind::kParametersChanged && edits_.known()) {
             stale_ = !edits_.update(event.parameters_changed()) || stale_;
         } else if (event.kind_case() == Kind::kGenerationFinished) {
-            stale_ = stale_ || edits_.has_pending(); // the pending values have taken effect
+            stale_ = stale_ || edits_.has_pending(); // pending values have taken effect
         }
     }
-    if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // give up waiting for the answer
+    if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // the answer is overdue
         ++transaction_;
         stale_ = edits_.answered(nullptr);
     }
@@ -157,7 +157,7 @@ void ParametersPanel::poll(const Context& context) {
             }
         });
     }
-    const bool wanted = stale_ || values_poll_.pending(); // if it is due, the last request has timed out
+    const bool wanted = stale_ || values_poll_.pending(); // if a pending poll is due, its request has timed out
     if (values_poll_.due(context.world, context.now) && wanted && !edits_.registry().empty()) {
         stale_ = false;
         evod::v1::Request request;
@@ -242,7 +242,7 @@ void ParametersPanel::build_rows(float scale) {
     const bool searching = search_[0] != '\0';
     bool any = false;
     for (const ParameterGroup& part : groups_) {
-        const auto hit = [&](std::size_t i) { // rejected values are shown whatever the search
+        const auto hit = [&](std::size_t i) { // show rejected values even if they do not match the search
             return edits_.violation(i) != nullptr || matches(edits_.registry()[i], search_.data());
         };
         bool hits = false, needs_attention = false;
@@ -255,7 +255,7 @@ void ParametersPanel::build_rows(float scale) {
         }
         any = true;
         const std::string title{part.title};
-        if (searching || needs_attention) { // open groups with hits, edits or rejected values
+        if (searching || needs_attention) { // open groups that contain matches, edits or rejected values
             ImGui::SetNextItemOpen(true);
         }
         if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {

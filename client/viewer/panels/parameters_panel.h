@@ -1,7 +1,7 @@
-// ParametersPanel: searches, edits, applies and undoes the parameters of the world shown, as the server's registry
-// describes them.
+// ParametersPanel: searches, edits, applies and undoes the parameters of the viewed world. The server's registry
+// describes the parameters.
 //
-// ParameterEdits holds the edits and the server's answers; this class draws them and sends the requests.
+// ParameterEdits stores the edits and the server's answers. ParametersPanel draws them and sends the requests.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -40,17 +40,17 @@ class ParametersPanel : public Panel {
 
     ParameterEdits edits_;
     std::vector<ParameterGroup> groups_;
-    std::string world_;  // the name that the user opened
-    std::string run_id_; // the run that edits_ belongs to
+    std::string world_;  // the world that is viewed
+    std::string run_id_; // the run to which edits_ belong
     std::uint64_t place_number_ = 0, connected_count_ = 0;
-    Poll registry_poll_;                        // until the registry has arrived
-    Poll values_poll_;                          // when the values may have changed
+    Poll registry_poll_;                        // polls until the registry has arrived
+    Poll values_poll_;                          // polls when the values may have changed
     bool stale_ = true;                         // the values may have changed
-    std::uint64_t transaction_ = 0;             // number of the last one; answers to earlier ones are ignored
-    core::WorldView::Clock::time_point sent_{}; // time of the last transaction; it is never sent again
+    std::uint64_t transaction_ = 0;             // number of the last transaction; answers to earlier ones are ignored
+    core::WorldView::Clock::time_point sent_{}; // time of the last transaction, which is never sent again
     std::array<char, 64> search_{};
     bool apply_on_release_ = false;
-    bool apply_ = false; // when no transaction is pending
+    bool apply_ = false; // apply the edits as soon as no transaction is pending
 };
 
 } // namespace evod::viewer

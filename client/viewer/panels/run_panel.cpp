@@ -28,9 +28,9 @@ const char* outcome_words(evod::v1::Outcome outcome) {
     }
 }
 
-constexpr std::uint64_t count_max = 1'000'000'000'000; // ticks or generations per command
+constexpr std::uint64_t count_max = 1'000'000'000'000; // maximum number of ticks or generations per command
 
-/// A field for a number; number_in() checks it when the user presses the button beside it.
+/// Builds a field for a number. number_in() checks the number when the user presses the button beside the field.
 template <std::size_t size>
 void number_field(const char* name, std::array<char, size>& field, float width, const char* hint = "") {
     ImGui::SetNextItemWidth(width);
@@ -40,7 +40,7 @@ void number_field(const char* name, std::array<char, size>& field, float width, 
     ImGui::SameLine();
 }
 
-/// Shows `problem` if it names one of `fields`.
+/// Shows `problem` if it begins with the name of one of these fields.
 void show_problem(const std::string& problem, std::initializer_list<std::string_view> fields) {
     const std::string_view field = std::string_view{problem}.substr(0, problem.find(':'));
     if (!problem.empty() && std::ranges::find(fields, field) != fields.end()) {
@@ -144,7 +144,7 @@ void RunPanel::build_speed(ViewedWorld& world) {
     }
     widgets::mark("speed");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
-        const bool allowed = *factor_ >= least && *factor_ <= most; // a typed value is not limited by the slider
+        const bool allowed = *factor_ >= least && *factor_ <= most; // the slider does not limit a typed value
         problem_ = allowed ? ""
                            : "speed: got " + shown_number(*factor_) + ", allowed " + shown_number(least) + " to " +
                                  shown_number(most) + " times real time";

@@ -1,4 +1,4 @@
-// RunPanel: runs, pauses, steps and resets the world shown, and sets its speed.
+// RunPanel: runs, pauses, steps and resets the viewed world, and sets its speed.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -27,9 +27,9 @@ class RunPanel : public Panel {
 
     using Field = std::array<char, 24>;
     Field ticks_{"60"}, generations_{"10"};
-    Field seed_{};                 // empty: the same seed
-    std::optional<double> factor_; // while the user drags the slider
-    std::string problem_;          // with the last input: "ticks: …"
+    Field seed_{};                 // empty: keep the seed
+    std::optional<double> factor_; // set while the user drags the slider
+    std::string problem_;          // problem with the last input: "ticks: …"
 };
 
 } // namespace evod::viewer

@@ -1,4 +1,4 @@
-// ViewPanel: switches for what the window shows of an island, and how.
+// ViewPanel: switches that select what the window shows of an island, and how.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.

@@ -16,7 +16,7 @@ void cell(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// The statistics of this island; null if there are none.
+/// The statistics of this island; null if the list does not contain them.
 template <class Statistics>
 const Statistics* of_island(const google::protobuf::RepeatedPtrField<Statistics>& all, std::uint32_t island) {
     const auto found = std::ranges::find(all, island, &Statistics::island);
@@ -64,7 +64,7 @@ void WorldsPanel::poll(ViewedWorld& world, Clock::time_point now) {
         statistics_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 statistics_ = response->statistics();
-            } // on an error keep the last; the list shows whether the world exists
+            } // after an error, keep the last statistics
         });
     }
 }
@@ -81,7 +81,7 @@ void WorldsPanel::process_events(const ViewedWorld& world) {
         case Kind::kEventsDropped:
             refresh();
             break;
-        default: // the poll covers the progress of running worlds
+        default: // polling shows the progress of running worlds
             break;
         }
     }
@@ -150,7 +150,8 @@ void WorldsPanel::build_islands(ViewedWorld& world) {
                 chosen = static_cast<std::uint32_t>(i);
             }
             widgets::mark(name);
-            // The live numbers are absent if fitness depends on the chromosome alone, the last ones in generation 1.
+            // Live statistics are absent if fitness depends only on the chromosome. Statistics of the last generation
+            // are absent in generation 1.
             const auto island = static_cast<std::uint32_t>(i);
             if (const auto* live = of_island(statistics_.live(), island)) {
                 cell(with_separators(live->alive_count()) + " of " + with_separators(live->organism_count()));

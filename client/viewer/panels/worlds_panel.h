@@ -1,4 +1,5 @@
-// WorldsPanel: the worlds of the server with their state. A click shows a world, or another island of it.
+// WorldsPanel: lists the worlds of the server and their states. A click shows a world, or another island of the viewed
+// world.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -22,7 +23,7 @@ class WorldsPanel : public Panel {
   private:
     using Clock = core::WorldView::Clock;
 
-    // Fast enough for a user to read the rising ticks.
+    // Short enough for the user to see the tick numbers rise.
     static constexpr std::chrono::seconds poll_interval{1};
 
     void poll(ViewedWorld& world, Clock::time_point now);
@@ -32,8 +33,8 @@ class WorldsPanel : public Panel {
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
-    evod::v1::Statistics statistics_; // of the world and island shown
-    std::uint64_t place_number_ = 0;  // of the place that statistics_ describes
+    evod::v1::Statistics statistics_; // of the viewed world
+    std::uint64_t place_number_ = 0;  // the place that statistics_ describes
     Poll list_poll_{poll_interval};
     Poll statistics_poll_{poll_interval};
 };

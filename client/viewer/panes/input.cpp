@@ -81,7 +81,7 @@ std::optional<Action> Input::handle(const sf::Event& event, Captured captured, C
 void Input::move(Camera& camera, double seconds) const {
     const auto held = [this](Key::Key key) { return held_.contains(key) ? 1.0 : 0.0; };
     const double pixels = pan_pixels_per_s * seconds;
-    // An arrow key moves the camera, so the island moves the other way.
+    // An arrow key moves the camera, so the drawn island moves in the opposite direction.
     camera.pan({pixels * (held(Key::Left) - held(Key::Right)), pixels * (held(Key::Up) - held(Key::Down))});
 }
 

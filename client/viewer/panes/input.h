@@ -1,6 +1,6 @@
 // Input: translates key and mouse events into actions of the window, and moves the camera.
 //
-// keys.h defines which key means which action.
+// The table in keys.h assigns actions to keys.
 //
 // Owner        Window.
 // Threads      none; used by the thread that draws.
@@ -20,17 +20,18 @@ namespace evod::viewer {
 
 class Input {
   public:
-    /// Pans and zooms the camera at once; returns any other action. A key that is held down acts once; + − and the step
-    /// keys repeat.
+    /// Handles an event. Pans and zooms the camera directly and returns any other action. While a key is held down, its
+    /// action is returned once; only + − and the step keys repeat.
     std::optional<Action> handle(const sf::Event& event, Captured captured, Camera& camera);
 
-    /// Pans the camera by the arrow keys that are held down.
+    /// Pans the camera in the direction of the arrow keys that are held down.
     void move(Camera& camera, double seconds) const;
 
-    /// The position of the mouse; nullopt if it is outside the window or drags.
+    /// The position of the mouse; nullopt while the mouse is outside the window or drags.
     std::optional<Point> pointed_at() const { return dragging_ ? std::nullopt : mouse_; }
 
-    /// The position of a click since the last call: a press and release without a drag.
+    /// The position of a click since the last call; nullopt if there was none. A click is a press and release without a
+    /// drag.
     std::optional<Point> take_click() { return std::exchange(clicked_, std::nullopt); }
 
   private:

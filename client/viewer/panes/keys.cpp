@@ -51,7 +51,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Quit, .key = Key::Q, .help = "quit at once; the worlds continue"},
 };
 
-/// The mouse, and keys that act while they are held down.
+/// Mouse gestures, and keys that act as long as they are held down, with their texts in the help.
 constexpr std::pair<std::string_view, std::string_view> gestures[] = {
     {"Wheel", "zoom at the cursor"},
     {"Drag   ← → ↑ ↓", "move the camera"},
@@ -83,7 +83,7 @@ std::string stroke(const std::string& key, bool control, bool shift) {
     return (control ? "Ctrl+" : "") + std::string{shift ? "Shift+" : ""} + key;
 }
 
-/// Adds a line, or without a text another key to the last line.
+/// Adds a line to the help. If `text` is empty, adds the key to the last line instead.
 void add(std::vector<HelpLine>& lines, const std::string& keys, std::string_view text) {
     if (text.empty()) {
         lines.back().keys += "   " + keys;
@@ -106,7 +106,7 @@ std::span<const KeyBinding> key_bindings() {
 
 std::optional<Action> action_of(const sf::Event::KeyEvent& key) {
     if (key.alt || key.system) {
-        return std::nullopt; // for the desktop
+        return std::nullopt; // key combinations for the desktop
     }
     if (!key.control && key.code >= first_panel_key && key.code <= last_panel_key) {
         return static_cast<Action>(static_cast<int>(Action::FirstPanel) + key.code - first_panel_key);

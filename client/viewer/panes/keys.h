@@ -1,6 +1,7 @@
 // Keys: the table of keys and their actions, from which the help window is generated.
 //
-// Signs (+ − [ ?) are matched as text, so that they work with every keyboard layout; all others are matched by key.
+// Signs (+ − [ ?) are matched as typed characters, so that they work with every keyboard layout. All other keys are
+// matched by key code.
 //
 // Threads      none; constants and pure functions.
 #pragma once
@@ -45,9 +46,9 @@ enum class Action {
     Follow,
     StartScreen,
     Help,
-    Close, // a menu, else the help, else the panel in front; else, if pressed twice, the window
+    Close, // closes a menu, or else the help, or else the front panel; pressed twice without these: the window
     Quit,
-    FirstPanel, // values from here on are panels, by index
+    FirstPanel, // FirstPanel + index shows or hides the panel with this index
 };
 
 /// The panel that the action shows or hides; nullopt for any other action.
@@ -58,30 +59,30 @@ constexpr unsigned step_many_ticks = 60;
 struct KeyBinding {
     Action action;
     sf::Keyboard::Key key = sf::Keyboard::Unknown;
-    char sign = 0; // instead of a key
+    char sign = 0; // a typed character; if set, `key` is unused
     bool control = false;
-    bool shift = false;      // a key without a Shift binding acts the same with Shift
-    std::string_view help{}; // empty: another key for the action before it
+    bool shift = false;      // if no binding has Shift, Shift is ignored
+    std::string_view help{}; // empty: the key has the same action as the entry before it
 };
 
-/// All keys except those of the panels.
+/// The bindings of all keys except those that show panels.
 std::span<const KeyBinding> key_bindings();
 
-/// The action of a pressed key. F2 to F12 show or hide a panel.
+/// The action of a pressed key; nullopt if it has none. F2 to F12 show or hide a panel.
 std::optional<Action> action_of(const sf::Event::KeyEvent& key);
 std::optional<Action> action_of_sign(sf::Uint32 sign);
 bool is_function_key(sf::Keyboard::Key key);
 
-/// "Page Up", "Q"
+/// The name of a key as the help shows it: "Page Up", "Q".
 std::string name_of(sf::Keyboard::Key key);
 
 /// A line of the help window.
 struct HelpLine {
     std::string keys, text;
 };
-/// The keys of the window, and the mouse.
+/// The help on the keys of the window and on the mouse.
 std::vector<HelpLine> help_lines();
-/// The key that shows each panel, followed by the keys that the panels use.
+/// The help on panels: the key that shows each panel, followed by the keys that this panel handles.
 std::vector<HelpLine> help_lines(const Panels& panels);
 
 } // namespace evod::viewer

@@ -18,12 +18,12 @@ namespace evod::viewer {
 
 namespace {
 
-// In pixels at scale 1.
+// All lengths here are in pixels at scale 1.
 constexpr float edge = 14;         // between text and the window's edge
-constexpr float help_width = 1060; // of the help with two columns: the keys of the window and of the panels
+constexpr float help_width = 1060; // of the help with its two columns: keys of the window, keys of the panels
 constexpr std::size_t notices_max = 4;
 
-/// Draws a rounded box with text in the middle of `place`, with its upper edge at `top`; returns its lower edge.
+/// Draws a rounded box with text, horizontally centred in `place` with its upper edge at `top`. Returns its lower edge.
 float text_box(ImDrawList& list, const Gui& gui, Rectangle place, float top, Colour background,
                const std::string& text) {
     const ImFont& font = gui.text();

@@ -1,4 +1,4 @@
-// Overlay: the texts over and around the islands: status strips, help, notices, and the state of the connection.
+// Overlay: draws the texts over and around the islands: status strips, help, notices, and the state of the connection.
 //
 // Owner        WindowRenderer.
 // Threads      none; used by the thread that draws.
@@ -21,21 +21,21 @@ class Overlay {
     using Clock = core::WorldView::Clock;
 
     static constexpr std::chrono::seconds notice_shown{6};
-    /// Shows a sentence for `notice_shown`.
+    /// Shows a sentence for the duration `notice_shown`.
     void notice(std::string text, Clock::time_point now);
     void toggle_help() { help_ = !help_; }
     bool help() const { return help_; }
     void close_help() { help_ = false; }
 
-    // Call the following between Gui::begin() and Gui::draw().
+    // Call the following functions between Gui::begin() and Gui::draw().
 
-    /// Notices and help, over the whole window.
+    /// Draws notices and help over the whole window.
     void build(const Gui& gui, const Panels& panels, Clock::time_point now);
-    /// The strips of a world in its part of the window, and the state of its connection.
+    /// Draws the strips of a world in its part of the window, and the state of its connection.
     void build_world(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
-    /// The number of the island that a tile shows.
+    /// Draws the number of the island in its tile.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
-    /// The data of one organism, beside it.
+    /// Draws the data of an organism beside it.
     void build_organism(const codec::DecodedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
 
   private:

@@ -45,7 +45,7 @@ void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
     }
 }
 
-// ---- all of them -----------------------------------------------------------------------------------------------
+// ---- all panes -------------------------------------------------------------------------------------------------
 
 Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside) : wanted_{std::move(wanted)} {
     panes_.push_back(std::make_unique<Pane>(wanted_));
@@ -60,7 +60,7 @@ void Panes::update(core::WorldView::Clock::time_point now) {
     for (const auto& pane : panes_) {
         pane->world.update(now);
     }
-    if (!next_world_.empty()) { // not during an update of a pane
+    if (!next_world_.empty()) { // opened here, because panes must not change while they are updated
         open_beside(std::exchange(next_world_, {}), 0);
     }
 }
@@ -117,7 +117,7 @@ void Panes::toggle_beside() {
         return;
     }
     shown.find_next_world([this, number](const std::string& world) {
-        if (number == next_request_number_) { // else the key was pressed again meanwhile
+        if (number == next_request_number_) { // otherwise the key was pressed again while the request was pending
             next_world_ = world;
         }
     });

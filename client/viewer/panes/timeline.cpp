@@ -15,10 +15,10 @@ namespace evod::viewer {
 
 namespace {
 
-// In pixels at scale 1.
+// All lengths here are in pixels at scale 1.
 constexpr float line_height = 26, label_height = 13;
 constexpr float timeline_edge = 12,
-                line_edge = 6;  // from the window to the widgets, and from there to the ends of the line
+                line_edge = 6;  // from the window to the widgets; from the widgets to the ends of the line
 constexpr float mark_room = 70; // minimum distance between marks
 
 evod::v1::RunMoment moment_of_generation(std::uint64_t generation) {
@@ -72,12 +72,12 @@ void Timeline::find_first_ticks(ViewedWorld& world, const evod::v1::Replay& repl
     }
     for (const std::uint64_t generation :
          marked_generations(replay.first_generation(), replay.last_generation(), count_max)) {
-        // The history of a run file's replay reaches only to the shown moment.
+        // In a replay of a run file, the history ends at the tick that is shown.
         const bool known = !replay.replay_of().empty() || generation <= shown_generation_;
         if (!known || first_tick_.contains(generation) || !requested_.insert(generation).second) {
             continue;
         }
-        evod::v1::Request request; // a generation begins at the end of the one before
+        evod::v1::Request request; // a generation begins at the end tick of the previous one
         auto& history = *request.mutable_get_history();
         history.set_world(replay.replay_of().empty() ? world.feed.world() : replay.replay_of());
         history.set_first_generation(generation - 1);
@@ -92,7 +92,7 @@ void Timeline::find_first_ticks(ViewedWorld& world, const evod::v1::Replay& repl
 }
 
 void Timeline::build_line(ViewedWorld& world, const Gui& gui, Rectangle place) {
-    const evod::v1::Replay replay = *world.replay.info(); // a copy: the answer to a seek changes it
+    const evod::v1::Replay replay = *world.replay.info(); // a copy, because the answer to a seek changes it
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float pixel = gui.scale(), label_size = label_height * pixel;
     const float width = std::max(static_cast<float>(place.width) - 2 * timeline_edge * pixel, 1.f);

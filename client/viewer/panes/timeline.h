@@ -1,5 +1,5 @@
-// Timeline: the strip below a replay: a line of all its ticks to drag along, and buttons to play it, to go from generation
-// to generation, to fork a world from the shown moment, and to return to the live world.
+// Timeline: the strip below a replay. The user drags along a line of all its ticks to seek. Buttons play the replay, go
+// to the previous or next generation, fork a world from the tick shown, and return to the live world.
 //
 // Owner        Pane.
 // Threads      none; used by the thread that draws.
@@ -22,11 +22,11 @@ class Timeline {
   public:
     static constexpr double height_pixels = 62; // at scale 1
 
-    /// Draws the time line of a replay; nothing for a live world. Call between Gui::begin() and Gui::draw().
+    /// Draws the time line of a replay; draws nothing for a live world. Call between Gui::begin() and Gui::draw().
     ///
-    /// number  unique among the time lines of a window
+    /// number  distinguishes the time lines of a window
     void build(ViewedWorld& world, const Gui& gui, Rectangle place, int number);
-    /// Whether a mouse button was pressed on it since the last call.
+    /// Whether a mouse button was pressed on the time line since the last call.
     bool take_press() { return std::exchange(pressed_, false); }
 
   private:
@@ -35,7 +35,7 @@ class Timeline {
     void build_fork(ViewedWorld& world);
     void find_first_ticks(ViewedWorld& world, const evod::v1::Replay& replay, std::size_t count_max);
 
-    std::string world_, run_id_;                        // of the replay that the members below describe
+    std::string world_, run_id_;                        // identify the replay that the members below describe
     std::map<std::uint64_t, std::uint64_t> first_tick_; // first tick by generation
     std::set<std::uint64_t> requested_;                 // generations whose first tick was requested
     std::uint64_t shown_generation_ = 0;

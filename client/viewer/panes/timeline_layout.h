@@ -1,4 +1,4 @@
-// Timeline layout: which pixel of the time line shows which tick, and which generations and labels are drawn there.
+// Timeline layout: converts between ticks and pixels of the time line, and selects the generations and labels to draw.
 //
 // Threads      none; pure functions.
 #pragma once
@@ -10,28 +10,29 @@
 
 namespace evod::viewer {
 
-/// The ticks of a run along a line of pixels.
+/// Maps the ticks of a run to positions on a line of pixels.
 struct TimeScale {
     std::uint64_t first_tick = 0, last_tick = 0; // first_tick <= last_tick
     double left = 0, width = 1;                  // pixels
 
-    /// A tick outside the run is at the nearer end.
+    /// The position of a tick. A tick outside the run is placed at the nearer end of the line.
     double x_of(std::uint64_t tick) const;
-    /// The nearest tick; beyond an end the tick of that end.
+    /// The tick nearest to x. Beyond an end of the line, the tick at that end.
     std::uint64_t tick_at(double x) const;
 };
 
-/// The generations to mark from `first` to `last`: at most `count_max` multiples of 1, 2, 5, 10, 20, 50, …
+/// The generations from `first` to `last` to mark: the multiples of the smallest of 1, 2, 5, 10, 20, 50, … for which
+/// there are at most `count_max`.
 std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t last, std::size_t count_max);
 
-/// A text on the line, in pixels.
+/// A label on the line, in pixels.
 struct Label {
     double left, width;
 };
-/// The labels to draw so that none overlaps another: the first, and each that begins at least `gap` pixels after the end
-/// of the one drawn before it.
+/// Selects labels that do not overlap: the first label, and then each label that begins at least `gap` pixels after the
+/// end of the last selected one.
 ///
-/// returns  indices, rising.
+/// returns  indices of the selected labels, rising.
 std::vector<std::size_t> separate_labels(std::span<const Label> labels, double gap);
 
 } // namespace evod::viewer

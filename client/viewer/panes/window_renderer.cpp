@@ -22,7 +22,7 @@ std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const codec
                                                : std::nullopt;
 }
 
-/// The part of the window between its strips and time lines.
+/// The part of the window without strips and time lines, in which panels are placed.
 Rectangle room_for_panels(Panes& panes, const WindowRenderer::Frame& frame, double scale) {
     Rectangle room = below_panel_strip(frame.width_pixels, frame.height_pixels, scale);
     for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -61,7 +61,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
     panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
-    clear(palette::strip_edge, frame); // the colour between panes and tiles
+    clear(palette::strip_edge, frame); // visible between panes and tiles
     std::size_t renderer_index = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         Pane& pane = panes[i];

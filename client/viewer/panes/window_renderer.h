@@ -24,38 +24,40 @@ class WindowRenderer {
   public:
     using Clock = core::WorldView::Clock;
 
-    /// scale  of all text and widgets
+    /// scale  factor for the size of all text and widgets
     explicit WindowRenderer(double scale = 1) : gui_{scale} {}
 
     struct Frame {
         unsigned width_pixels = 1, height_pixels = 1;
         Clock::time_point now;
-        bool interpolate = false;          // between the two newest snapshots; else draw the newest
-        bool interactive = false;          // with panels, time lines and the mark of the focus
-        std::optional<Point> pointed_at{}; // by the mouse, in pixels
+        bool interpolate = false;          // interpolate between the two newest snapshots; otherwise draw the newest
+        bool interactive = false;          // draw panels, time lines and the mark of the focus
+        std::optional<Point> pointed_at{}; // position of the mouse, in pixels
     };
 
-    /// Draws to the current framebuffer. A pane whose time line or minimap is pressed gets the focus.
+    /// Draws to the current framebuffer. If the user presses a pane's time line or minimap, moves the focus to this
+    /// pane.
     void draw(Panes& panes, const Frame& frame);
 
-    /// Draws only widgets, without panes.
+    /// Draws only the widgets that `build` creates, without panes.
     void draw(const std::function<void(const Gui&)>& build, const Frame& frame);
 
-    /// Returns what `draw` draws. Draws off the screen, so the window may be covered or small.
+    /// Returns an image of what `draw` draws. It is drawn off-screen, so the window may be covered or smaller than the
+    /// image.
     sf::Image capture(const Frame& frame, const std::function<void()>& draw);
     sf::Image capture(Panes& panes, const Frame& frame) {
         return capture(frame, [&] { draw(panes, frame); });
     }
 
-    /// Whether widgets or panels use the event.
+    /// Whether a widget or panel uses the event.
     Captured captured(const sf::Event& event) const;
 
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
-    /// Selects the organism at a point of the chosen island, as the last frame showed it, and shows the organism panel.
-    /// Without an organism there, clears the selection.
+    /// Selects the organism at a point of the chosen island, at the positions drawn in the last frame, and shows the
+    /// organism panel. If no organism is there, clears the selection.
     void select_at(Pane& pane, Point screen);
 
   private:

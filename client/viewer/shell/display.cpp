@@ -12,7 +12,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// Null: there is no X server, or it accepts no more clients.
+/// The connection to the X server. Null if there is no X server or it accepts no more clients.
 Display* connection() {
     static Display* const opened = XOpenDisplay(nullptr); // never closed
     return opened;
@@ -36,7 +36,7 @@ double display_scale() {
         return 1;
     }
     double dots_per_inch = 0;
-    if (const char* set = XGetDefault(display, "Xft", "dpi")) { // the desktop's setting
+    if (const char* set = XGetDefault(display, "Xft", "dpi")) { // from the desktop's settings
         dots_per_inch = std::atof(set);
     } else if (const int screen = DefaultScreen(display); DisplayWidthMM(display, screen) > 0) {
         dots_per_inch = DisplayWidth(display, screen) * 25.4 / DisplayWidthMM(display, screen);
@@ -50,7 +50,7 @@ std::optional<Desktop> desktop() {
         return std::nullopt;
     }
     const int screen = DefaultScreen(display);
-    // Only a window manager selects SubstructureRedirect on the root window.
+    // Only a window manager selects SubstructureRedirect on the root window, so this flag shows whether one is running.
     XWindowAttributes root{};
     const bool known = XGetWindowAttributes(display, RootWindow(display, screen), &root) != 0;
     return Desktop{.width = static_cast<unsigned>(DisplayWidth(display, screen)),

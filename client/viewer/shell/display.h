@@ -1,7 +1,7 @@
-// Display: whether there is a display to draw on, and its resolution. SFML aborts without a display.
+// Display: checks whether there is a display to draw on, and finds its resolution. SFML aborts if there is no display.
 //
-// The connection to the X server stays open until the program ends: an X server may exit or reset when its last client
-// disconnects.
+// The connection to the X server stays open until the program ends, because an X server may exit or reset when its last
+// client disconnects.
 //
 // Threads      used by the thread that draws.
 #pragma once
@@ -10,18 +10,19 @@
 
 namespace evod::viewer {
 
-/// Throws std::runtime_error, which says what to do, if no window can be opened.
+/// Throws std::runtime_error if no window can be opened. The message explains what to do.
 void check_display();
 
-/// The scale of text and widgets for this display, relative to 96 dots per inch: from the desktop's setting, else from
-/// the size that the display reports; 1 if neither is known. A multiple of 1/4, from 0.5 to 4.
+/// The scale of text and widgets for this display, relative to 96 dots per inch. It follows the desktop's setting or,
+/// without one, the size that the display reports; 1 if neither is known. The scale is a multiple of 1/4, from 0.5 to
+/// 4.
 double display_scale();
 
 struct Desktop {
     unsigned width, height; // in pixels
-    bool managed;           // by a window manager, which places windows
+    bool managed;           // a window manager is running, which places windows
 };
-/// Nullopt without a connection to the X server.
+/// The desktop's properties; nullopt without a connection to the X server.
 std::optional<Desktop> desktop();
 
 } // namespace evod::viewer

@@ -54,7 +54,7 @@ class FolderWriter final : public FrameWriter {
     std::filesystem::path path_;
 };
 
-/// Sends raw frames through a pipe to ffmpeg.
+/// Writes a film: sends raw frames through a pipe to ffmpeg.
 class FilmWriter final : public FrameWriter {
   public:
     FilmWriter(std::string path, unsigned width_pixels, unsigned height_pixels, double fps)
@@ -63,7 +63,7 @@ class FilmWriter final : public FrameWriter {
         if (output_ == nullptr || pipe2(ends.data(), O_CLOEXEC) != 0) {
             throw std::runtime_error{std::string{"could not start ffmpeg: "} + std::strerror(errno)};
         }
-        std::signal(SIGPIPE, SIG_IGN); // if ffmpeg ends early, the next write fails
+        std::signal(SIGPIPE, SIG_IGN); // if ffmpeg ends early, writing fails instead of ending evoview
         std::vector<std::string> words{"ffmpeg",    "-y",
                                        "-loglevel", "error",
                                        "-f",        "rawvideo",
@@ -71,7 +71,7 @@ class FilmWriter final : public FrameWriter {
                                        "-s",        std::to_string(width_pixels) + "x" + std::to_string(height_pixels),
                                        "-r",        std::to_string(fps),
                                        "-i",        "-",
-                                       "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2"}; // common codecs need even sizes
+                                       "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2"}; // codecs need even sizes
         if (!path_.ends_with(".gif")) {
             words.insert(words.end(), {"-pix_fmt", "yuv420p"}); // every player supports it
         }
@@ -88,7 +88,8 @@ class FilmWriter final : public FrameWriter {
         posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, fileno(output_.get()), STDOUT_FILENO);
         posix_spawn_file_actions_adddup2(&actions, fileno(output_.get()), STDERR_FILENO);
-        // In its own process group: Ctrl+C in a terminal interrupts only evoview, which then completes the film.
+        // ffmpeg gets its own process group. Ctrl+C in a terminal then interrupts only evoview, which completes the
+        // film.
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
         const int error = posix_spawnp(&process_, "ffmpeg", &actions, &attributes, arguments.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
@@ -115,7 +116,7 @@ class FilmWriter final : public FrameWriter {
                 continue;
             }
             if (written < 0) {
-                finish(); // throws with the message of ffmpeg
+                finish(); // throws, with the message that ffmpeg printed
                 throw std::runtime_error{"could not write " + path_ + ": ffmpeg ended too early"};
             }
             pixels += written;
@@ -141,7 +142,7 @@ class FilmWriter final : public FrameWriter {
     }
 
   private:
-    /// Closes the pipe and waits for ffmpeg to end. Returns its wait status; 0 if it was stopped before.
+    /// Closes the pipe, waits for ffmpeg to end and returns its wait status. Returns 0 if ffmpeg was stopped before.
     int stop() {
         if (pipe_ >= 0) {
             close(pipe_);

@@ -1,7 +1,7 @@
-// FrameWriter: writes the frames of a recording, to a folder with one PNG file each, or to a film by ffmpeg.
+// FrameWriter: writes the frames of a recording, either as PNG files into a folder or as a film with ffmpeg.
 //
 // Owner        record().
-// Threads      none; ffmpeg is a process, which ends with the FrameWriter.
+// Threads      none; ffmpeg is a separate process, which ends with the FrameWriter.
 #pragma once
 
 #include <SFML/Graphics/Image.hpp>
@@ -17,9 +17,9 @@ class FrameWriter {
   public:
     virtual ~FrameWriter() = default;
 
-    // Both throw std::runtime_error, with path and reason.
+    // Both functions throw std::runtime_error with the path and the reason.
     virtual void add(const sf::Image& frame, std::uint64_t tick) = 0;
-    /// Completes the output. Afterwards every added frame is in the folder or film.
+    /// Completes the output. Afterwards the folder or film contains every added frame.
     virtual void finish() = 0;
 
     std::size_t frame_count() const { return frame_count_; }
@@ -28,16 +28,17 @@ class FrameWriter {
     std::size_t frame_count_ = 0;
 };
 
-/// "frame-000012-tick-720.png": with a number from 0, so that the names sort by time.
+/// The file name of a frame: "frame-000012-tick-720.png". The number counts from 0 and has leading zeros, so that names
+/// sort by time.
 std::string frame_file_name(std::size_t number, std::uint64_t tick);
 
-/// Whether a path names a film, by its ending (.mp4, .mkv, .webm, .mov, .avi, .gif); else it names a folder.
+/// Whether a path names a film, that is, ends in .mp4, .mkv, .webm, .mov, .avi or .gif. Any other path names a folder.
 bool is_film(const std::string& path);
 
-/// Replaces a film that exists. Makes the folder unless it exists; a folder with frames of another recording is refused.
-/// Throws std::runtime_error, with path and reason.
+/// Creates a writer for a film or a folder. Replaces an existing film. Creates the folder if it does not exist, and
+/// rejects a folder that contains frames of another recording. Throws std::runtime_error with the path and the reason.
 ///
-/// fps  frames per second of a film
+/// fps  frames per second of the film
 std::unique_ptr<FrameWriter> open_frame_writer(const std::string& path, unsigned width_pixels, unsigned height_pixels,
                                                double fps);
 

@@ -1,4 +1,4 @@
-// evoview: opens a window with the start screen or worlds, or saves a screenshot or a recording.
+// evoview: opens a window with the start screen or with worlds, or saves a screenshot or a recording.
 #include "client/viewer/shell/display.h"
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/recorder.h"
@@ -23,7 +23,7 @@ void run(Options options) {
                 return;
             }
             if (connected) {
-                options = Options{}; // they were for the other server
+                options = Options{}; // the options applied to the previous server
             }
             options.connection = *chosen;
             must_connect = true;
@@ -36,7 +36,7 @@ void run(Options options) {
                 start.remember(options.connection.server);
             });
         }
-        screen.renderer().panels().begin_session(); // requests to the other server will not be answered
+        screen.renderer().panels().begin_session(); // requests to the previous server stay unanswered
         show_start = ending.to_start_screen;
         start.set_reason(ending.reason);
     }

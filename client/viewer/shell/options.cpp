@@ -40,7 +40,7 @@ or a line of the script failed; 2 the command line or the script is invalid.)";
 
 constexpr unsigned pixels_min = 64, pixels_max = 8192;
 
-/// Parses "1280x720". Returns an error, or an empty text.
+/// Parses a size such as "1280x720". Returns an error message; empty if the size is valid.
 std::string parse_size(const std::string& text, Options::Size& size) {
     const char* end = text.data() + text.size();
     const auto [cross, bad_width] = std::from_chars(text.data(), end, size.width);
@@ -62,7 +62,7 @@ core::Result<Script> read_script(const std::string& path) {
     std::error_code ignored;
     std::ifstream file;
     if (std::filesystem::is_directory(path, ignored)) {
-        errno = EISDIR; // a stream would open a folder, and throw when it is read
+        errno = EISDIR; // without this check, a stream opens a folder and throws on reading
     } else {
         file.open(path);
     }

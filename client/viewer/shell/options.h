@@ -16,18 +16,18 @@ struct Options {
     core::Options connection; // server and credentials
     std::string world;        // empty: the server's choice
     std::uint32_t island = 0;
-    bool all_islands = false;                       // at once, as tiles
-    std::optional<std::string> beside;              // a second world, in the right half
-    std::optional<std::uint64_t> replay_generation; // begin with a replay of the world at this generation
-    /// Of the window, screenshot or recording; nullopt: 1280 × 720 times the scale.
+    bool all_islands = false;                       // show all islands at once, as tiles
+    std::optional<std::string> beside;              // a second world to show in the right half
+    std::optional<std::uint64_t> replay_generation; // start with a replay of the world at this generation
+    /// Size of the window, screenshot or recording; nullopt: 1280 × 720 times the scale.
     struct Size {
         unsigned width, height; // in pixels
     };
     std::optional<Size> size;
-    std::optional<double> scale; // of text and widgets; nullopt: chosen by the display
+    std::optional<double> scale; // scale of text and widgets; nullopt: chosen by the display
 
-    bool server_given = false; // else the start screen opens if there is no server
-    bool start = false;        // begin with the start screen
+    bool server_given = false; // if false and no server answers, the start screen opens
+    bool start = false;        // start with the start screen
     std::optional<Script> script;
     std::string script_path;
 
@@ -41,12 +41,12 @@ struct Options {
 
     /// Save frame after frame instead of opening a window.
     struct Record {
-        std::string path;                         // a folder; or a film, by its ending
-        std::optional<std::uint64_t> ticks;       // record this many; nullopt for both: until the run ends
-        std::optional<std::uint64_t> generations; // record until this many more have ended
-        std::uint64_t every_ticks = 1;            // from one frame to the next
-        double fps = 60;                          // frames per second of a film
-        double timeout_s = 60;                    // for one frame
+        std::string path;                         // a film if it has the ending of one, otherwise a folder
+        std::optional<std::uint64_t> ticks;       // ticks to record; both nullopt: until the run ends
+        std::optional<std::uint64_t> generations; // further generations to record
+        std::uint64_t every_ticks = 1;            // ticks between two frames
+        double fps = 60;                          // of a film
+        double timeout_s = 60;                    // longest wait for one frame
     };
     std::optional<Record> record;
 };
@@ -54,10 +54,10 @@ struct Options {
 /// The size of the window, screenshot or recording.
 Options::Size size_of(const Options& options, double scale);
 
-/// The world of the first pane.
+/// The world for the first pane.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);
 
-/// Returns the options; or the exit status after help, version or an error was printed.
+/// Returns the options. If help, the version or an error was printed, returns the exit status instead.
 std::variant<Options, int> parse_options(int argc, const char* const* argv);
 
 } // namespace evod::viewer

@@ -17,7 +17,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t line_bytes_max = 300; // a name of 255 bytes and a port
+constexpr std::size_t line_bytes_max = 300; // enough for a name of 255 bytes and a port
 constexpr std::size_t lines_max = 100;
 
 } // namespace
@@ -28,7 +28,7 @@ std::optional<std::filesystem::path> RecentServers::default_file() {
         return value == nullptr ? "" : value;
     };
     if (const auto state = from("XDG_STATE_HOME");
-        state.is_absolute()) { // by the XDG specification a relative path is ignored
+        state.is_absolute()) { // the XDG specification requires that relative paths are ignored
         return state / "evod" / "recent_servers";
     }
     if (const auto home = from("HOME"); !home.empty()) {

@@ -25,7 +25,7 @@ namespace {
 using Clock = core::WorldView::Clock;
 
 constexpr double snapshot_rate_hz =
-    60; // of snapshots of a world that is not stepped; the end of a step is sent at once
+    60; // snapshots per second, for worlds that are not stepped; a stepped world sends one at the end of each step
 constexpr std::chrono::seconds release_timeout{2};
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -38,7 +38,7 @@ class Recorder {
   public:
     Recorder(const Options& options, const Options::Record& wanted)
         : wanted_{wanted}
-        , scale_{options.scale.value_or(1)} // not shown on a display
+        , scale_{options.scale.value_or(1)} // independent of any display
         , size_{size_of(options, scale_)}
         , writer_{open_frame_writer(wanted.path, size_.width, size_.height, wanted.fps)}
         , panes_{wanted_of(options, snapshot_rate_hz), options.beside} {}
@@ -67,7 +67,7 @@ class Recorder {
     }
 
   private:
-    /// The world whose ticks and generations decide when the recording ends.
+    /// The world of the first pane. Its ticks and generations determine when the recording ends.
     ViewedWorld& leader() { return panes_[0].world; }
 
     void record_all() {
@@ -101,7 +101,8 @@ class Recorder {
         } while (advance());
     }
 
-    /// Stops the worlds that will be stepped at their current tick, so that the second frame follows the first.
+    /// Pauses the worlds that the recorder will step at their current tick, so that no tick is missed between the first
+    /// two frames. Returns false if the recording was interrupted.
     bool stop_worlds() {
         targets_.assign(panes_.size(), 0);
         for (std::size_t i = 0; i < panes_.size(); ++i) {
@@ -114,9 +115,10 @@ class Recorder {
         return wait_until([&] { return all_have_snapshots(panes_) && all_arrived(); }, true);
     }
 
-    /// Advances every world to its next frame. False: the leader has no further tick, or the recording was interrupted.
+    /// Advances every world to its next frame. Returns false if the leader has no further tick or the recording was
+    /// interrupted.
     bool advance() {
-        targets_.assign(panes_.size(), 0); // ticks to wait for
+        targets_.assign(panes_.size(), 0); // the tick for which each pane waits
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             ViewedWorld& world = panes_[i].world;
             const std::uint64_t tick = world.feed.snapshot()->about.tick();
@@ -137,7 +139,8 @@ class Recorder {
         return wait_until([&] { return all_arrived(); }, leader().commands.may_command());
     }
 
-    /// Runs a world to a tick. A tick that is over only stops the world; the answer contains the tick where it stopped.
+    /// Runs a world to a tick and stops it there. If this tick is already over, the world only stops; the answer
+    /// contains the tick at which it stopped.
     void step(ViewedWorld& world, std::uint64_t tick, std::size_t pane) {
         targets_[pane] = tick;
         evod::v1::Request request;
@@ -173,7 +176,7 @@ class Recorder {
         return true;
     }
 
-    /// Waits until the condition holds. False: the recording was interrupted.
+    /// Waits until the condition holds. Returns false if the recording was interrupted.
     template <class Condition>
     bool wait_until(Condition condition, bool limited) {
         const auto end = Clock::now() +
@@ -200,7 +203,8 @@ class Recorder {
         }
     }
 
-    /// Releases the leases, so that worlds that ran before run again at once and not when their leases expire.
+    /// Releases the leases. Worlds that were running before the recording then resume at once; otherwise they would
+    /// resume only when their leases expire.
     void release() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             ViewedWorld& world = panes_[i].world;
@@ -208,7 +212,7 @@ class Recorder {
                 evod::v1::Request request;
                 request.mutable_release_lease()->set_world(world.feed.control().world());
                 world.server.send(std::move(request),
-                                  [](const auto&) {}); // a refusal does not matter: there was no lease
+                                  [](const auto&) {}); // a refusal is ignored, because there was no lease
             }
         }
         const auto end = Clock::now() + release_timeout;
@@ -223,7 +227,7 @@ class Recorder {
     const Options::Record& wanted_;
     double scale_;
     Options::Size size_;
-    std::unique_ptr<FrameWriter> writer_; // before panes_: if it cannot be opened, no world is commanded
+    std::unique_ptr<FrameWriter> writer_; // opened before panes_, so that a failure leaves the worlds unchanged
     WindowRenderer renderer_{scale_};
     Panes panes_;
     std::vector<std::uint64_t> targets_;

@@ -12,10 +12,12 @@ namespace evod::viewer {
 
 namespace {
 
-// Vertical sync paces the frames. This limit is for displays without it, and short enough not to miss a frame at 60 Hz.
+// Vertical sync limits the frame rate. For displays without vertical sync, a frame takes at least this long. The limit
+// is short enough not to miss a frame at 60 Hz.
 constexpr std::chrono::milliseconds frame_min{15};
 
-// Widgets react in the frame after an event; what the reaction opens appears in the next frame.
+// Number of frames after an event until its effect is visible. Widgets react in the first frame; a list or dialog that
+// they open appears in the second.
 constexpr unsigned settled_frames = 2;
 
 } // namespace
@@ -24,7 +26,7 @@ sf::ContextSettings context_settings() {
     return sf::ContextSettings{0, 0, 0, 3, 3, sf::ContextSettings::Core};
 }
 
-/// The window as a script acts on it.
+/// Gives a script access to the window.
 class Screen::ScriptHost : public Script::Host {
   public:
     ScriptHost(Screen& screen, const ViewedWorld* world, const WindowRenderer::Frame& frame,
@@ -70,7 +72,7 @@ sf::VideoMode mode_of(const Options& options) {
     return {size.width, size.height};
 }
 
-/// Without a window manager, moves the window to the middle of the desktop; SFML places it lower.
+/// Centres the window on the desktop if there is no window manager. Without one, SFML places the window lower.
 void place(sf::Window& window) {
     const auto whole = desktop();
     if (!whole || whole->managed) {

@@ -1,8 +1,8 @@
-// Screen: the window on the desktop and the renderer that draws in it, from the start of evoview to its end. It shows the
-// start screen or worlds. It is the source of events, those of a script and those of a person.
+// Screen: the window on the desktop and the renderer that draws in it, from the start of evoview to its end. It shows
+// the start screen or worlds. It supplies the events of the user and of a script.
 //
 // Owner        run().
-// Threads      used by the thread that made it.
+// Threads      used by the thread that created it.
 #pragma once
 
 #include "client/viewer/panes/window_renderer.h"
@@ -28,17 +28,17 @@ class Screen {
     /// Throws std::runtime_error if the window cannot be opened.
     explicit Screen(const Options& options);
 
-    /// Takes the next event and passes it to the widgets.
+    /// Removes the next event from the queue and passes it to the widgets. Returns false if there is no event.
     bool poll(sf::Event& event);
 
-    /// A frame of the window's current size, for drawing at this time.
+    /// The data for drawing a frame at this time, in the window's current size.
     WindowRenderer::Frame frame(Clock::time_point now) const;
 
     /// Draws and shows a frame, runs the next step of the script, and waits until the next frame is due.
     ///
-    /// world   null: the start screen is shown
-    /// draw    draws the frame; called again for a screenshot
-    /// Throws std::runtime_error, with the line, if a step of the script fails.
+    /// world   the viewed world; null while the start screen is shown
+    /// draw    draws the frame; is called again if the script takes a screenshot
+    /// Throws std::runtime_error with the script line if a step of the script fails.
     void show(const ViewedWorld* world, const WindowRenderer::Frame& frame, const std::function<void()>& draw);
 
     sf::Window& window() { return window_; }
@@ -49,11 +49,11 @@ class Screen {
     void advance_script(ScriptHost& host, Clock::time_point now);
 
     sf::Window window_;
-    WindowRenderer renderer_; // after window_, whose OpenGL context it needs
+    WindowRenderer renderer_; // declared after window_, because it needs the OpenGL context of the window
     Script script_;
     std::string script_path_;
     std::deque<sf::Event> script_events_;
-    unsigned settled_count_ = 0; // frames since the last event of the script
+    unsigned settled_count_ = 0; // frames since the script's last event was processed
 };
 
 } // namespace evod::viewer

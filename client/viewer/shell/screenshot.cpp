@@ -20,9 +20,9 @@ namespace evod::viewer {
 namespace {
 
 constexpr double screenshot_rate_hz =
-    60; // of snapshots; high, so that the tick of the screenshot is close to the wanted one
+    60; // snapshots per second; high, so that the screenshot is taken close to the requested tick
 
-/// Throws if the snapshot will never arrive.
+/// Throws std::runtime_error if no snapshot of `tick` or a later tick can arrive.
 void check_reachable(const ViewedWorld& world, std::uint64_t tick) {
     check_reachable(world);
     if (world.feed.control().state() == evod::v1::RUN_STATE_TERMINATED && world.feed.control().tick() < tick) {
@@ -37,11 +37,11 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};
-    const double scale = options.scale.value_or(1); // not shown on a display
+    const double scale = options.scale.value_or(1); // independent of any display
     WindowRenderer renderer{scale};
     Panes panes{wanted_of(options, screenshot_rate_hz), options.beside};
     bool reported = false;
-    const auto late = [&]() -> const ViewedWorld* { // a world whose snapshot has not arrived
+    const auto late = [&]() -> const ViewedWorld* { // returns a world whose snapshot has not arrived; null: none
         const bool all = all_have_snapshots(panes);
         for (std::size_t i = 0; i < panes.size(); ++i) {
             for (const Tile& tile : panes[i].tiles()) {

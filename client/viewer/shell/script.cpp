@@ -29,7 +29,7 @@ std::string in_quotes(std::string_view text) {
     return "\"" + std::string{text} + "\"";
 }
 
-/// "a, b, c".
+/// The names as a list: "a, b, c".
 std::string in_order(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) {
@@ -40,7 +40,7 @@ std::string in_order(const std::vector<std::string>& names) {
 
 // ---- words -----------------------------------------------------------------------------------------------------
 
-/// The words of a line, without quotes. An error if a quote is not closed.
+/// Splits a line into words and removes the quotes. Returns an error if a quote is not closed.
 core::Result<std::vector<std::string>> words_of(std::string_view line) {
     std::vector<std::string> words;
     for (std::size_t i = 0; i < line.size();) {
@@ -100,11 +100,11 @@ constexpr KeyName key_names[] = {
 
 struct Chord {
     Key::Key key = Key::Unknown;
-    sf::Uint32 sign = 0; // instead of a key
+    sf::Uint32 sign = 0; // a typed character; if set, `key` is unused
     bool control = false, shift = false, alt = false;
 };
 
-/// Parses "F4", "Ctrl+A", "+"; nullopt if there is no such key.
+/// Parses a key combination such as "F4", "Ctrl+A" or "+". Returns nullopt if there is no such key.
 std::optional<Chord> parse_chord(std::string_view text) {
     Chord chord;
     const auto take = [&](std::string_view modifier) {
@@ -193,7 +193,7 @@ Script::Act type_act(std::string text) {
 
 // ---- mouse -----------------------------------------------------------------------------------------------------
 
-/// Moves the mouse to a widget; false if the widget is not on the screen.
+/// Moves the mouse to a widget. Returns false if the widget is not on the screen.
 bool move_to(Host& host, const std::string& widget) {
     const auto place = host.find(widget);
     if (place) {
@@ -205,7 +205,7 @@ bool move_to(Host& host, const std::string& widget) {
     return place.has_value();
 }
 
-/// Presses and releases the left button on a widget; false if the widget is not on the screen.
+/// Presses and releases the left button on a widget. Returns false if the widget is not on the screen.
 bool click_on(Host& host, const std::string& widget, bool with_control) {
     const auto place = host.find(widget);
     if (!place) {
@@ -227,16 +227,19 @@ bool click_on(Host& host, const std::string& widget, bool with_control) {
     return true;
 }
 
-/// Moves the mouse there, and clicks in a second step, after a frame has shown the mouse there.
+/// Clicks on a widget in two steps: the first moves the mouse there, the second clicks. One frame is drawn between
+/// them.
 Acts click_acts(const std::string& widget) {
     return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
             [widget](Host& host) -> core::Result<bool> { return click_on(host, widget, false); }};
 }
 
-/// Replaces the text of a field; opens a drop-down and clicks on the choice with this text.
+/// Sets the value of a widget: replaces the text of a field, or opens a drop-down and clicks on the choice with this
+/// text.
 Acts set_acts(const std::string& widget, const std::string& text) {
     const std::string choice = widget + ": " + text;
-    // The kind of widget is looked up at the click: a choice may remove the drop-down from the screen.
+    // The click determines whether the widget is a drop-down. It must not be determined later, because a choice may
+    // remove the drop-down from the screen.
     const auto is_drop_down = std::make_shared<bool>(false);
     return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
             [widget, is_drop_down](Host& host) -> core::Result<bool> {
@@ -289,9 +292,9 @@ std::string allowed_states() {
 
 struct Condition {
     std::string_view name;
-    std::string_view argument; // empty: none
+    std::string_view argument; // empty: the condition has no argument
     std::string_view meaning;
-    /// Returns what is allowed if the word is invalid; else an empty text.
+    /// Checks an argument. Returns what is allowed if the argument is invalid; otherwise returns an empty text.
     std::string (*fault)(const std::string& word);
     bool (*holds)(const Host& host, const std::string& word);
 };
@@ -342,11 +345,11 @@ std::string condition_names() {
 // ---- verbs -----------------------------------------------------------------------------------------------------
 
 struct ScriptLine {
-    std::vector<std::string> words; // the first is the verb
-    double timeout_s;               // of this and the next lines; a verb may change it
+    std::vector<std::string> words; // the first word is the verb
+    double timeout_s;               // time limit for this line and the following ones; a verb may change it
 };
 
-/// An error about a word of a line. `number` counts from 1.
+/// An error about one word of a line. `number` is the position of the word, from 1.
 core::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
     return usage("word " + std::to_string(number) + ": got " + in_quotes(line.words[number - 1]) + ", allowed " +
                  allowed);
@@ -354,9 +357,9 @@ core::Error bad_word(const ScriptLine& line, std::size_t number, const std::stri
 
 struct Verb {
     std::string_view name;
-    std::string_view words; // the arguments, in capitals
+    std::string_view words; // the arguments of the verb, in capitals
     std::string_view meaning;
-    std::size_t words_min, words_max; // the verb not counted
+    std::size_t words_min, words_max; // number of words after the verb
     core::Result<Acts> (*parse)(ScriptLine& line);
 };
 

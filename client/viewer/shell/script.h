@@ -1,4 +1,5 @@
-// Script: actions of a person at the window as a text, one per line, for tests and for reproducible screenshots.
+// Script: actions of a user in the window, as text with one action per line. Used for tests and reproducible
+// screenshots.
 //
 //     # changes a parameter and saves the window in generation 2
 //     wait connected
@@ -10,10 +11,11 @@
 //     screenshot out.png
 //     quit
 //
-// A line is a verb and its arguments; an argument with spaces is put in double quotes. A line waits until it can be
-// carried out: a click waits for its widget to be on the screen. script.cpp has tables of the verbs and conditions.
+// A line contains a verb and its arguments. An argument that contains spaces is put in double quotes. Each line waits
+// until it can be executed; a click, for example, waits until its widget is on the screen. script.cpp contains the
+// tables of verbs and conditions.
 //
-// Owner        Screen, which carries out one step at a time, after the effect of the step before has been drawn.
+// Owner        Screen, which executes one step at a time, after the effect of the previous step has been drawn.
 // Threads      none.
 #pragma once
 
@@ -38,44 +40,45 @@ class Script {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// The window as a script acts on it.
+    /// The interface through which a script acts on the window.
     class Host {
       public:
         virtual ~Host() = default;
-        /// Adds an event, as if a person had caused it.
+        /// Adds an event, as if the user had caused it.
         virtual void send(const sf::Event& event) = 0;
-        /// The centre of a widget, by the name given to widgets::mark().
+        /// The centre of the widget that was registered under this name by widgets::mark(); nullopt if it is not on the
+        /// screen.
         virtual std::optional<Point> find(const std::string& widget) const = 0;
-        /// The choices of a drop-down, by its name; each choice is marked "drop-down: choice". Empty while it is closed;
-        /// null if the widget is not a drop-down.
+        /// The choices of the drop-down with this name. Each choice is registered as "drop-down: choice". Empty while
+        /// the drop-down is closed; null if the widget is not a drop-down.
         virtual const std::vector<std::string>* choices(const std::string& widget) const = 0;
-        /// Null while the start screen is shown.
+        /// The viewed world; null while the start screen is shown.
         virtual const ViewedWorld* world() const = 0;
-        /// Saves the window as PNG. Returns why it could not, or an empty text.
+        /// Saves the window as a PNG file. Returns an error message; empty on success.
         virtual std::string save(const std::string& path) = 0;
         virtual void close() = 0;
     };
 
-    /// An error contains line and word: '3: word 2: got "generaton", allowed …'.
+    /// Parses a script. An error contains the line and the word: '3: word 2: got "generaton", allowed …'.
     static core::Result<Script> parse(std::string_view text);
 
     bool done() const { return steps_.empty(); }
 
-    /// Carries out the next step, or waits until it can be. An error contains the line of a step that failed or took too
-    /// long.
+    /// Executes the next step if possible, otherwise returns to wait for it. Returns an error with the script line if a
+    /// step has failed or exceeded its time limit.
     core::Result<void> advance(Host& host, Clock::time_point now);
 
-    /// The verbs and conditions with their arguments and meaning, one per line, for the documentation.
+    /// The verbs and conditions with their arguments and meanings, one per line, for the documentation.
     static std::string reference();
 
-    /// Returns true when done, false if it has to wait.
+    /// Part of a step. Returns true when it is done, false if it must be called again.
     using Act = std::function<core::Result<bool>(Host&)>;
 
   private:
     struct Step {
         unsigned line;
-        std::string text;      // the whole line
-        std::string drop_down; // the widget that is set; empty: none
+        std::string text;      // the complete line
+        std::string drop_down; // the drop-down that the line sets; empty: none
         std::chrono::duration<double> timeout;
         Act act;
     };

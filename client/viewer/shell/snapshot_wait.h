@@ -1,4 +1,4 @@
-// Waiting for the snapshots of panes that are drawn without a window, and the texts that report its progress.
+// Snapshot wait: waits for the snapshots of panes that are drawn without a window, and writes the progress messages.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
@@ -10,19 +10,20 @@
 
 namespace evod::viewer {
 
-/// How often to check for new snapshots.
+/// Interval between two checks for new snapshots.
 constexpr std::chrono::milliseconds poll_interval{2};
 
-/// The state of the connection or the world, for the message of a timeout: "the world "default" is paused at tick 12".
+/// Why no snapshot has arrived yet, for a timeout message: "the world "default" is paused at tick 12".
 std::string progress_text(const ViewedWorld& world);
 
-/// "the world "default"".
+/// The world's name in quotes: "the world "default"".
 std::string quoted(const std::string& world);
 
-/// Throws std::runtime_error, with one sentence, if no snapshot will ever arrive.
+/// Throws std::runtime_error, with one sentence, if no snapshot can ever arrive.
 void check_reachable(const ViewedWorld& world);
 
-/// Takes in what has arrived. Returns whether every pane has a snapshot of each island it shows, and all its answers.
+/// Processes everything that was received since the last call. Returns whether every pane has received an answer to all
+/// its requests and a snapshot of each island that it shows.
 bool all_have_snapshots(Panes& panes);
 
 } // namespace evod::viewer

@@ -135,7 +135,7 @@ void StartScreen::build_recent() {
     for (const std::string& address : recent_.addresses()) {
         if (ImGui::Selectable(address.c_str(), address == address_.data(), ImGuiSelectableFlags_AllowDoubleClick)) {
             if (address != address_.data()) {
-                put(token_, ""); // the token is for the other server
+                put(token_, ""); // the token was for another server
             }
             put(address_, address);
             if (ImGui::IsMouseDoubleClicked(0)) {

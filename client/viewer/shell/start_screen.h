@@ -1,6 +1,6 @@
-// StartScreen: asks for the server to connect to: recent servers, an address, a token, TLS.
+// StartScreen: asks the user for the server to connect to: a recent server or an address, a token, and TLS.
 //
-// Tokens stay in this process: the screen shows them as dots, and no file contains them.
+// Tokens stay in this process: the screen shows dots in place of a token, and no file contains it.
 //
 // Owner        run().
 // Threads      used by the thread that draws.
@@ -17,30 +17,30 @@ namespace evod::viewer {
 
 class StartScreen {
   public:
-    /// initial  the first content of the fields
+    /// initial  the initial contents of the fields
     StartScreen(Screen& screen, const core::Options& initial);
 
-    /// Returns when a person has chosen a server; nullopt if the window was closed.
+    /// Shows the screen until the user has chosen a server. Returns nullopt if the user closed the window.
     std::optional<core::Options> run();
 
-    /// Sets the problem that the screen shows: why there is no connection. Empty: a person opened the screen.
+    /// Sets the reason why there is no connection, which the screen shows. Empty: the user opened the screen.
     void set_reason(std::string reason) { reason_ = std::move(reason); }
 
-    /// Adds a server to the recent ones.
+    /// Adds a server to the list of recent servers.
     void remember(const core::Endpoint& server);
 
   private:
     void build(const Gui& gui);
     void build_recent();
     bool build_fields(const Gui& gui);
-    /// Chooses the server in the fields, or sets the problem with them.
+    /// Chooses the server that the fields describe. If a field is invalid, sets the reason that the screen shows.
     void choose();
 
     template <std::size_t size>
     using Field = std::array<char, size>;
 
     Screen& screen_;
-    core::Options options_; // with what the fields do not contain
+    core::Options options_; // includes the options for which there is no field
     RecentServers recent_;
     Field<300> address_{};
     Field<4096> token_{};

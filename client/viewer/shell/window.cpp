@@ -153,7 +153,7 @@ void Window::close_front() {
         return;
     } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {
         window_.close();
-    } else { // a first Esc may be one press too many
+    } else { // the user may have pressed Esc once too often
         asked_to_quit_ = now_;
         renderer_.overlay().notice("Esc again quits; the worlds continue", now_);
     }
@@ -184,7 +184,7 @@ void Window::save_screenshot() {
     name += ".png";
     const std::string path = std::filesystem::absolute(name).string();
     try {
-        // Without interpolation: the positions are those of the tick in the name.
+        // Draw without interpolation, so that the positions are those of the tick in the file name.
         write_file(path, png_of(renderer_.capture(panes_, screen_.frame(now_))));
         renderer_.overlay().notice("Saved " + path, now_);
     } catch (const std::runtime_error& error) {

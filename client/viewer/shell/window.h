@@ -1,7 +1,7 @@
-// Window: shows worlds until it is closed, and carries out the keys of a person.
+// Window: shows worlds until the user closes it, and performs the actions of the user's keys.
 //
 // Owner        run().
-// Threads      used by the thread that draws; the connection of each world has its own.
+// Threads      used by the thread that draws; the connection of each world has its own thread.
 #pragma once
 
 #include "client/viewer/panes/input.h"
@@ -17,16 +17,16 @@ namespace evod::viewer {
 class Window {
   public:
     struct Ending {
-        bool to_start_screen = false; // else evoview ends
-        std::string reason;           // why there is no connection; empty: a person chose the start screen
+        bool to_start_screen = false; // return to the start screen; false: evoview ends
+        std::string reason;           // why there is no connection; empty: the user chose to return
     };
 
     Window(Screen& screen, const Options& options);
 
-    /// Returns when the window is closed or left for the start screen.
+    /// Shows worlds until the user closes the window or the start screen is to be shown.
     ///
-    /// must_connect  return, with the reason, if the first attempt to connect fails; else retry
-    /// connected     called when the first connection is made
+    /// must_connect  if the first attempt to connect fails, return with the reason; false: retry
+    /// connected     is called when the first connection is established
     Ending run(bool must_connect, const std::function<void()>& connected);
 
   private:
@@ -42,7 +42,7 @@ class Window {
     Panes panes_;
     Input input_;
     core::WorldView::Clock::time_point now_{};
-    core::WorldView::Clock::time_point asked_to_quit_{}; // the next Esc quits, for a while
+    core::WorldView::Clock::time_point asked_to_quit_{}; // time of the first Esc; a second one soon after it quits
     bool to_start_screen_ = false;
 };
 

@@ -10,10 +10,10 @@
 
 namespace evod::viewer {
 
-/// Replaces spaces by line breaks so that no line is wider than `width_max`. Breaks a word only if it is wider than a
-/// line; numbers with commas and points stay whole.
+/// Replaces spaces by line breaks so that no line is wider than `width_max`. Breaks a word only if the word alone is
+/// wider than a line. Numbers that contain commas or points stay whole.
 ///
-/// width_of  returns the width of a text in one line
+/// width_of  returns the width of a text on one line
 std::string in_lines(std::string_view text, float width_max, const std::function<float(std::string_view)>& width_of);
 
 } // namespace evod::viewer

@@ -1,4 +1,4 @@
-// The notices that events of a world give to the person at the window.
+// Event texts: the notices that the window shows for events of a world.
 //
 // Threads      none; pure functions.
 #pragma once
@@ -9,7 +9,8 @@
 
 namespace evod::viewer {
 
-/// One sentence without a full stop: "evoctl 127.0.0.1 changed mutation_chance"; empty for events without a notice.
+/// The notice for an event, one sentence without a full stop: "evoctl 127.0.0.1 changed mutation_chance". Empty for
+/// events that have no notice.
 std::string event_text(const evod::v1::Event& event);
 
 } // namespace evod::viewer

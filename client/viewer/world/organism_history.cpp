@@ -7,7 +7,7 @@ namespace evod::viewer {
 void OrganismHistory::add(const codec::DecodedSnapshot& snapshot) {
     if (snapshot.about.generation() != generation_) {
         ended_ = true;
-        // Only the next generation contains its children.
+        // The organism's children are only in the next generation.
         too_late_ = too_late_ || snapshot.about.generation() != generation_ + 1;
         return;
     }

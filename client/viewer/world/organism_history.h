@@ -1,4 +1,5 @@
-// OrganismHistory: what is known of one organism since it was selected: its health over time, its death, its children.
+// OrganismHistory: the data about one organism that were received since it was selected: its health over time, its
+// death and its children.
 //
 // Owner        IslandView.
 // Threads      none; used by the thread that draws.
@@ -16,7 +17,7 @@ namespace evod::viewer {
 
 class OrganismHistory {
   public:
-    static constexpr std::size_t points_max = 1024; // when full, every second point is dropped
+    static constexpr std::size_t points_max = 1024; // when reached, every second point is removed
 
     struct Health {
         double s = 0; // simulated seconds since the start of the run
@@ -25,29 +26,31 @@ class OrganismHistory {
     /// A child in the next generation.
     struct Child {
         std::uint32_t id = 0;
-        std::optional<std::uint32_t> other_parent{}; // nullopt: it is the only parent
-        bool same_genes = false;                     // an unchanged copy
+        std::optional<std::uint32_t> other_parent{}; // nullopt: the child has only one parent
+        bool same_genes = false;                     // the child is an unchanged copy
     };
 
     OrganismHistory(std::uint32_t id, std::uint64_t generation) : id_{id}, generation_{generation} {}
 
-    /// Adds a point of health from a snapshot of its island. A snapshot of another generation ends the history.
+    /// Adds a point of health from a snapshot of the organism's island. A snapshot of another generation ends the
+    /// history.
     void add(const codec::DecodedSnapshot& snapshot);
-    /// Takes over the server's description, if it is of this id and generation: ids repeat in every generation.
+    /// Stores the server's description if it is about this organism. Both id and generation must match, because every
+    /// generation uses the same ids.
     void add(const evod::v1::OrganismInfo& info);
-    /// Takes the ranges of the genes from its own generation, and the children from the next one.
+    /// Reads a population: the ranges of the genes from the organism's own generation, the children from the next one.
     void add(const Population& population);
 
     std::uint32_t id() const { return id_; }
     std::uint64_t generation() const { return generation_; }
-    const std::vector<Health>& health() const { return health_; } // rising in time
-    /// The server's newest description; nullopt before the first.
+    const std::vector<Health>& health() const { return health_; } // ordered by time
+    /// The newest description by the server; nullopt before the first one.
     const std::optional<evod::v1::OrganismInfo>& info() const { return info_; }
     bool dead() const { return info_ && !info_->alive(); }
     bool ended() const { return ended_; } // whether its generation has ended
-    /// Of its generation, by gene; empty until known.
+    /// The range of each gene in the organism's generation; empty until the population has been received.
     const std::vector<Population::Range>& ranges() const { return ranges_; }
-    /// Nullopt until known.
+    /// The children; nullopt until the next generation's population has been received.
     const std::optional<std::vector<Child>>& children() const { return children_; }
     bool waits_for_children() const { return ended_ && !children_ && !too_late_; }
 

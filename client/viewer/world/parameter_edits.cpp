@@ -16,10 +16,10 @@ namespace {
 using evod::v1::ParameterDescription;
 using evod::v1::ParameterValue;
 
-constexpr double decades_min = 100; // ratio of max to min above which a slider is logarithmic
+constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
 constexpr std::size_t transactions_kept = 100;
 
-// The first parameter of each topic, in the order of the registry.
+// A group of parameters and its first parameter. Groups are in the order of the registry.
 struct Topic {
     std::string_view first, title;
 };
@@ -196,7 +196,7 @@ void ParameterEdits::take(const evod::v1::ParameterState& reported) {
 
 void ParameterEdits::update(const evod::v1::ParameterSet& set) {
     if (set.revision() < revision_) {
-        return; // older than the set known
+        return; // older than the known set
     }
     for (const evod::v1::ParameterState& state : set.parameters()) {
         take(state);
@@ -206,7 +206,7 @@ void ParameterEdits::update(const evod::v1::ParameterSet& set) {
 
 bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
     if (changed.revision() <= revision_) {
-        return true; // contained in the set known
+        return true; // the known set already contains this change
     }
     for (const evod::v1::ParameterState& state : changed.changed()) {
         take(state);
@@ -306,7 +306,7 @@ std::optional<evod::v1::Request> ParameterEdits::send_back(const std::string& wo
         from.pop_back();
         if (!changes.empty()) {
             return send(world, kind, std::move(changes));
-        } // other clients have changed all of it since
+        } // other clients have changed all these values since
     }
     return std::nullopt;
 }
@@ -324,7 +324,7 @@ void ParameterEdits::take_done() {
         State& state = states_[change.parameter];
         state.changed_by.clear();
         if (state.edit && same(*state.edit, change.after)) {
-            state.edit.reset(); // else it was edited again meanwhile
+            state.edit.reset(); // otherwise the user has edited the value again meanwhile
         }
     }
     if (sent_.kind == Kind::Apply) {
@@ -369,7 +369,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     } else {
         problem_ = "No answer arrived: the change may or may not have been made";
     }
-    if (!done && sent_.kind != Kind::Apply) { // it can still be undone, or redone
+    if (!done && sent_.kind != Kind::Apply) { // keep the transaction, so that the user can undo or redo it again
         for (Change& change : sent_.changes) {
             std::swap(change.before, change.after);
         }

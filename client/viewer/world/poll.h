@@ -1,9 +1,9 @@
-// Poll: sends one request to the server again and again, one at a time, and drops answers that are out of date.
+// Poll: sends requests of one kind to the server at intervals, one at a time, and drops outdated answers.
 //
-// An answer is dropped if another world or island is shown meanwhile, if the poll was reset or has sent another request,
-// or if the poll was destroyed. A request without an answer is sent again after `answer_timeout`.
+// An answer is dropped in these cases: another world or island is shown meanwhile; the poll was reset or has sent
+// another request; the poll was destroyed. A request without an answer is sent again after `answer_timeout`.
 //
-// Owner        a panel, or the IslandView of a pane; it may be destroyed before the answer arrives.
+// Owner        a panel, or the IslandView of a pane; the Poll may be destroyed before the answer arrives.
 // Threads      none; used by the thread that draws.
 #pragma once
 
@@ -21,25 +21,26 @@ namespace evod::viewer {
 class Poll {
   public:
     using Clock = core::WorldView::Clock;
-    /// Null: the request was refused or not answered; problem() says why. May send the next request, or delay it.
+    /// Receives the answer. Null: the request was refused or not answered; problem() contains the reason. A handler may
+    /// send the next request or delay it.
     using Handler = std::function<void(const evod::v1::Response*)>;
 
     static constexpr std::chrono::seconds after_refusal{2};
     static constexpr std::chrono::seconds answer_timeout{15}; // longer than any answer takes
 
-    /// interval  from an answer until the next request.
+    /// interval  time from an answer until the next request is due.
     explicit Poll(Clock::duration interval = {}) : interval_{interval} {}
     Poll(Poll&&) = default;
     Poll& operator=(Poll&&) = default;
 
-    /// Whether a request may be sent now: none is pending, and the interval is over. If another world or island is shown
-    /// than at the last request, it may be sent at once, and the pending request is forgotten.
+    /// Whether a request may be sent now: the interval is over, and no request is pending. If another world or island
+    /// is shown than at the last request, a request may be sent at once, and the pending one is forgotten.
     bool due(const ViewedWorld& world, Clock::time_point now);
-    /// Sends a request. The answer to the one before is dropped.
+    /// Sends a request. The answer to any earlier request will be dropped.
     void send(ViewedWorld& world, evod::v1::Request request, Clock::time_point now, Handler handler);
     bool pending() const { return state_->sent.has_value(); }
 
-    /// Makes the next request due as soon as none is pending: the last answer is out of date.
+    /// Makes the next request due as soon as no request is pending. Call when the last answer is outdated.
     void hurry() { state_->hurried = true; }
     /// Makes the next request due after `delay`.
     void wait(Clock::duration delay);
@@ -48,14 +49,14 @@ class Poll {
 
     /// Why the last request was refused or not answered, as a sentence; empty if it was answered.
     const std::string& problem() const { return state_->problem; }
-    /// Whether the server does not support the request: sending it again is of no use.
+    /// Whether the server does not support this request. Sending it again would be useless.
     bool is_unsupported() const { return state_->unsupported; }
 
   private:
     struct State {
-        std::uint64_t number = 0;                // of the last request; a reset increments it, too
-        std::uint64_t place = 0;                 // that the request was about (WorldFeed::place_number)
-        std::optional<Clock::time_point> sent{}; // while an answer is pending
+        std::uint64_t number = 0;                // number of the last request; reset() also increments it
+        std::uint64_t place = 0;                 // the place that the request is about (WorldFeed::place_number)
+        std::optional<Clock::time_point> sent{}; // nullopt: no answer is pending
         Clock::time_point next{};
         bool hurried = false;
         std::string problem{};
@@ -63,7 +64,7 @@ class Poll {
     };
 
     Clock::duration interval_;
-    std::shared_ptr<State> state_ = std::make_shared<State>(); // handlers hold it weakly: gone with the poll
+    std::shared_ptr<State> state_ = std::make_shared<State>(); // weak in handlers, so it ends with the Poll
 };
 
 } // namespace evod::viewer

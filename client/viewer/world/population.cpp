@@ -71,7 +71,7 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
     if (page.targets().size() != 8 * count) {
         return wrong("targets", page.targets().size(), 8 * count);
     }
-    // All pages contain parents and founders, or none does.
+    // Either all pages of a population contain parents and founders, or none does.
     const bool parents_expected = begun_ ? has_parents() : !page.parents().empty();
     if (page.parents().size() != (parents_expected ? 8 * count : 0)) {
         return wrong("parents", page.parents().size(), parents_expected ? 8 * count : 0);

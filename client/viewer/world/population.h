@@ -1,6 +1,6 @@
-// Population: genes, parents and behaviour of one generation on one island, as columns by id.
+// Population: the genes, parents and behaviour of one generation on one island, in columns indexed by organism id.
 //
-// It is assembled from the pages that answer GetPopulation, and validates each of them.
+// It is assembled from the pages that the server sends in answer to GetPopulation. Each page is validated.
 //
 // Owner        PopulationPoll.
 // Threads      none; used by the thread that draws.
@@ -24,23 +24,24 @@ class Population {
     struct Range {
         float min = 0, mean = 0, max = 0;
     };
-    /// The descendants of one organism of the first generation.
+    /// All descendants of one organism of the first generation.
     struct Family {
         std::uint32_t founder = 0;
-        std::size_t size = 0; // born in this generation
+        std::size_t size = 0; // number of descendants born in this generation
     };
     static constexpr std::size_t shown_families_max = 7;
-    static constexpr std::uint8_t no_family = shown_families_max; // a smaller family, or unknown
+    static constexpr std::uint8_t no_family = shown_families_max; // a smaller or an unknown family
 
-    /// gene_count  of the world; the pages do not contain it.
+    /// gene_count  number of genes of the world; the pages do not contain it.
     explicit Population(std::size_t gene_count = 0) : genes_(gene_count) {}
 
-    /// Adds the page that begins at next().
+    /// Adds a page. The page must begin at the id next().
     ///
-    /// returns  what is wrong with it, as a sentence without a full stop; then nothing was added.
+    /// returns  nullopt on success; otherwise the fault of the page, as a sentence without a full stop, and nothing is
+    ///          added.
     std::optional<std::string> add(const evod::v1::Population& page);
 
-    /// The id at which the next page has to begin.
+    /// The id at which the next page must begin.
     std::uint32_t next() const { return static_cast<std::uint32_t>(size()); }
     bool complete() const { return begun_ && size() == organism_count_; }
 
@@ -48,7 +49,7 @@ class Population {
     std::uint64_t generation_tick() const { return generation_tick_; }
     std::size_t size() const { return choices_.size(); }
 
-    // By id, below size().
+    // The following functions take an id less than size().
     std::size_t gene_count() const { return genes_.size(); }
     std::span<const float> gene(std::size_t gene) const { return genes_[gene]; }
     evod::v1::Choice choice(std::uint32_t id) const { return evod::v1::Choice(choices_[id]); }
@@ -60,14 +61,15 @@ class Population {
     std::uint32_t first_parent(std::uint32_t id) const { return parents_[0][id]; }
     std::uint32_t second_parent(std::uint32_t id) const { return parents_[1][id]; }
 
-    // Once it is complete.
+    // The following functions require a complete population.
     Range range(std::size_t gene) const { return ranges_[gene]; }
-    /// The largest families, the largest first; ties go to the lower founder. Empty if the server sends no founders.
+    /// The largest families, by decreasing size; among equal sizes, the lower founder comes first. Empty if the server
+    /// sends no founders.
     const std::vector<Family>& families() const { return families_; }
-    /// Index in families(), or no_family.
+    /// The family of an organism, as an index in families(), or no_family.
     std::uint8_t family(std::uint32_t id) const { return family_.empty() ? no_family : family_[id]; }
     std::size_t family_count() const { return family_count_; }
-    /// The children of an organism of the generation before, ids rising.
+    /// The children of an organism of the previous generation, ordered by id.
     std::vector<std::uint32_t> children_of(std::uint32_t parent) const;
 
   private:
@@ -77,7 +79,7 @@ class Population {
     std::uint64_t generation_ = 0, generation_tick_ = 0;
     std::size_t organism_count_ = 0, family_count_ = 0;
     std::vector<std::vector<float>> genes_;
-    std::array<std::vector<std::uint32_t>, 2> parents_; // empty in the first generation
+    std::array<std::vector<std::uint32_t>, 2> parents_; // by id; empty in the first generation
     std::vector<std::uint32_t> founders_;               // empty if the server sends none
     std::vector<std::uint8_t> choices_;
     std::array<std::vector<float>, 2> forces_, targets_;
@@ -86,12 +88,14 @@ class Population {
     std::vector<std::uint8_t> family_;
 };
 
-/// The living organisms of a population: ids, rising. Nullopt: unknown.
+/// The ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which
+/// organisms live.
 ///
-/// While its generation runs, an organism lives if it has a choice (seek, flee, wander). After the end of the generation
-/// no organism has one; then the organisms in the snapshot live, if it is of that generation and contains the whole island.
+/// While the generation runs, an organism lives if it has a choice (seek, flee, wander). After the end of the
+/// generation no organism has a choice. The organisms in the snapshot are then the living ones, provided that it is of
+/// this generation and contains the whole island.
 ///
-/// snapshot  the newest of its island and run; null: there is none
+/// snapshot  the newest snapshot of the same island and run; null: there is none
 std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* snapshot);
 
 } // namespace evod::viewer

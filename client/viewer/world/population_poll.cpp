@@ -16,7 +16,7 @@ bool PopulationPoll::update(ViewedWorld& world, const Of& of, bool wanted, Clock
     if (!poll_.due(world, now)) {
         return false;
     }
-    if (poll_.pending()) { // not answered in time
+    if (poll_.pending()) { // the request has timed out
         restart();
     }
     const bool first_page = incomplete_.next() == 0;
@@ -49,7 +49,7 @@ void PopulationPoll::take(const evod::v1::Population& page) {
         return poll_.wait(Poll::after_refusal);
     }
     if (!ended && !incomplete_.complete()) {
-        return poll_.hurry(); // the next page
+        return poll_.hurry(); // request the next page at once
     }
     if (!ended) {
         complete_ = std::move(incomplete_);

@@ -1,7 +1,8 @@
-// PopulationPoll: requests the organisms of an island page by page until the whole population of one generation is here.
+// PopulationPoll: requests the organisms of an island page by page until the whole population of one generation has
+// been received.
 //
-// If the generation ends between two pages, the poll waits and starts again from the first page. Without the wait a large
-// population of a fast world would be requested without pause, at the cost of the snapshots' bandwidth.
+// If the generation ends between two pages, the poll waits and then starts again with the first page. Without this
+// wait, a large population of a fast world would be requested continuously and use the bandwidth of the snapshots.
 //
 // Owner        the panel or IslandView that shows the population.
 // Threads      none; used by the thread that draws.
@@ -21,7 +22,7 @@ class PopulationPoll {
   public:
     using Clock = Poll::Clock;
 
-    /// Which island's population to request.
+    /// Identifies the island whose population is requested.
     struct Of {
         std::string world, run_id;
         std::uint32_t island = 0;
@@ -29,22 +30,22 @@ class PopulationPoll {
         friend bool operator==(const Of&, const Of&) = default;
     };
 
-    /// interval  at least, from a complete population until the next is requested.
+    /// interval  least time from a complete population until the next one is requested.
     explicit PopulationPoll(Clock::duration interval) : interval_{interval} {}
 
-    /// Requests the next page of a population that is incomplete, or the first page of another if `wanted`, once the
-    /// interval is over. With another `of` than before everything known is forgotten.
+    /// Sends a request when one is due: for the next page of an incomplete population or, if `wanted`, for the first
+    /// page of another population. If `of` has changed, clears all data first.
     ///
     /// returns  whether the first page was requested.
     bool update(ViewedWorld& world, const Of& of, bool wanted, Clock::time_point now);
 
-    /// The last complete population; null before the first.
+    /// The last complete population; null until one has been received.
     const Population* complete() const { return complete_ ? &*complete_ : nullptr; }
-    /// How many complete populations have arrived.
+    /// Number of complete populations received so far.
     std::uint64_t complete_count() const { return complete_count_; }
-    /// Why the population is not known, as a sentence; empty if it is known or on its way.
+    /// Why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const;
-    /// Whether the server does not support the request.
+    /// Whether the server does not support GetPopulation.
     bool is_unsupported() const { return poll_.is_unsupported(); }
 
   private:
@@ -58,7 +59,7 @@ class PopulationPoll {
     std::optional<Population> complete_;
     std::uint64_t complete_count_ = 0;
     Clock::time_point restarted_{};
-    std::string unreadable_; // what is wrong with the last page
+    std::string unreadable_; // what is wrong with the last page; empty: nothing
 };
 
 } // namespace evod::viewer

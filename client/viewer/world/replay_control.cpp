@@ -8,9 +8,9 @@ namespace evod::viewer {
 
 namespace {
 
-// The server may have to simulate from a checkpoint far before the moment.
+// A seek may take long, because the server may have to simulate from a checkpoint far before the requested tick.
 constexpr std::chrono::minutes seek_timeout{10};
-// How often the range of a replay is requested: it grows with the live world.
+// Interval between requests for the tick range of a replay, which grows while the live world runs.
 constexpr std::chrono::seconds range_interval{1};
 
 } // namespace
@@ -48,7 +48,7 @@ void ReplayControl::take_opened() {
         if (at_start) {
             open_refusal_ = refusal_of(response);
         }
-    } else if (feed_.world() != opening_of_) { // another world is shown by now
+    } else if (feed_.world() != opening_of_) { // another world is now shown
         close(response->world().name());
     } else {
         const evod::v1::WorldInfo& world = response->world();
@@ -64,7 +64,7 @@ void ReplayControl::take_opened() {
 void ReplayControl::close(const std::string& world) {
     evod::v1::Request request;
     request.mutable_close_replay()->set_world(world);
-    // The answer does not matter: the server closes the replay with the session at the latest.
+    // The answer is not needed: the server closes the replay at the end of the session anyway.
     server_.connection().send(std::move(request));
 }
 
@@ -140,7 +140,7 @@ void ReplayControl::send_seek(std::optional<evod::v1::RunMoment> to) {
         if (auto next = seeks_.answered()) {
             send_seek(std::move(next));
         } else {
-            feed_.request_statistics(); // another generation is the last one now
+            feed_.request_statistics(); // the last generation before the shown tick has changed
         }
     };
     server_.send(std::move(request), take_answer, seek_timeout);

@@ -1,7 +1,7 @@
 // ReplayControl: opens a replay of the viewed world, seeks in it, forks worlds from it, and returns to the live world.
 //
-// The server shows a replay as a world of its own beside the live one. It belongs to this session: ReplayControl opens
-// and closes it, and any role may command it.
+// The server provides a replay as a separate world beside the live one. The replay belongs to this session:
+// ReplayControl opens and closes it, and the session may command it in any role.
 //
 // Owner        ViewedWorld.
 // Threads      used by the thread that draws.
@@ -18,49 +18,55 @@
 
 namespace evod::viewer {
 
-/// Why a session with the role viewer may not command a world.
+/// The message for a session with the role viewer when it tries to command a world.
 constexpr std::string_view read_only_text = "You are connected as a viewer: read-only";
 
 class ReplayControl {
   public:
-    /// Opens the replay that `wanted` names, if it names one.
+    /// If `wanted` names a generation, opens a replay at this generation.
     ReplayControl(ServerConnection& server, WorldFeed& feed, const WantedWorld& wanted);
     ReplayControl(const ReplayControl&) = delete;
     ReplayControl& operator=(const ReplayControl&) = delete;
 
-    /// Shows a replay of the world as soon as the server has opened it, beginning at a moment.
+    /// Opens a replay of the viewed world at a moment. The replay is shown as soon as the server has opened it.
     void open(evod::v1::RunMoment at);
     void return_to_present();
-    /// Seeks another moment of the replay. During a seek only the newest of several further ones is kept.
+    /// Seeks to another moment of the replay. If several seeks are requested while one is running, only the newest of
+    /// them is kept.
     void seek(evod::v1::RunMoment to);
-    /// Seeks the first tick of the generation that is `by` after the shown one; during a seek, `by` after its target.
+    /// Seeks to the first tick of the generation that is `by` after the shown one, or after the target generation of a
+    /// running seek.
     void seek_generations(int by);
 
-    /// The range of the viewed replay, opened here or of a run file; null for a live world.
+    /// The tick range of the viewed replay, whether it was opened here or is served from a run file; null for a live
+    /// world.
     const evod::v1::Replay* info() const { return feed_.replay(); }
-    /// Whether the replay was opened here, so that return_to_present() leaves it.
+    /// Whether ReplayControl opened the replay, so that return_to_present() closes it.
     bool is_own() const { return present_.has_value(); }
-    /// Whether a run file's replay shows its last tick and can only go back. A replay of a live world grows with it.
+    /// Whether a run file's replay shows its last tick, so that it can only go back. Always false for a replay of a
+    /// live world, whose range grows.
     bool at_end() const;
-    /// The live world that return_to_present() shows; nullopt: no replay was opened here.
+    /// The live world that return_to_present() will show; nullopt if no replay was opened here.
     const std::optional<std::string>& present() const { return present_; }
-    /// Where the newest seek goes to; null if none is under way.
+    /// The target of the newest seek; null if no seek is running.
     const evod::v1::RunMoment* target() const { return seeks_.target(); }
 
-    /// Makes a new world from the moment that is shown.
+    /// Creates a world that starts from the moment shown.
     void fork(const std::string& name);
-    /// The newest fork of the viewed world, its replay or its live world; empty: none, or deleted since.
+    /// The newest world forked from the viewed world, its replay or its live world. Empty if there is none or it has
+    /// been deleted.
     const std::string& forked() const { return forked_; }
 
-    // Called by ViewedWorld.
+    // The following functions are called by ViewedWorld.
 
-    /// Whether the server has not answered open() yet.
+    /// Whether an OpenReplay request is unanswered.
     bool opening() const { return opening_.valid(); }
-    /// Why the replay that the program was started with cannot be shown, as a sentence.
+    /// Why the replay requested at the start of evoview cannot be shown, as a sentence; nullopt: no such problem.
     const std::optional<std::string>& open_refusal() const { return open_refusal_; }
-    /// Forgets what belongs to the viewed world, and closes its replay; another world will be shown.
+    /// Clears all data about the viewed world and closes its replay. Call before another world is shown.
     void leave(const std::string& next_world);
-    /// Shows the replay once the server has opened it. Requests its range once a second: it grows with the live world.
+    /// Shows the replay once the server has opened it. Requests its tick range once a second, because it grows with the
+    /// live world.
     void update(WorldFeed::Clock::time_point now);
     void apply(const evod::v1::Event& event);
 
@@ -73,11 +79,11 @@ class ReplayControl {
     ServerConnection& server_;
     WorldFeed& feed_;
     SeekQueue seeks_;
-    std::optional<std::string> present_;  // set while a replay that was opened here is shown
-    core::SubscriptionHandle own_events_; // of that replay; a subscription to all worlds excludes them
-    std::future<core::Result<evod::v1::Response>> opening_; // answers an OpenReplay
-    std::string opening_of_;                                // the world that was shown when it was sent
-    bool opening_at_start_;                                 // the program was started with this replay
+    std::optional<std::string> present_;  // the live world, while its replay is shown
+    core::SubscriptionHandle own_events_; // events of the replay, which a subscription to all worlds does not include
+    std::future<core::Result<evod::v1::Response>> opening_; // the pending answer to OpenReplay
+    std::string opening_of_;                                // the world that was viewed when OpenReplay was sent
+    bool opening_at_start_;                                 // the pending replay was requested at the start of evoview
     std::optional<std::string> open_refusal_;
     WorldFeed::Clock::time_point range_requested_{};
     std::string forked_;

@@ -25,7 +25,8 @@ void RunControl::take(const evod::v1::Speed& speed) {
 void RunControl::update(const evod::v1::SnapshotFrame& snapshot) {
     begin_run(snapshot.world(), snapshot.run_id());
     tick_ = is_replay_ ? snapshot.tick() : std::max(tick_, snapshot.tick());
-    // A snapshot older than the last answer or event is out of date, and an answer under way will be newer.
+    // A snapshot older than the last answer or event is outdated. While a request is unanswered, its answer will be
+    // newer than the snapshot.
     const bool newer = snapshot.tick() > info_.tick() || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
     if (newer && unanswered_count_ == 0) {
         state_ = snapshot.state();
@@ -37,7 +38,7 @@ void RunControl::update(const evod::v1::WorldInfo& world) {
     begin_run(world.name(), world.run_id());
     is_replay_ = world.has_replay();
     if (world.tick() < info_.tick() && !is_replay_) {
-        return; // older than the one known
+        return; // older than the known state
     }
     tick_ = is_replay_ ? world.tick() : std::max(tick_, world.tick());
     info_ = world;
@@ -87,11 +88,11 @@ std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
         return std::nullopt;
     }
     if (pausing_) {
-        held_step_ += ticks; // only the answer contains the tick at which the world stopped
+        held_step_ += ticks; // the tick at which the world stops is known only from the answer
         return std::nullopt;
     }
     if (state_ == evod::v1::RUN_STATE_RUNNING && step_target_ <= tick_) {
-        auto pause = pause_or_resume(); // without it the step would only lease the world, which runs on afterwards
+        auto pause = pause_or_resume(); // otherwise a step would lease the world, which would run on afterwards
         held_step_ = ticks;
         return pause;
     }
@@ -178,7 +179,7 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
     pausing_ = pausing_ && unanswered_count_ > 0;
     const std::uint64_t step_ticks = pausing_ ? 0 : std::exchange(held_step_, 0);
     if (response == nullptr || response->status().code() != evod::v1::CODE_UNSPECIFIED || !response->has_world()) {
-        // The command was not done, or its outcome is unknown: ask for the state.
+        // The server did not perform the command, or its outcome is unknown, so request the state.
         if (!known()) {
             return std::nullopt;
         }
@@ -188,13 +189,14 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
         return request;
     }
     const evod::v1::WorldInfo& world = response->world();
-    // The answer waits for the disk, so an event about the effect of the command may have arrived before it.
+    // The server answers only after it has written the command to disk. An event about the effect may therefore have
+    // arrived earlier.
     const bool is_older = info_.run_id() == world.run_id() && info_.tick() > world.tick() && !is_replay_;
     update(is_older ? evod::v1::WorldInfo{info_} : world);
     if (step_ticks > 0) {
         return step(step_ticks);
     }
-    // A world that was only stepped has no run to resume: then "resume" means "run".
+    // A world that was only stepped has no run to resume, so run it instead.
     return resumed && state_ == evod::v1::RUN_STATE_WAITING ? pause_or_resume() : std::nullopt;
 }
 

@@ -1,4 +1,5 @@
-// SeekQueue: which seek of a replay is sent when: one at a time, and of the waiting ones only the newest.
+// SeekQueue: decides when each seek of a replay is sent. Only one seek runs at a time; of those that wait, only the
+// newest is kept.
 //
 // Owner        ReplayControl.
 // Threads      none; used by the thread that draws.
@@ -12,13 +13,14 @@ namespace evod::viewer {
 
 class SeekQueue {
   public:
-    /// Returns the seek to send now; nullopt while another is under way. A waiting seek is replaced by a newer one.
+    /// Adds a seek. Returns the seek to send now; nullopt while another is running. A newer seek replaces one that
+    /// waits.
     std::optional<evod::v1::RunMoment> add(evod::v1::RunMoment to);
-    /// The seek under way was answered, or never will be. Returns the seek to send next.
+    /// Call when the running seek was answered or its answer will never arrive. Returns the seek to send next.
     std::optional<evod::v1::RunMoment> answered();
     void clear() { *this = SeekQueue{}; }
 
-    /// Where the newest seek goes to; null if none is under way.
+    /// The target of the newest seek; null if no seek is running.
     const evod::v1::RunMoment* target() const;
 
   private:

@@ -29,7 +29,7 @@ void ServerConnection::take_answers() {
             ++i;
             continue;
         }
-        Unanswered answered = std::move(unanswered_[i]); // the handler may send requests, or drop all answers
+        Unanswered answered = std::move(unanswered_[i]); // moved out, because the handler may change unanswered_
         unanswered_.erase(unanswered_.begin() + static_cast<std::ptrdiff_t>(i));
         answered.handler(answered.response.get());
     }

@@ -1,10 +1,10 @@
-// ServerConnection: the connection of a viewed world to its server, the requests under way on it, and the notices that
+// ServerConnection: the connection of a viewed world to its server, with the unanswered requests and the notices that
 // the window shows.
 //
-// Nothing here blocks: send() returns at once, and take_answers() calls the handlers of the answers that have arrived.
+// No function blocks. send() returns at once, and take_answers() calls the handlers of the answers that have arrived.
 //
 // Owner        ViewedWorld.
-// Threads      used by the thread that draws; core::Connection has its own.
+// Threads      used by the thread that draws; core::Connection has its own thread.
 #pragma once
 
 #include "client/core/connection.h"
@@ -26,38 +26,44 @@ class ServerConnection {
 
     explicit ServerConnection(core::Options options);
 
-    /// Sends a request. A later take_answers() calls the handler, unless drop_answers() is called before. The handler
-    /// reports refusals itself.
+    /// Sends a request. When the answer has arrived, take_answers() calls the handler, unless drop_answers() was called
+    /// in between. The handler itself must report a refusal.
     void send(evod::v1::Request request, AnswerHandler handler,
               std::chrono::milliseconds timeout = core::Connection::default_timeout);
     void take_answers();
-    /// The handlers of all requests under way will not be called.
+    /// Drops all unanswered requests: their handlers will not be called.
     void drop_answers() { unanswered_.clear(); }
-    /// Whether no request is unanswered. False until the first connection.
+    /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return connected_count_ > 0 && unanswered_.empty(); }
 
-    /// The server's welcome, once after each time that the connection was made.
+    /// The server's Welcome message, returned once after each time that a connection is established; nullopt otherwise.
     std::optional<evod::v1::Welcome> take_welcome();
     bool was_connected() const { return connected_count_ > 0; }
     core::ConnectionStatus status() const { return connection_.status(); }
     bool connected() const { return status().state == core::State::Connected; }
-    /// Why there is no connection, as a sentence; empty while connected, and before the first attempt has failed.
+    /// Why there is no connection, as a sentence. Empty while connected, and until the first attempt has failed.
     std::string problem() const;
     const core::Endpoint& endpoint() const { return options_.server; }
-    /// For subscriptions.
+    /// Gives access to the connection, for subscriptions.
     core::Connection& connection() { return connection_; }
     const core::Connection& connection() const { return connection_; }
 
-    /// Whether the role of this session forbids commands. False until the server has sent the role.
+    /// Whether the role of this session forbids commands. False until the server has reported the role.
     bool read_only() const { return role_ == evod::v1::ROLE_VIEWER; }
-    /// Whether this session may make worlds. True until the server has sent the role.
+    /// Whether this session may create worlds. True until the server has reported the role.
     bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
 
-    /// Adds a notice: one sentence, which the window shows for some seconds.
+    /// Adds a notice: a sentence that the window shows for some seconds.
     void notice(std::string text) { notices_.push_back(std::move(text)); }
+<<<<<<< HEAD
     /// Adds a notice if the request was refused or not answered. Returns whether it was accepted.
     bool report_if_refused(const core::Result<evod::v1::Response>& response);
     /// The notices since the last call, oldest first.
+=======
+    /// Adds a notice if the request was refused or not answered. Returns whether the request was accepted.
+    bool accepted_or_noticed(const core::Result<evod::v1::Response>& response);
+    /// Returns and removes the notices since the last call, oldest first.
+>>>>>>> origin/pass2_viewer
     std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
 
   private:
@@ -69,7 +75,7 @@ class ServerConnection {
     core::Options options_;
     core::Connection connection_;
     std::vector<Unanswered> unanswered_;
-    std::uint64_t connected_count_ = 0; // as of the last take_welcome()
+    std::uint64_t connected_count_ = 0; // value at the last take_welcome()
     evod::v1::Role role_ = evod::v1::ROLE_UNSPECIFIED;
     std::vector<std::string> notices_;
 };

@@ -16,7 +16,7 @@ std::string capitalised(std::string text) {
     return text;
 }
 
-/// Without the name of the request: "fork_world.name" → "name".
+/// The field name without the name of its request: "fork_world.name" → "name".
 std::string own_name(const std::string& field) {
     return field.substr(field.rfind('.') + 1);
 }
@@ -28,7 +28,7 @@ std::string speed_text(const evod::v1::Speed& speed) {
         return "max";
     }
     const double factor = speed.real_time_factor();
-    // Halvings are shown as fractions: 1/8× is easier to read than 0.125×.
+    // Speeds below 1 are shown as fractions, because 1/8× is easier to read than 0.125×.
     const double inverse = factor > 0 ? 1 / factor : 0;
     return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse) : print("%g×", factor);
 }
@@ -84,7 +84,7 @@ std::string refusal_text(const evod::v1::Status& status) {
 }
 
 std::string connection_loss_text(const core::ConnectionStatus& status, bool has_token) {
-    if (status.token_needed && !has_token) { // the server's message names options of evoctl
+    if (status.token_needed && !has_token) { // the server's message mentions options of evoctl
         return "The server requires a token: ask its administrator for one";
     }
     return status.refusal ? refusal_text(*status.refusal) : capitalised(status.reason);

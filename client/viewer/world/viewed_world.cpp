@@ -25,7 +25,7 @@ bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
             show_next_world();
         }
     }
-    // Answers before events: an event may report what happened after an answer.
+    // Process answers before events, because an event may report something that happened after an answer.
     server.take_answers();
     replay.update(now);
     feed.take_events();
@@ -39,7 +39,7 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     feed.apply(event);
     replay.apply(event);
     if (event.has_world_created() && refusal()) {
-        show(feed.world(), feed.island()); // the new world may be the missing one
+        show(feed.world(), feed.island()); // the new world may be the one that was missing
     }
     const bool of_this_world = feed.control().known() && event.world() == feed.control().world();
     if (!of_this_world && !event.has_server_going_away()) {
@@ -50,7 +50,7 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     }
     if (event.has_world_deleted() && of_this_world) {
         feed.control().forget();
-        show(event.world(), 0); // a world of this name may be created again
+        show(event.world(), 0); // a world with this name may be created again
     }
 }
 
@@ -63,7 +63,7 @@ void ViewedWorld::show(std::string world, std::uint32_t island) {
 
 void ViewedWorld::show_next_world() {
     if (!server.was_connected()) {
-        next_world_wanted_ = true; // the request is sent once the server has answered the hello
+        next_world_wanted_ = true; // the request is sent as soon as the server has answered the Hello
         return;
     }
     find_next_world([this](const std::string& world) { show(world, 0); });
@@ -86,7 +86,7 @@ void ViewedWorld::find_next_world(std::function<void(const std::string& world)> 
     });
 }
 
-/// Nullopt, and a notice, if there is none.
+/// The world after the viewed one in the server's list. If there is none, adds a notice and returns nullopt.
 std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) {
     const auto& list = worlds.worlds();
     if (list.empty()) {

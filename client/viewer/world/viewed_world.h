@@ -1,10 +1,10 @@
-// ViewedWorld: the world that a pane shows, in four parts: the connection to its server, what the server reports of it,
-// the commands to it, and its replays.
+// ViewedWorld: the world that a pane shows. It has four parts: the connection to the server, the data that the server
+// reports about the world, the commands to the world, and its replays.
 //
-// Nothing here blocks: requests are sent, and update() takes in what has arrived since the last call.
+// No function blocks. Requests are only sent, and update() processes everything received since the last call.
 //
 // Owner        a pane.
-// Threads      used by the thread that draws; core::Connection has its own.
+// Threads      used by the thread that draws; core::Connection has its own thread.
 #pragma once
 
 #include "client/viewer/world/replay_control.h"
@@ -28,28 +28,28 @@ class ViewedWorld {
     ReplayControl replay;
     WorldCommands commands;
 
-    /// Takes in answers, events and snapshots. Returns whether there is a new snapshot.
+    /// Processes the answers, events and snapshots that have arrived. Returns whether there is a new snapshot.
     bool update(WorldFeed::Clock::time_point now);
 
     void show(std::string world, std::uint32_t island);
-    /// Shows the world that comes after this one in the server's list.
+    /// Shows the world after this one in the server's list.
     void show_next_world();
-    /// Asks the server which world comes after this one. An update() calls the handler with its name; if there is none,
-    /// a notice says what to do instead.
+    /// Asks the server which world comes after this one in its list. A later update() calls the handler with the name
+    /// of that world. If there is none, the window shows a notice with a suggestion.
     void find_next_world(std::function<void(const std::string& world)> found);
 
-    /// Whether no request is unanswered. False until the first connection.
+    /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }
-    /// Why the server sends no snapshots, as a sentence; nullopt: it sends them, or has not answered yet.
+    /// Why the server sends no snapshots, as a sentence; nullopt if it sends them or has not answered yet.
     std::optional<std::string> refusal() const;
-    /// "running", "waiting – Space runs", "at the end of the replay", "no connection".
+    /// The state of the world as text: "running", "waiting – Space runs", "at the end of the replay", "no connection".
     std::string state_text() const;
 
   private:
     void take_event(const evod::v1::Event& event);
     std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds);
 
-    bool next_world_wanted_ = false; // once connected
+    bool next_world_wanted_ = false; // show the next world as soon as connected
 };
 
 } // namespace evod::viewer

@@ -18,8 +18,8 @@ void WorldCommands::send(std::optional<evod::v1::Request> request) {
     });
 }
 
-/// Makes and sends a request if the role allows commands. RunControl assumes the effect of a request when it makes it,
-/// so a forbidden request is not made.
+/// Creates and sends a request if the session's role allows commands. RunControl assumes the effect of a request as
+/// soon as it creates the request, so a forbidden request must not be created.
 template <class MakeRequest>
 void WorldCommands::command(MakeRequest make_request) {
     if (may_command()) {
@@ -29,7 +29,7 @@ void WorldCommands::command(MakeRequest make_request) {
     }
 }
 
-/// Whether the run or the replay has ended; then a notice says what to do instead.
+/// Whether the run or the replay has ended. If so, adds a notice that suggests what to do.
 bool WorldCommands::is_over() {
     const bool over = feed_.control().state() == evod::v1::RUN_STATE_TERMINATED || replay_.at_end();
     if (over) {

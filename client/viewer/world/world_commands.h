@@ -1,7 +1,7 @@
-// WorldCommands: the commands of a person at the window to the viewed world.
+// WorldCommands: sends the user's commands to the viewed world.
 //
-// A command that the session's role forbids is not sent; a notice says why. The effect of a command that was sent is
-// assumed until its answer arrives (run_control.h).
+// If the session's role forbids a command, the command is not sent, and a notice explains why. The effect of a sent
+// command is assumed until its answer arrives (run_control.h).
 //
 // Owner        ViewedWorld.
 // Threads      used by the thread that draws.
@@ -30,9 +30,10 @@ class WorldCommands {
     void at_factor(double factor);
     void reset(std::optional<std::uint64_t> seed);
 
-    /// Whether this session may command the viewed world. A viewer may command the replay that it opened itself.
+    /// Whether this session may command the viewed world. A session with the role viewer may command the replay that it
+    /// opened itself.
     bool may_command() const { return !server_.read_only() || replay_.is_own(); }
-    /// Why it may not, as a sentence without a full stop; empty if it may.
+    /// Why this session may not command the world, as a sentence without a full stop. Empty if it may.
     std::string_view read_only_reason() const { return may_command() ? "" : read_only_text; }
 
   private:

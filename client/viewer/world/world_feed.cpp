@@ -24,7 +24,7 @@ WorldFeed::WorldFeed(ServerConnection& server, const WantedWorld& wanted)
     , rate_hz_{wanted.rate_hz}
     , all_islands_{wanted.all_islands}
     , place_number_{next_place_number()} {
-    // Events of all worlds: a world that is missing now may be created later.
+    // Subscribe to the events of all worlds, because a world that does not exist yet may be created later.
     event_subscription_ = server_.connection().subscribe(evod::v1::SubscribeEvents{});
     subscribe();
 }
@@ -42,7 +42,7 @@ void WorldFeed::subscribe() {
     snapshot_subscription_ = server_.connection().subscribe(subscription);
 }
 
-/// Subscribes to densities of the whole island once a second if a view is set; else ends that subscription.
+/// If a view is set, subscribes to densities of the whole island, once a second. Otherwise ends that subscription.
 void WorldFeed::subscribe_overview() {
     if (overview_subscription_) {
         server_.connection().unsubscribe(*std::exchange(overview_subscription_, std::nullopt));
@@ -70,7 +70,7 @@ void WorldFeed::show(std::string world, std::uint32_t island) {
         control_.forget();
         gene_names_.clear();
         last_generation_.clear();
-        server_.drop_answers(); // they are about the other world
+        server_.drop_answers(); // answers about the old world are obsolete
         replay_.reset();
     }
     world_ = std::move(world);
@@ -89,7 +89,7 @@ void WorldFeed::set_view(std::optional<evod::v1::View> view) {
     streamed_view_ = std::move(view);
     if (had_view && streamed_view_) {
         server_.connection().set_view(snapshot_subscription_, *streamed_view_);
-    } else if (had_view || streamed_view_) { // a subscription has views from its start to its end, or none
+    } else if (had_view || streamed_view_) { // a subscription cannot gain or lose its view, so it must be replaced
         server_.connection().unsubscribe(snapshot_subscription_);
         subscribe();
         subscribe_overview();
@@ -112,7 +112,7 @@ void WorldFeed::cycle_island(int by) {
     if (const codec::DecodedSnapshot* shown = snapshot()) {
         const auto count = std::max<std::int64_t>(shown->about.island_count(), 1);
         choose_island(static_cast<std::uint32_t>((std::int64_t{island_} + by + count) % count));
-    } else { // the world may not have the chosen island
+    } else { // perhaps the world does not have the chosen island
         choose_island(0);
     }
 }
@@ -135,7 +135,7 @@ void WorldFeed::request_statistics(const std::string& world) {
             take_info(statistics.world());
             storage_ = statistics.world().storage();
             last_generation_.assign(statistics.last().begin(), statistics.last().end());
-        } // a refusal needs no notice: refusal() says why there are no snapshots
+        } // refused requests need no notice: refusal() explains why there are no snapshots
     });
 }
 
@@ -178,7 +178,7 @@ void WorldFeed::apply(const evod::v1::Event& event) {
         last_generation_.clear();
         break;
     case evod::v1::Event::kRunTerminated:
-        request_statistics(); // for the outcome
+        request_statistics(); // to receive the outcome of the run
         break;
     default:
         break;
@@ -193,7 +193,7 @@ bool WorldFeed::take_snapshots(Clock::time_point now) {
     auto snapshots = connection.take_snapshots(snapshot_subscription_);
     for (auto& snapshot : snapshots) {
         if (control_.known() && snapshot->about.run_id() != control_.run_id()) {
-            request_statistics(); // another run: its last generation and its genes differ
+            request_statistics(); // another run has another last generation and other genes
             gene_names_.clear();
         }
         control_.update(snapshot->about);

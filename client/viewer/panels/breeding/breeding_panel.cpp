@@ -15,10 +15,11 @@ namespace evod::viewer {
 
 namespace {
 
-// How long a breeding stays on screen at least while following a fast world, and after it was played to its end.
+// Minimum times that a breeding stays on the screen: while the panel follows a fast world, and after a breeding was
+// played to its end.
 constexpr std::chrono::milliseconds shown_min{500}, shown_after_playing{1500};
 
-/// Reserves a rectangle of the window to draw in, as wide as the window.
+/// Reserves a rectangle of the panel's window to draw in, as wide as that window.
 Sheet sheet_of(const Gui& gui, float height) {
     const Sheet sheet{*ImGui::GetWindowDrawList(),
                       gui.label(),
@@ -32,7 +33,7 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
     return number ? with_unit(*number, unit) : "–";
 }
 
-/// Observers and replays cannot hold a world.
+/// Whether the panel may hold the world: the session may command it, and it is not a replay.
 bool may_hold(const ViewedWorld& world) {
     return world.commands.may_command() && world.replay.info() == nullptr;
 }
@@ -93,7 +94,7 @@ void BreedingPanel::build(Context& context) {
     const bool here = moment.stage == BreedingStage::Picking    ? shown_->pick(moment.index) != nullptr
                       : moment.stage == BreedingStage::Breeding ? shown_->descendant(moment.index) != nullptr
                                                                 : true;
-    if (here) { // otherwise wait for the answer
+    if (here) { // otherwise playing waits until the row has arrived
         stepper_.advance(double{ImGui::GetIO().DeltaTime});
     }
     const float theory_width = std::floor(ImGui::GetContentRegionAvail().x * 0.4f);
@@ -130,7 +131,8 @@ void BreedingPanel::choose(const Context& context) {
     if (stepper_.playing()) {
         next_change_ = context.now + shown_after_playing;
     }
-    // Wait for a pending answer before following: in a fast world there is always a newer generation.
+    // Wait for a pending answer before requesting a newer generation. A fast world has always bred a newer one, so the
+    // panel would never show any.
     const bool idle = !next_ || !error_.empty();
     const bool settled = !stepper_.playing() && (stepper_.at_begin() || stepper_.at_end());
     if (follow_ && idle && settled && context.now >= next_change_) {
@@ -190,7 +192,7 @@ void BreedingPanel::show_next() {
     if (play_each_) {
         stepper_.play();
     } else if (at_end) {
-        stepper_.to_end(); // the user skipped the steps of the last one
+        stepper_.to_end(); // the user skipped the steps of the previous breeding
     }
 }
 

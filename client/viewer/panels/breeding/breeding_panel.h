@@ -1,6 +1,6 @@
-// BreedingPanel: the glass box: shows step by step how a generation was bred, beside the predictions of theory.
+// BreedingPanel: the glass box. It shows step by step how a generation was bred, beside the predictions of theory.
 //
-// While open, it requests the breeding of each new generation, or of the generation the user chose.
+// While the panel is open, it requests the breeding of each new generation, or of the generation that the user chose.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -41,10 +41,10 @@ class BreedingPanel : public Panel {
     void build_stage(const Context& context);
     void build_theory(const Gui& gui);
 
-    std::optional<BreedingRecord> shown_, next_; // next_ is shown when its first page has arrived
-    std::optional<Comparison> comparison_;       // of shown_; nullopt until all contenders have arrived
+    std::optional<BreedingRecord> shown_, next_; // next_ replaces shown_ when its first page has arrived
+    std::optional<Comparison> comparison_;       // for shown_; nullopt until all contenders have arrived
     Stepper stepper_;
-    std::string error_; // why nothing more is shown
+    std::string error_; // why no further data can be shown
     Poll poll_;
 
     std::uint64_t newest_ = 0; // the last generation that has bred; 0: none yet

@@ -6,7 +6,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// Rows requested beyond the one shown, so that playing does not wait for the server.
+/// Number of rows to request beyond the row shown, so that playing does not wait for the server.
 constexpr std::uint32_t rows_ahead = 64;
 
 template <class Rows>
@@ -40,7 +40,7 @@ std::optional<evod::v1::GetBreeding> BreedingRecord::wanted(Moment moment) const
         return std::nullopt;
     }
     bool any = false;
-    // To leave a list out of the answer, request it from its end.
+    // A request always names a first row for every list. To receive no rows of a list, it names the end of that list.
     const auto first_of = [&any](std::uint32_t have, std::uint32_t shown, std::uint32_t count) {
         if (have >= std::min({shown, count, rows_kept_max})) {
             return count;

@@ -20,7 +20,7 @@ std::string upper_first(std::string text) {
     return text;
 }
 
-/// "organism 17 (rank 3, fitness 182.4)". Users see ranks from 1, the fittest.
+/// "organism 17 (rank 3, fitness 182.4)". For users, the fittest has rank 1.
 std::string organism_text(const BreedingRecord& record, std::uint32_t organism) {
     const evod::v1::Contender* contender = record.contender(organism);
     if (contender == nullptr) {
@@ -73,7 +73,7 @@ std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
     }
     if (pick->has_tournament()) {
         text += "Tournament " + with_separators(std::uint64_t{pick->tournament()} + 1);
-        if (pick->contestants().empty()) { // too many, or the server drew the outcome directly
+        if (pick->contestants().empty()) { // there were too many contestants, or the server drew the winner directly
             return text + " is too large to show. " + upper_first(winner) + " won.";
         }
         return text + " of " +

@@ -1,4 +1,4 @@
-// Captions: one or two sentences that explain what the glass box shows at a moment.
+// Captions: one or two sentences that explain the moment that the glass box shows.
 //
 // Owner        BreedingPanel.
 // Threads      none.
@@ -10,13 +10,14 @@
 
 namespace evod::viewer {
 
-/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty at first.
+/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty until the first page
+/// has arrived.
 std::string breeding_summary(const BreedingRecord& record);
 
 /// "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …"
 std::string caption(const BreedingRecord& record, Moment moment);
 
-/// A parameter's choice as text: "stochastic universal".
+/// The value of a parameter with named choices, as text for users: "stochastic universal".
 std::string shown_choice(std::string choice);
 
 } // namespace evod::viewer

@@ -15,7 +15,7 @@ Colour parent_colour(bool second) {
     return second ? palette::second_parent : palette::first_parent;
 }
 
-/// Draws a family from top to bottom: each part begins where the one before ended.
+/// Draws a family from top to bottom. Each part begins at the lower edge of the part above it.
 class FamilyDrawing {
   public:
     FamilyDrawing(const Sheet& sheet, const evod::v1::Descendant& descendant, const Family& family)
@@ -49,7 +49,7 @@ class FamilyDrawing {
     const Family& family_;
     std::size_t count_;
     float label_width_, cell_, line_, bar_;
-    float y_; // top of the next part
+    float y_; // top edge of the next part
 };
 
 void FamilyDrawing::draw_gene(std::size_t gene, Colour colour, float value) const {
@@ -60,7 +60,7 @@ void FamilyDrawing::draw_gene(std::size_t gene, Colour colour, float value) cons
 void FamilyDrawing::draw_gene_names(const std::vector<std::string>& gene_names) {
     for (std::size_t gene = 0; gene < count_; ++gene) {
         const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
-        // The cells are narrow: two words go on two lines.
+        // The cells are narrow, so a name of two words is split into two lines.
         const std::size_t cut = name.find('_');
         sheet_.write_centred({middle_of(gene), y_ + line_ / 2}, palette::text_quiet, name.substr(0, cut));
         if (cut != std::string::npos) {
@@ -80,7 +80,8 @@ void FamilyDrawing::draw_parent(bool second, const char* role) {
     y_ += bar_ + 4;
 }
 
-/// The parents, the crossed child and the cuts across all three; of a survivor only itself.
+/// Draws the parents, the child after crossover, and the cuts across all three. For a survivor, draws only the
+/// survivor.
 void FamilyDrawing::draw_parents() {
     const bool alone = descendant_.second_genes().empty() || descendant_.kind() != evod::v1::DESCENDANT_KIND_CHILD;
     const float top = y_;
@@ -139,7 +140,7 @@ void FamilyDrawing::draw_change(const GeneChange& change, float top) const {
     }
 }
 
-/// Every gene's changes in the order in which they happened, one below the other.
+/// Draws the changes of every gene below each other, in the order in which they happened.
 void FamilyDrawing::draw_mutations() {
     if (family_.changes.empty()) {
         return;

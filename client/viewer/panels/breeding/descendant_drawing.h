@@ -1,4 +1,5 @@
-// Drawings of the next generation for the glass box: all descendants in a row, and one descendant with its parents.
+// Drawings of the next generation for the glass box: one of all descendants in a row, one of a descendant with its
+// parents.
 //
 // Owner        BreedingPanel.
 // Threads      none; called on the drawing thread.
@@ -12,12 +13,12 @@
 
 namespace evod::viewer {
 
-/// The next generation as a row of cells: elite, survivors, children. The current cell is framed.
+/// Draws the next generation as a row of cells: elite, survivors, children. The cell of `current` is framed.
 void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const std::uint32_t* current);
 
-/// Parents, cuts, child, order mutation and mutations of one descendant; takes the height it needs.
+/// Draws one descendant with its parents, cuts, crossover, order mutation and mutations, below each other.
 ///
-/// returns  its height in pixels
+/// returns  the height of the drawing in pixels
 float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
                   const std::vector<std::string>& gene_names);
 

@@ -9,7 +9,7 @@ namespace evod::viewer {
 Family family_of(const evod::v1::Descendant& descendant) {
     Family family;
     const int count = descendant.first_genes_size();
-    // A survivor has one parent, itself.
+    // The only parent of a survivor is the survivor itself.
     const bool alone = descendant.second_genes_size() == 0;
     const bool ordered = descendant.has_order_mutation();
     if (count == 0 || count > 32 || (!alone && descendant.second_genes_size() != count) ||

@@ -1,4 +1,5 @@
-// Family: how a descendant's genes were made from its parents' genes: crossover, order mutation, mutations, bounds.
+// Family: how crossover, order mutation, mutations and bounds turned the genes of the parents into those of a
+// descendant.
 //
 // Owner        none: a value.
 // Threads      none.
@@ -14,11 +15,11 @@ namespace evod::viewer {
 
 struct GeneOrigin {
     float value = 0;
-    bool from_second = false; // parent
-    std::uint32_t gene = 0;   // of the parent
+    bool from_second = false; // false: from the first parent
+    std::uint32_t gene = 0;   // index of the gene in that parent
 };
 
-/// A change of one gene by a mutation or by its bound.
+/// A change of one gene, caused by a mutation or by clamping to its bounds.
 struct GeneChange {
     evod::v1::MutationKind kind = evod::v1::MUTATION_KIND_UNSPECIFIED;
     std::uint32_t gene = 0;
@@ -26,27 +27,27 @@ struct GeneChange {
     double delta() const { return double{after} - double{before}; }
 };
 
-/// A gene value that the order mutation moved to another place of the chromosome.
+/// A gene value that the order mutation moved to another position of the chromosome.
 struct GeneMove {
     std::uint32_t from = 0, to = 0;
     friend bool operator==(const GeneMove&, const GeneMove&) = default;
 };
 
 struct Family {
-    std::vector<std::uint32_t> cuts;  // g: between gene g - 1 and gene g the child changes from one parent to the other
-    std::vector<GeneOrigin> crossed;  // after the crossover
-    std::vector<GeneMove> moves;      // of the order mutation, without the genes that stayed
-    std::vector<GeneOrigin> arranged; // after the order mutation
+    std::vector<std::uint32_t> cuts;  // after gene g - 1, the child takes its genes from the other parent
+    std::vector<GeneOrigin> crossed;  // by gene, after the crossover
+    std::vector<GeneMove> moves;      // by the order mutation; genes that stayed are not included
+    std::vector<GeneOrigin> arranged; // by gene, after the order mutation
     std::vector<GeneChange> changes;  // in the order in which they happened
-    std::vector<float> genes;         // after the changes, computed here
+    std::vector<float> genes;         // after all changes; computed here, not received
 };
 
-/// Returns a family without genes if the lists of the descendant are malformed.
+/// Computes the family of a descendant. Returns a family without genes if the lists in `descendant` are malformed.
 Family family_of(const evod::v1::Descendant& descendant);
 
-/// "creep", "reset", "bit flip", "clamped".
+/// The kind as text: "creep", "reset", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);
-/// "+7.31", "−0.4": always with a sign, four significant digits.
+/// A difference with its sign and four significant digits: "+7.31", "−0.4".
 std::string shown_delta(double delta);
 
 } // namespace evod::viewer

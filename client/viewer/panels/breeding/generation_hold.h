@@ -1,7 +1,7 @@
-// GenerationHold: stops a world after each generation, so that the user can inspect how the next one was bred.
+// GenerationHold: pauses a world after each generation, so that the user can inspect how the next one was bred.
 //
-// A world that has finished a generation waits before it breeds; the first tick of the next generation breeds it. The
-// hold therefore sends two commands: run one generation, then step one tick.
+// A world that has finished a generation waits before it breeds. The first tick of the next generation performs the
+// breeding. GenerationHold therefore sends two commands: run one generation, then step one tick.
 //
 // Owner        BreedingPanel.
 // Threads      none.
@@ -18,7 +18,7 @@ class GenerationHold {
   public:
     enum class Action { None, RunOneGeneration, RunOneTick };
 
-    /// The held run. A replay has the id of the run that it shows and a world name of its own.
+    /// Identifies the held run. A replay has the same run id as the run that it shows, but its own world name.
     struct Run {
         std::string world, id;
         friend bool operator==(const Run&, const Run&) = default;
@@ -28,15 +28,15 @@ class GenerationHold {
     void release();
     bool on() const { return run_.has_value(); }
 
-    /// Returns the command to send to the world now. The hold ends when another run is shown.
+    /// Returns the command to send to the world now. Ends the hold if another run is shown.
     ///
-    /// state     the last that the server reported
-    /// stepping  the world runs to a given tick and stops there by itself
+    /// state     the run state that the server reported last
+    /// stepping  whether the world runs to a given tick and pauses there
     Action update(const Run& shown, evod::v1::RunState state, bool stepping);
 
   private:
     std::optional<Run> run_;
-    bool limited_ = false; // the world runs one generation and has not finished it
+    bool limited_ = false; // the world runs the one generation that was requested
 };
 
 } // namespace evod::viewer

@@ -28,7 +28,7 @@ std::string tooltip_of(std::uint32_t organism, const evod::v1::Contender& conten
     return text;
 }
 
-/// One bar per rank; where there are more ranks than pixels, a bar shows the mean of neighbouring ranks.
+/// Draws one bar per rank. If there are more ranks than pixels, each bar shows the mean of neighbouring ranks.
 template <class ValueOf, class OrganismOf>
 void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, ValueOf value_of,
                OrganismOf organism_of, const BreedingRecord& record, std::span<const std::uint32_t> copies,
@@ -150,7 +150,8 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
                                ink(palette::glass_current), 2);
         }
     }
-    // In universal sampling one spin sets all pointers; in roulette each pick has its own spin.
+    // In stochastic universal sampling one spin sets all pointers; in roulette selection the wheel is spun for each
+    // pick.
     const bool all_at_once = record.choice("selection") == "stochastic_universal";
     const auto ticks = all_at_once ? static_cast<std::uint32_t>(breeding.picks_size()) : index;
     for (std::uint32_t i = 0; i < ticks && record.pick(i) != nullptr; ++i) {
@@ -271,7 +272,8 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
     sheet.write(sheet.corner, palette::text, "Copies by rank");
     sheet.write_to_the_left({sheet.end().x, sheet.corner.y}, palette::text_quiet, print("up to %.4g", most));
 
-    // Deviations are those after all picks. The axis ends at four standard errors; larger ones are drawn at its end.
+    // The deviations are computed after all picks. The axis ends at four standard errors; larger deviations are drawn
+    // at its end.
     constexpr double deviation_max = 4;
     const float lower_top = bottom + 2 * line, lower_bottom = sheet.end().y, zero = (lower_top + lower_bottom) / 2;
     const auto deviation_y = [&](double deviation) {

@@ -1,4 +1,4 @@
-// Drawings of a selection for the glass box. Each fills its sheet.
+// Drawings of a selection for the glass box. Each drawing fills its sheet.
 //
 // Owner        BreedingPanel.
 // Threads      none; called on the drawing thread.
@@ -12,23 +12,24 @@
 
 namespace evod::viewer {
 
-/// Fitness by rank, and for a scaled wheel the weights below it. A dot marks ranks that have `copies`, a pointer marks
-/// the organism of `current`.
+/// Draws fitness by rank; for a wheel with fitness scaling, also draws the weights below. Dots mark the ranks whose
+/// `copies` are not 0; a pointer marks the organism `current`.
 void draw_ranking(const Sheet& sheet, const BreedingRecord& record, const Comparison& comparison,
                   std::span<const std::uint32_t> copies, const evod::v1::Pick* current);
 
-/// The wheel with the pointer of pick `index` and small marks for the earlier picks; for universal sampling, for all.
+/// Draws the wheel with the pointer of pick `index` and small marks for earlier picks. For universal sampling, marks
+/// all picks.
 void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// The contestants of a tournament with its winners marked.
+/// Draws the contestants of the tournament of pick `index` and marks its winners.
 void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// The picks up to `index` in order, coloured by rank.
+/// Draws the picks up to `index` in order, coloured by rank.
 void draw_picks(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index);
 
-/// Copies of each rank with the expected copies; below them the deviations in standard errors.
+/// Draws the observed and the expected copies of each rank; below them, the deviations in standard errors.
 ///
-/// expected_share  the fraction of the picks that `copies` counts, 0 to 1.
+/// expected_share  the fraction of all picks that `copies` includes, 0 to 1.
 void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<const std::uint32_t> copies,
                  double expected_share);
 

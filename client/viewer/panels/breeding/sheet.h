@@ -1,6 +1,6 @@
-// Sheet: a rectangle of the window that one drawing of the glass box fills.
+// Sheet: a rectangle of the panel's window for one drawing of the glass box.
 //
-// Owner        the function that draws; lives for one frame.
+// Owner        the function that draws; a Sheet lives for one frame.
 // Threads      none; used on the drawing thread.
 #pragma once
 

@@ -1,6 +1,6 @@
-// Stepper: which moment of a breeding the glass box shows: steps forward and back, plays, jumps.
+// Stepper: keeps the moment of a breeding that the glass box shows; steps forward and back, plays, and jumps.
 //
-// The moments are: the fitness and its scaling, each pick, each descendant, the next generation as a whole.
+// The moments are: the fitness and its scaling; each pick; each descendant; the complete next generation.
 //
 // Owner        BreedingPanel.
 // Threads      none.
@@ -14,40 +14,40 @@ enum class BreedingStage { Scaling, Picking, Breeding, Done };
 
 struct Moment {
     BreedingStage stage = BreedingStage::Scaling;
-    std::uint32_t index = 0; // of the pick or the descendant
+    std::uint32_t index = 0; // index of the pick or descendant
     friend bool operator==(const Moment&, const Moment&) = default;
 };
 
 class Stepper {
   public:
-    /// In steps per second.
+    /// Limits of the playing speed, in steps per second.
     static constexpr double speed_min = 0.25, speed_max = 200;
 
-    /// Starts another breeding at its first moment.
+    /// Loads a breeding and goes to its first moment.
     void load(std::uint32_t picks, std::uint32_t descendants);
     Moment moment() const;
 
-    std::uint32_t position() const { return position_; } // of the moment, 0 to last_position()
+    std::uint32_t position() const { return position_; } // index of the moment, 0 to last_position()
     std::uint32_t last_position() const { return picks_ + descendants_ + 1; }
     bool at_begin() const { return position_ == 0; }
     bool at_end() const { return position_ == last_position(); }
 
-    // Moves by the user; each of them stops playing.
+    // Moves by the user; each of these functions also stops playing.
     void step();
     void back();
-    void next_stage();     // to its first moment
-    void previous_stage(); // to the first moment of this stage; from there, to that of the stage before
+    void next_stage();     // goes to the first moment of the next stage
+    void previous_stage(); // goes to the first moment of this stage; if already there, of the previous stage
     void to_begin() { go_to(0); }
     void to_end() { go_to(last_position()); }
     void go_to(std::uint32_t position);
 
-    /// Plays or stops. Playing from the last moment starts at the first.
+    /// Starts or stops playing. At the last moment, playing starts from the first moment.
     void play_or_stop();
     void play();
     bool playing() const { return playing_; }
     void set_speed(double steps_per_s);
     double speed() const { return steps_per_s_; }
-    /// Moves on by the time passed while playing; stops at the last moment.
+    /// While playing, advances by this time. Playing stops at the last moment.
     void advance(double seconds);
 
   private:
@@ -58,7 +58,7 @@ class Stepper {
     std::uint32_t position_ = 0;
     bool playing_ = false;
     double steps_per_s_ = 2;
-    double due_ = 0; // fraction of a step, 0 to 1
+    double due_ = 0; // fraction of the next step that has elapsed, 0 to 1
 };
 
 } // namespace evod::viewer

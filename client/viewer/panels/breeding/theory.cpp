@@ -25,8 +25,8 @@ double density(double z) {
     return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
 }
 
-/// The z that a normal variable exceeds with probability `above`. Newton's method converges, because the logarithm of
-/// the probability is concave.
+/// The value that a standard normal variable exceeds with probability `above`. Newton's method converges because the
+/// logarithm of this probability is concave.
 double normal_above(double above) {
     if (above > 0.5) {
         return -normal_above(1 - above);
@@ -43,7 +43,8 @@ double normal_above(double above) {
     return z;
 }
 
-/// The mean of a normal variable within the quantiles of each rank, best first. The sum is 0.
+/// Divides the normal distribution into as many intervals of equal probability as there are ranks. Returns the mean
+/// within each interval, for the best rank first. The sum is 0.
 std::vector<double> normal_scores(std::size_t population) {
     std::vector<double> scores(population);
     const auto count = static_cast<double>(population);
@@ -59,7 +60,7 @@ std::vector<double> normal_scores(std::size_t population) {
     return scores;
 }
 
-/// (fitness − mean) / standard deviation; all 0 where all are equal.
+/// (fitness − mean) / standard deviation for each organism; all 0 if all fitness values are equal.
 std::vector<double> standard_scores(std::span<const double> fitness) {
     const auto count = static_cast<double>(fitness.size());
     const double mean = sum(fitness) / count;
@@ -74,7 +75,7 @@ std::vector<double> standard_scores(std::span<const double> fitness) {
     return scores;
 }
 
-/// The mean score of the copies.
+/// The mean of the scores, weighted by the copies.
 double mean_of_copies(std::span<const double> copies, std::span<const double> scores) {
     const double all = sum(copies);
     return all > 0 ? std::inner_product(copies.begin(), copies.end(), scores.begin(), 0.0) / all : 0;
@@ -82,7 +83,8 @@ double mean_of_copies(std::span<const double> copies, std::span<const double> sc
 
 // ---- standard errors: how far two breedings of the same population differ ----------------------------------------
 
-/// Of the mean score of the picked; nullopt where the picks depend on each other in a way that has no simple law.
+/// The standard error of the mean score of the picked organisms. Returns nullopt if the picks depend on each other in a
+/// way for which no simple formula exists.
 std::optional<double> error_of_intensity(const Selection& selection, const Expectation& expectation,
                                          std::span<const double> scores) {
     const auto population = static_cast<double>(scores.size());
@@ -90,7 +92,7 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     if (selection.method == Method::Truncation) {
         return 0;
     }
-    if (selection.method == Method::Random) { // full rounds pick every organism once; only the last round varies
+    if (selection.method == Method::Random) { // a full round picks each organism once; only the last one varies
         const double rest = std::fmod(picks, population);
         const double square = std::inner_product(scores.begin(), scores.end(), scores.begin(), 0.0) / population;
         return population > 1 ? std::sqrt(square * rest * (population - rest) / (population - 1)) / picks : 0;
@@ -106,8 +108,9 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     return std::sqrt(square / picks);
 }
 
-/// Of the share that is not selected. For independent picks, from the variance of the number of empty cells in large
-/// populations: Σ(q − q²) − (Σ λq)²/picks, where λ copies are expected and q is the chance of none.
+/// The standard error of the share of organisms that are not selected. For independent picks, it follows from the
+/// variance of the number of empty cells in large populations: Σ(q − q²) − (Σ λq)²/picks. λ is an organism's expected
+/// number of copies, q its probability of having none.
 std::optional<double> error_of_unpicked(const Selection& selection, const Expectation& expectation) {
     if (selection.method == Method::Truncation || selection.method == Method::Random) {
         return 0;
@@ -125,7 +128,7 @@ std::optional<double> error_of_unpicked(const Selection& selection, const Expect
     return std::sqrt(std::max(variance, 0.0)) / static_cast<double>(expectation.copies.size());
 }
 
-/// Pearson's chi-square of all copies, with its mean and standard deviation, which are exact for small numbers too.
+/// Pearson's chi-square of all copies, with its mean and standard deviation. Both are exact for small numbers too.
 /// Source: Haldane 1937, "The exact value of the moments of the distribution of χ²", Biometrika 29.
 void set_agreement(Prediction& prediction, const Selection& selection, const Expectation& expectation,
                    std::span<const std::uint32_t> copies) {
@@ -136,7 +139,7 @@ void set_agreement(Prediction& prediction, const Selection& selection, const Exp
     double square = 0, inverse = 0, ranks = 0;
     for (std::size_t rank = 0; rank < expectation.copies.size(); ++rank) {
         const double expected = expectation.copies[rank];
-        // For a rank as rare as this, rounding of its chance would outweigh the picks.
+        // Ignore ranks this rare: the rounding error of their probability would outweigh the effect of the picks.
         if (expected < 1e-6 * picks / static_cast<double>(expectation.copies.size())) {
             continue;
         }
@@ -156,9 +159,9 @@ void set_agreement(Prediction& prediction, const Selection& selection, const Exp
 
 // ---- takeover --------------------------------------------------------------------------------------------------
 
-constexpr std::uint32_t generations_max = 10'000'000; // longer counts as never
+constexpr std::uint32_t generations_max = 10'000'000; // a longer takeover counts as never
 
-/// On a wheel of the unscaled fitness an organism's share after t generations is f^t / Σ f^t.
+/// On a wheel with unscaled fitness, an organism's share after t generations is f^t / Σ f^t, where f is its fitness.
 std::optional<std::uint32_t> takeover_on_wheel(std::span<const double> fitness) {
     const double best = fitness.front(), goal = 1 - 1 / static_cast<double>(fitness.size());
     if (fitness.back() < 0 || best <= 0) {
@@ -219,9 +222,9 @@ std::optional<std::uint32_t> takeover_generations(const Selection& selection, st
         return takeover_on_wheel(fitness);
     }
     if (copies.front() - copies.back() <= 1e-12 * copies.front()) {
-        return std::nullopt; // every organism has the same chance
+        return std::nullopt; // all organisms have the same chance
     }
-    // Expected picks of the best 0, 1, 2, … ranks together.
+    // Entry n is the expected number of picks of the n best ranks together.
     std::vector<double> picks_up_to{0};
     for (const double number : copies) {
         picks_up_to.push_back(picks_up_to.back() + number);

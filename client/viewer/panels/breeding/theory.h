@@ -1,7 +1,8 @@
-// Theory: the numbers that the theory of selection predicts for one breeding, beside those observed.
+// Theory: the numbers that the theory of selection predicts for one breeding, beside the observed numbers.
 //
-// The law of each selection method is the server's (evolution/selection_law): it sends the expected copies of every
-// rank. What follows from them is computed here. Ranks count from 0, the fittest; ties go to the lower id.
+// The server computes the expected copies of every rank from the law of the selection method (evolution/selection_law)
+// and sends them. The predictions here are derived from the expected copies. Ranks count from 0, the fittest; among
+// equal fitness values the lower id ranks first.
 //
 // Owner        Comparison.
 // Threads      none.
@@ -21,74 +22,76 @@
 
 namespace evod::viewer {
 
-/// The law of the copies as the server sends it, by rank; each shape (population).
+/// The distribution of the copies as sent by the server. Each list is indexed by rank and has shape (population).
 struct Expectation {
     std::vector<double> copies;          // in all picks
     std::vector<double> standard_error;  // standard deviation of the copies from one breeding to the next
-    std::vector<double> unpicked_chance; // of no copy at all
+    std::vector<double> unpicked_chance; // probability of having no copy
 };
 
-/// The properties of a selection that decide which predictions exist.
+/// The properties of a selection that decide which predictions are possible.
 struct Selection {
     enum class Method { Roulette, StochasticUniversal, Tournament, Random, Truncation };
-    /// What the chance of an organism depends on.
+    /// The quantity that decides the chance of an organism.
     enum class Pressure { Fitness, WindowedFitness, Rank };
 
     Method method = Method::Roulette;
     Pressure pressure = Pressure::Fitness;
-    bool independent_picks = true; // one pick does not change the chances of another
-    bool overlapping = false;      // steady_state: most of the generation stays
+    bool independent_picks = true; // a pick does not change the chances in other picks
+    bool overlapping = false;      // steady_state: most organisms survive into the next generation
     std::uint32_t picks = 1;
 };
 
-/// Reads them from the parameters of a breeding; missing parameters have their defaults.
+/// Reads the properties from the parameters of a breeding. A missing parameter has its default value.
 Selection selection_of(const evod::v1::Breeding& breeding);
 
 /// One predicted number.
 struct Prediction {
     std::string_view name{}, sentence{}, source{};
     std::string_view unit{};                // empty: dimensionless
-    std::optional<double> expected{};       // nullopt: never, or theory has no answer; the sentence says which
-    std::optional<double> observed{};       // nullopt: one breeding does not show it
-    std::optional<double> standard_error{}; // of the observed number; nullopt: unknown
+    std::optional<double> expected{};       // nullopt: never, or unknown to theory; see `sentence`
+    std::optional<double> observed{};       // nullopt: cannot be observed in one breeding
+    std::optional<double> standard_error{}; // standard error of the observed number; nullopt: unknown
 
-    /// Standard errors between the observed and the expected number, with the sign of the difference; nullopt if one of
-    /// the three is unknown. Infinite if the observed number is impossible.
+    /// (observed − expected) / standard error. Returns nullopt if one of these three numbers is unknown. Infinite if
+    /// theory rules out the observed number.
     std::optional<double> deviation() const;
 };
 
-/// observed − expected in standard errors; 0 where both are the same to within rounding.
+/// (observed − expected) / standard_error; 0 if both numbers differ only by rounding.
 double deviation(double observed, double expected, double standard_error);
 
-/// Copies of the fittest, selection intensity, share not selected, loss of diversity, takeover time, and how well all
-/// copies together agree with the law.
+/// Predicts the copies of the fittest, selection intensity, the share not selected, loss of diversity, takeover time,
+/// and how well all copies together agree with the law.
 ///
 /// fitness  best first, shape (population), finite.
-/// copies   observed, by rank, shape (population); empty: unknown, then nothing is observed.
-/// returns  empty if there are no picks.
+/// copies   observed copies by rank, shape (population); empty: unknown, and no prediction contains an observed number.
+/// returns  an empty list if there are no picks.
 std::vector<Prediction> predictions(const Selection& selection, const Expectation& expectation,
                                     std::span<const double> fitness, std::span<const std::uint32_t> copies);
 
 // ---- the numbers, one by one -----------------------------------------------------------------------------------
 
-/// (mean fitness of the picked − mean fitness) / standard deviation of the fitness; 0 where all are equal.
+/// (mean fitness of the picked − mean fitness of all) / standard deviation of the fitness; 0 if all fitness values are
+/// equal.
 /// copies  by rank, expected or observed; not all 0.
 double selection_intensity(std::span<const double> copies, std::span<const double> fitness);
 
-/// The same for a normally distributed fitness, whatever the fitness is here. In large populations it tends to the
-/// closed forms of Blickle & Thiele.
+/// The selection intensity that these copies would have if the fitness were normally distributed. In large populations
+/// it tends to the closed forms of Blickle & Thiele.
 double normal_selection_intensity(std::span<const double> copies);
 
-/// The share of the population that is replaced by copies of others: the sum of what the expected copies fall short of
-/// one each, if as many are picked as there are organisms. Source: Blickle & Thiele 1996.
+/// The share of the population that copies of other organisms replace. It is Σ max(0, 1 − expected copies) /
+/// population, with the copies scaled to as many picks as there are organisms. Source: Blickle & Thiele 1996.
 double loss_of_diversity(std::span<const double> copies);
 
-/// Generations until copies of the fittest, one at first, fill all places but one, by selection alone, if the whole
-/// generation is replaced and every number is the expected one. Source: Goldberg & Deb 1991.
+/// Generations until copies of the fittest occupy all places but one. Assumes one copy at the start, selection alone,
+/// replacement of the whole generation, and that every number of copies equals its expectation. Source: Goldberg & Deb
+/// 1991.
 ///
-/// copies   expected, by rank.
-/// returns  nullopt: never; or theory has no answer: where a window or a negative fitness is subtracted again in each
-///          generation, or where generations overlap.
+/// copies   expected copies by rank.
+/// returns  nullopt if the takeover never happens or theory gives no value. Theory gives none if generations overlap,
+///          or if a window or a negative fitness is subtracted again in each generation.
 std::optional<std::uint32_t> takeover_generations(const Selection& selection, std::span<const double> copies,
                                                   std::span<const double> fitness);
 

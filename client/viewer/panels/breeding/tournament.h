@@ -1,4 +1,4 @@
-// The contestants and winners of the tournament that led to one pick.
+// Tournament: the contestants and winners of the tournament that led to one pick.
 //
 // Owner        none: a value.
 // Threads      none.
@@ -14,11 +14,12 @@ namespace evod::viewer {
 struct Contestant {
     std::uint32_t organism = 0;
     bool won = false;
-    bool picked_now = false; // by the pick that is shown
+    bool picked_now = false; // by the pick shown
 };
 
-/// The contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. An organism
-/// drawn several times has one marked entry for each of its picks. Empty if the server sent no contestants.
+/// The contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. If an
+/// organism was drawn several times, as many of its entries are marked as it has picks. Empty if the server sent no
+/// contestants.
 std::vector<Contestant> contestants_of(const BreedingRecord& record, std::uint32_t index);
 
 } // namespace evod::viewer

@@ -7,7 +7,7 @@ namespace evod::viewer {
 std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_px) {
     const double pixel = 1 / circumference_px;
     std::vector<Arc> arcs;
-    bool open = false; // the last arc is narrower than a pixel so far
+    bool open = false; // the last arc is still narrower than a pixel
     for (int i = 0; i < contenders.size(); ++i) {
         const evod::v1::Contender& contender = contenders[i];
         const double width = contender.slot_end() - contender.slot_begin();

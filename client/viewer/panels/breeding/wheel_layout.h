@@ -1,4 +1,4 @@
-// Wheel layout: the slots of a wheel as arcs to draw; neighbouring slots narrower than a pixel are merged.
+// Wheel layout: the slots of a selection wheel as arcs to draw. Neighbouring slots narrower than a pixel are merged.
 //
 // Owner        none: values.
 // Threads      none.
@@ -19,19 +19,20 @@ using Contenders = google::protobuf::RepeatedPtrField<evod::v1::Contender>;
 struct Arc {
     double begin = 0, end = 0;         // in turns, 0 to 1
     std::uint32_t first = 0, last = 0; // ids of the first and the last organism
-    double rank = 0;                   // of the organism; of several, the mean weighted by slot width
+    double rank = 0;                   // rank of the organism; for several, the mean weighted by slot width
 };
 
-/// The slots in order, without those of width 0. Neighbours narrower than a pixel are merged into arcs at least a pixel
-/// wide.
+/// The arcs in the order of the slots, without slots of width 0. Neighbouring slots narrower than a pixel are merged
+/// into arcs that are at least a pixel wide.
 ///
 /// circumference_px  > 0
 std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_px);
 
-/// The organism whose slot contains `turns`; nullptr if the server has not sent it yet.
+/// The organism whose slot contains the angle `turns`; nullptr if the server has not sent it yet.
 const evod::v1::Contender* slot_at(const Contenders& contenders, double turns);
 
-/// Light for the fittest to dark for the last. The lightness alone carries the rank, for every kind of colour vision.
+/// Light for the fittest, dark for the lowest rank. Lightness alone encodes the rank, so it is visible with every kind
+/// of colour vision.
 Colour rank_colour(double rank, std::uint32_t contender_count);
 
 } // namespace evod::viewer

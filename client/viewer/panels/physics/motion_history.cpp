@@ -5,15 +5,15 @@
 namespace evod::viewer {
 namespace {
 
-// Movement per tick as a share of the body's radius: above close_share the panel warns, and its advice brings the
-// movement down to advised_share. Two approaching bodies may pass through each other undetected if each moves a whole
-// radius per tick. A world with default parameters reaches 0.6.
+// Movement per tick as a share of the body's radius. Above close_share the panel warns and advises values that bring
+// the movement down to advised_share. If two approaching bodies each move a whole radius per tick, they may pass
+// through each other undetected. A world with default parameters reaches 0.6.
 constexpr double close_share = 0.75, advised_share = 0.5;
 
-/// Parameter values that bring the fastest body down to advised_share of its radius per tick.
+/// Recommends parameter values with which the fastest body moves advised_share of its radius per tick.
 std::string advice(const evod::v1::Motion& motion) {
     const double share = motion.fastest_step_share();
-    if (share <= advised_share) { // the current speed is fine; an earlier one was not
+    if (share <= advised_share) { // only an earlier speed was too high
         return "Halve tick_s, to " + print("%.3g", motion.tick_s() / 2) + ", or lower max_speed_px_s.";
     }
     return "Set tick_s to " + print("%.3g", motion.tick_s() * advised_share / share) +

@@ -1,4 +1,5 @@
-// Motion history: the answers to GetMotion for one island, newest last, and whether the tick is short enough.
+// Motion history: stores the answers to GetMotion for one island, oldest first, and decides whether the tick is short
+// enough.
 //
 // Owner        PhysicsPanel.
 // Threads      none.
@@ -17,14 +18,15 @@ class MotionHistory {
   public:
     static constexpr std::size_t kept = 300;
 
-    /// Replaces the last entry if it has the same tick. A tick before the last one clears the history first.
+    /// Adds an answer. Replaces the last entry if that has the same tick. If the tick is earlier than that of the last
+    /// entry, clears the history first.
     void add(const evod::v1::Motion& motion);
     void clear() { motions_.clear(); }
 
     bool empty() const { return motions_.empty(); }
     std::size_t size() const { return motions_.size(); }
     const evod::v1::Motion& last() const { return motions_.back(); }
-    /// `of` applied to every entry, oldest first.
+    /// Returns the results of applying the function `of` to every entry, oldest first.
     template <class Of>
     std::vector<double> curve(Of&& of) const {
         std::vector<double> curve;
@@ -38,7 +40,7 @@ class MotionHistory {
     std::deque<evod::v1::Motion> motions_;
 };
 
-/// Whether a tick is short enough for the current speeds, and what to change if not.
+/// States whether a tick is short enough for the current speeds, and if not, what to change.
 struct TickVerdict {
     enum class Level { Good, Close, TooLong };
     Level level = Level::Good;

@@ -13,11 +13,11 @@
 namespace evod::viewer {
 namespace {
 
-constexpr double demo_s = 10; // of simulated motion shown
+constexpr double demo_s = 10; // length of the motion shown, in simulated seconds
 constexpr float tick_ms_min = 1, tick_ms_max = 1000;
 constexpr std::size_t table_rows = 8;
 
-/// Plots a measure over time, from 0; the title contains its newest value.
+/// Plots a quantity over time, with the y axis starting at 0. The title contains the newest value.
 template <class Of>
 void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     const std::vector<double> tick =
@@ -28,7 +28,7 @@ void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
 }
 
-/// A collapsible header; returns whether it is open.
+/// Draws a collapsible header. Returns whether it is open.
 bool opened(const char* title) {
     const bool open = ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
     widgets::mark(title);

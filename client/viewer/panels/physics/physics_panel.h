@@ -1,5 +1,6 @@
-// Physics panel: energy, momentum, overlaps and speeds of the bodies of an island over time, whether the tick is short
-// enough for them, and a demonstration: a motion with a known exact solution, stepped with a tick of any length.
+// Physics panel: plots energy, momentum, overlaps and speeds of the bodies of an island over time, and rates whether
+// the tick is short enough for them. A demonstration steps a motion with a known exact solution, with a tick of any
+// length.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -20,28 +21,28 @@ class PhysicsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    /// Requests the motion of the bodies a few times per second.
+    /// Requests the motion of the bodies with GetMotion a few times per second.
     void poll(Context& context);
     void build_motion();
     void build_demo();
     void set_curves(const TimeStepDemo& demo);
 
-    std::uint64_t place_number_ = 0; // the place that history_ describes
+    std::uint64_t place_number_ = 0; // the place (world and island) that history_ describes
     Poll poll_{std::chrono::milliseconds{250}};
     MotionHistory history_;
 
-    // The demonstration as last computed.
+    // Settings and results of the demonstration.
     bool spring_ = true;
-    float rate_per_s_ = 2; // ω of the spring, c of damped motion
+    float rate_per_s_ = 2; // ω of the spring, or c of damped motion
     float tick_ms_ = 100;
     std::vector<TimeStepDemo::Row> rows_;
     struct Curve {
         const char* name;
         Colour colour;
-        std::vector<double> x_px, energy; // by row; energy relative to the start
+        std::vector<double> x_px, energy; // by row; energy is relative to its initial value
     };
     std::vector<double> t_s_;   // by row
-    std::vector<Curve> curves_; // the first is drawn first
+    std::vector<Curve> curves_; // in drawing order
 };
 
 } // namespace evod::viewer

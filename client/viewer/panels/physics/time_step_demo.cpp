@@ -5,7 +5,8 @@
 namespace evod::viewer {
 
 TimeStepDemo::State TimeStepDemo::exact(double t) const {
-    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2 and C, S: cos and sin/w, cosh and sinh/w, or 1 and t.
+    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2. (C, S) is (cos wt, sin wt / w), (cosh wt, sinh wt / w) or (1,
+    // t).
     const double h = system_.damping_per_s / 2, square = system_.omega_per_s * system_.omega_per_s - h * h;
     const auto [x0, v0] = system_.start;
     const double w = std::sqrt(std::abs(square));
@@ -47,7 +48,7 @@ double TimeStepDemo::explicit_growth(double dt) const {
 }
 
 bool TimeStepDemo::symplectic_is_stable(double dt) const {
-    // Roots of z² − (2 − ω²dt² − c·dt)·z + 1 − c·dt within the unit circle (Jury 1962).
+    // Stable if the roots of z² − (2 − ω²dt² − c·dt)·z + 1 − c·dt lie within the unit circle (Jury 1962).
     const double omega = system_.omega_per_s, c = system_.damping_per_s * dt, k = omega * omega * dt * dt;
     return k + 2 * c < 4 && c < 2;
 }

@@ -1,5 +1,5 @@
-// Time step demo: a motion with a known exact solution, stepped as the bodies of a world are, to show the effect of the
-// tick length.
+// Time step demo: steps a motion with a known exact solution by the integrators that worlds use, to show the effect of
+// the tick length.
 //
 // The motion is x'' = −ω²x − c·v: a spring (c = 0), damped motion (ω = 0), or both. A step first computes
 // v' = v + (−ω²x − c·v)·dt; then
@@ -29,7 +29,7 @@ class TimeStepDemo {
         double damping_per_s = 0; // c, >= 0
         State start{100, 0};
     };
-    /// The same moment by each method.
+    /// Position and velocity at one time, from the exact solution and from each integrator.
     struct Row {
         double t_s;
         State exact, symplectic_euler, explicit_euler;
@@ -40,10 +40,10 @@ class TimeStepDemo {
     /// The exact solution at t >= 0.
     State exact(double t_s) const;
     State step(State from, double dt_s, EulerMethod method) const;
-    /// Of a body of 1 kg, in kg px²/s².
+    /// The energy of a body of 1 kg in this state, in kg px²/s².
     double energy(const State& state) const;
 
-    /// Row 0 is the start; row n is the state after n steps, up to step_count.
+    /// Returns step_count + 1 rows. Row 0 is the start; row n is the state after n steps.
     std::vector<Row> rows(double dt_s, std::size_t step_count) const;
 
     /// The factor by which one step of explicit Euler multiplies a spring's energy.

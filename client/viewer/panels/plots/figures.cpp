@@ -24,7 +24,7 @@ class Maker {
     Figure take() { return std::move(figure_); }
     Plot& plot() { return figure_.plot; }
 
-    /// A line for a column of the subject, and for the same column of the other if `compared`.
+    /// Adds a line for a column of the subject; if `compared`, also one for the same column of the other subject.
     void line(const std::string& column, const std::string& name, Colour colour, bool compared) {
         add(subject_, Series::Kind::Line, column, named(name, subject_), colour);
         if (other_ != nullptr && compared) {
@@ -32,7 +32,7 @@ class Maker {
         }
     }
 
-    /// Mean ± one standard deviation.
+    /// Adds a band of one standard deviation on either side of the mean.
     void band(const std::string& of, Colour colour) {
         const auto mean = column(subject_, of + "_mean"), deviation = column(subject_, of + "_deviation");
         if (mean.empty() || mean.size() != deviation.size()) {
@@ -124,7 +124,7 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
             for (std::size_t i = 0; i < names.size(); ++i) {
                 make.line(names[i] + "_selection", names[i], gene_colours[i % std::size(gene_colours)], true);
             }
-        } else { // the change is the sum of the others and comes last
+        } else { // the change is the sum of the other series and is drawn last
             make.plot().title = "Causes of change in the mean of " + gene;
             make.line(gene + "_migration", "migration", palette::series_purple, true);
             make.line(gene + "_transmission", "transmission", palette::series_orange, true);
@@ -170,7 +170,7 @@ Figure histogram_of(const std::string& gene, std::vector<float> numbers) {
     const auto [least, greatest] = std::ranges::minmax(numbers);
     const Range range = with_room({least, greatest}, 0);
     const auto count = std::clamp(static_cast<std::size_t>(2 * std::cbrt(static_cast<double>(numbers.size()))),
-                                  bins_min, bins_max); // Rice's rule
+                                  bins_min, bins_max); // number of bins by Rice's rule
     const double width = range.width() / static_cast<double>(count);
     auto& middles = figure.numbers.emplace_back();
     for (std::size_t i = 0; i < count; ++i) {

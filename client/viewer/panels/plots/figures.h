@@ -1,4 +1,4 @@
-// Figures: builds the plots of a history, alone or compared with another one.
+// Figures: builds the plots of one history, or of one history compared with another.
 //
 // Owner        PlotsPanel.
 // Threads      none.
@@ -15,8 +15,8 @@ namespace evod::viewer {
 
 enum class Quantity { Fitness, Genes, Selection, Diversity, Survivors, Deaths };
 
-/// A plot with the numbers that it computes itself. Its series also refer to the tables, which must not change while it
-/// lives.
+/// A plot together with the numbers computed for it. Its series also refer to columns of the history tables, which must
+/// not change while the Figure exists.
 struct Figure {
     Plot plot;
     std::deque<std::vector<double>> numbers;
@@ -29,14 +29,15 @@ struct Figure {
 struct Subject {
     const HistoryTable& table;
     HistoryTable::Island island;
-    std::string name; // in the legend of a comparison
+    std::string name; // name in the legend of a comparison
 };
 
-/// gene   name of a gene for Quantity::Genes and Selection; empty: the means, or the selection, of all genes.
-/// other  null: no comparison. If it has no such island, all its islands together are shown.
+/// gene   the gene shown for Quantity::Genes and Quantity::Selection; empty: the means, or the selection, of all genes.
+/// other  the compared history; null: no comparison. If it has no island with this number, all its islands together are
+///        shown.
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene);
 
-/// The distribution of a gene over organisms.
+/// Builds a histogram of a gene's values, one value per organism.
 Figure histogram_of(const std::string& gene, std::vector<float> numbers);
 
 } // namespace evod::viewer

@@ -13,7 +13,7 @@ void History::see_run(const std::string& world, const std::string& run_id) {
     table_.clear();
     whole_until_ = ended_ = 0;
     missing_ = true;
-    cancel(); // a pending answer belongs to another run
+    cancel(); // any pending answer is about another run
     ++revision_;
 }
 
@@ -77,7 +77,7 @@ void History::cancel() {
 
 void History::receive(std::uint64_t number, const evod::v1::History* answer) {
     if (number != asked_ || answered_ == asked_) {
-        return; // the answer belongs to another run
+        return; // the answer is about another run
     }
     if (answer == nullptr) {
         return cancel();
@@ -89,7 +89,7 @@ void History::receive(std::uint64_t number, const evod::v1::History* answer) {
         return;
     }
     next_page_.reset();
-    // The server has dropped the generations that had ended by then and are not in its answer.
+    // If a generation had ended when the query began and is missing from the answer, the server no longer keeps it.
     if (!answer->generations().empty()) {
         ended_when_asked_ = std::max(ended_when_asked_, answer->generations().rbegin()->generation());
     }

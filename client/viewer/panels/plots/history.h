@@ -1,7 +1,8 @@
-// History: the statistics of all finished generations of a run that the server still has, kept up to date.
+// History: collects the statistics of all finished generations of a run that the server still keeps, and updates them.
 //
-// Earlier generations are requested page by page; events add each generation that ends. After a possible loss (dropped
-// events, a broken connection, a hidden panel) the missing part is requested again. Another run clears the history.
+// Earlier generations are requested page by page. Events add each generation that ends. If generations may have been
+// missed (dropped events, a broken connection, a hidden panel), they are requested again. When another run begins, the
+// history is cleared.
 //
 // Owner        PlotsPanel.
 // Threads      none.
@@ -26,37 +27,37 @@ class History {
     /// Processes an event; ignores events of other worlds.
     void see_event(const evod::v1::Event& event);
 
-    /// Generations of this run up to `generation` have ended, according to a snapshot.
+    /// Records that all generations of this run up to `generation` have ended. A snapshot reports this number.
     void see_ended(std::uint64_t generation);
 
-    /// Events may have been missed.
+    /// Call when events may have been missed.
     void refresh() { missing_ = again_ = true; }
 
     struct Query {
-        std::uint64_t number; // for receive()
+        std::uint64_t number; // to be passed to receive()
         evod::v1::Request request;
     };
-    /// The query to send now; nullopt if nothing is missing or an answer is pending. The caller then calls receive() or
-    /// cancel() once.
+    /// The query to send now; nullopt if nothing is missing or an answer is pending. After sending a query, call
+    /// receive() or cancel() exactly once.
     std::optional<Query> next_query();
 
-    /// The answer to a query; null if the query failed, which is then sent again.
+    /// Takes the answer to query `number`. Null: the query failed, and next_query() returns it again.
     void receive(std::uint64_t number, const evod::v1::History* answer);
 
-    /// Whether an answer is pending.
+    /// Whether a query is unanswered.
     bool pending() const { return asked_ != answered_; }
-    /// Drops the pending query; its answer will be ignored.
+    /// Forgets the pending query. Its answer will be ignored.
     void cancel();
 
-    /// Names the genes of the run; ignores an empty list.
+    /// Sets the names of the run's genes. Ignores an empty list.
     void set_gene_names(const std::vector<std::string>& names);
 
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
-    /// Whether the table has every generation known to have ended.
+    /// Whether the table contains every generation that is known to have ended.
     bool complete() const { return !run_id_.empty() && !missing_; }
     const HistoryTable& table() const { return table_; }
-    /// Changes whenever the table does.
+    /// A number that changes whenever the table changes.
     std::uint64_t revision() const { return revision_; }
 
   private:
@@ -65,12 +66,12 @@ class History {
 
     std::string world_, run_id_;
     HistoryTable table_;
-    std::uint64_t whole_until_ = 0; // the table has all that the server knows up to here
+    std::uint64_t whole_until_ = 0; // up to this generation, the table contains all that the server keeps
     bool missing_ = true;
-    bool again_ = false;                     // something was missed since the last query
-    std::uint64_t asked_ = 0, answered_ = 0; // numbers of queries
+    bool again_ = false;                     // generations may have been missed since the last query
+    std::uint64_t asked_ = 0, answered_ = 0; // numbers of the last queries sent and answered
     std::uint64_t ended_ = 0;                // the last generation that is known to have ended
-    std::uint64_t ended_when_asked_ = 0;     // the same when the first page was requested
+    std::uint64_t ended_when_asked_ = 0;     // value of ended_ when the first page was requested
     std::optional<std::uint64_t> next_page_;
     std::uint64_t revision_ = 0;
 };

@@ -12,9 +12,9 @@ namespace evod::viewer {
 
 namespace {
 
-// Positions in core::history_columns().
+// Indices of columns in core::history_columns().
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
-// Columns per gene. The columns of the selection account, as many per gene, follow those of all genes.
+// Number of columns per gene. Behind them follow the columns of the selection account, again as many per gene.
 constexpr std::size_t columns_of_gene = 4;
 
 std::size_t genes_in(std::size_t columns) {
@@ -23,10 +23,11 @@ std::size_t genes_in(std::size_t columns) {
 
 constexpr std::size_t islands_max = 65'536; // more than any world can have
 
-/// How the numbers of the islands are joined. The mean of a deviation is in the column before it, or in fitness_mean.
+/// How the numbers of several islands are combined. Deviation also uses the means, which are in the preceding column;
+/// for fitness_deviation they are in fitness_mean.
 enum class Together { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
-/// columns  number of columns.
+/// columns  total number of columns.
 Together together(std::size_t column, std::size_t columns) {
     using enum Together;
     constexpr Together of_all[gene_begin] = {
@@ -64,7 +65,7 @@ std::size_t mean_of_deviation(std::size_t column) {
     return column < gene_begin ? column - 3 : column - 1;
 }
 
-/// Joins the rows of all islands of one generation.
+/// Combines the rows of all islands of one generation into one row.
 std::vector<double> joined(std::span<const std::vector<double>> rows) {
     std::vector<double> all = rows.front();
     if (rows.size() == 1) {
@@ -106,7 +107,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
         case Together::Mean:
             number = mean_of([&](const auto& row) { return row[column]; });
             break;
-        case Together::Deviation: { // variance within the islands plus variance between their means
+        case Together::Deviation: { // variance within islands plus variance between their means
             const std::size_t mean_column = mean_of_deviation(column);
             const double mean = mean_of([&](const auto& row) { return row[mean_column]; });
             number = std::sqrt(mean_of([&](const auto& row) {
@@ -136,7 +137,7 @@ void HistoryTable::Rows::put(std::span<const double> numbers) {
         columns.resize(numbers.size(), std::vector<double>(generations().size(), unknown));
     }
     const std::vector<double>& known = columns[generation_column];
-    // Nearly always the row belongs at the end.
+    // The row nearly always belongs at the end.
     const auto found = known.empty() || known.back() < numbers[generation_column]
                            ? known.end()
                            : std::lower_bound(known.begin(), known.end(), numbers[generation_column]);
@@ -164,7 +165,7 @@ void HistoryTable::add(std::span<const std::vector<double>> rows) {
 }
 
 void HistoryTable::put_generation(std::span<const std::vector<double>> rows) {
-    if (names_.empty()) { // number the genes until set_gene_names()
+    if (names_.empty()) { // until set_gene_names() is called, genes are named by their numbers
         std::vector<std::string> numbers;
         for (std::size_t gene = 0; gene < genes_in(rows[0].size()); ++gene) {
             numbers.push_back("gene_" + std::to_string(gene));
@@ -209,7 +210,7 @@ std::uint64_t HistoryTable::last_generation() const {
 std::uint64_t HistoryTable::last_without_gap(std::uint64_t generation) const {
     const std::vector<double>& known = all_.generations();
     const auto after = std::upper_bound(known.begin(), known.end(), static_cast<double>(generation));
-    // Generations rise by at least 1, so a binary search finds the first gap.
+    // Without a gap, each generation exceeds the one before it by 1. A binary search therefore finds the first gap.
     const auto steps = std::distance(after, known.end());
     std::ptrdiff_t low = 0, high = steps;
     while (low < high) {

@@ -1,4 +1,4 @@
-// HistoryTable: the statistics of finished generations as columns, for each island and for all islands together.
+// HistoryTable: stores the statistics of finished generations as columns, for each island and for all islands together.
 //
 // Owner        PlotsPanel.
 // Threads      none.
@@ -17,35 +17,37 @@ namespace evod::viewer {
 
 class HistoryTable {
   public:
-    /// Nullopt: all islands together.
+    /// The number of an island; nullopt: all islands together.
     using Island = std::optional<std::uint32_t>;
 
-    /// Adds generations in any order; replaces a generation that it already has.
+    /// Adds generations in any order. Replaces generations that the table already contains.
     ///
-    /// rows  numbers as returned by core::history_numbers(), the islands of a generation one after another.
+    /// rows  numbers as returned by core::history_numbers(); the islands of a generation are consecutive.
     void add(std::span<const std::vector<double>> rows);
 
     /// Clears everything except the names of the genes.
     void clear();
 
-    /// Names the columns of the genes; before the first call they have numbers.
+    /// Sets the names of the genes, which the column names contain. Before the first call, the column names contain
+    /// gene numbers.
     void set_gene_names(std::vector<std::string> names);
     const std::vector<std::string>& gene_names() const { return gene_names_; }
 
-    /// A column of core::history_columns() with one number per generation, in rising order of generations. For all
-    /// islands together: the greatest of "…best" and "…max", the least of "…worst" and "…min", the sum of counts, means
-    /// weighted by organism_count, and standard deviations of the joint population. The joint median is unknown (NaN).
-    /// Empty if there is no such column or island.
+    /// A column of core::history_columns() with one number per generation, ordered by generation. For all islands
+    /// together, columns named "…best" and "…max" contain the greatest number, "…worst" and "…min" the least, and
+    /// counts the sum. Means are weighted by organism_count; standard deviations are those of the combined population.
+    /// The combined median is unknown (NaN). Returns an empty span if there is no such column or island.
     std::span<const double> column(Island island, std::string_view name) const;
 
     std::uint32_t island_count() const { return static_cast<std::uint32_t>(islands_.size()); }
     bool empty() const { return all_.generations().empty(); }
-    /// 0 if the table is empty.
+    /// The last generation in the table; 0 if the table is empty.
     std::uint64_t last_generation() const;
-    /// The last generation reached from `generation` without a gap; `generation` itself if the next one is missing.
+    /// The last generation up to which no generation after `generation` is missing. Returns `generation` if the next
+    /// one is missing.
     std::uint64_t last_without_gap(std::uint64_t generation) const;
 
-    /// The CSV that core::read_history_csv() reads, sorted by generation, then island.
+    /// Returns CSV text that core::read_history_csv() can read, sorted by generation, then by island.
     std::string to_csv() const;
 
   private:
@@ -59,13 +61,13 @@ class HistoryTable {
     void put_generation(std::span<const std::vector<double>> rows);
 
     std::vector<std::string> gene_names_;
-    std::vector<std::string> names_; // of the columns
+    std::vector<std::string> names_; // names of the columns
     std::vector<Rows> islands_;
     Rows all_;
 };
 
-/// Reads a file written by to_csv(), `evoctl history --csv` or `evoctl export --what generations`. The error names the
-/// file and the fault.
+/// Reads a file written by to_csv(), `evoctl history --csv` or `evoctl export --what generations`. An error contains
+/// the file name and the reason.
 core::Result<HistoryTable> load_history(const std::string& path);
 
 } // namespace evod::viewer

@@ -23,7 +23,7 @@ std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b) {
 }
 
 Range with_room(Range range, double room_share) {
-    // Computes with halves, because the width of a range of doubles can overflow.
+    // Computes half the width, because the whole width of a range of doubles can overflow.
     const double middle = range.min / 2 + range.max / 2;
     const double least = std::max(std::abs(middle) * 1e-9, 1e-12);
     const double half = std::min(std::max((range.max / 2 - range.min / 2) * (1 + 2 * room_share), least), 4e307);

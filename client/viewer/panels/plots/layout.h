@@ -1,4 +1,4 @@
-// Layout of a plot: ticks, zoom, and the points of a long series that are drawn.
+// Plot layout: computes axis ticks, the zoomed range, and the points with which a long series is drawn.
 //
 // Owner        none: pure functions.
 // Threads      any.
@@ -20,65 +20,68 @@ struct Range {
     friend bool operator==(const Range&, const Range&) = default;
 };
 
-/// The smallest range that contains all finite numbers; nullopt if there are none.
+/// The smallest range that contains all finite numbers; nullopt if there is none.
 std::optional<Range> range_of(std::span<const double> numbers);
 std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b);
 
-/// Widens a range so that it can be drawn: wider than the rounding of a double, with `room_share` more at each end.
+/// Widens a range by `room_share` of its width at each end, and at least so far that rounding does not matter when it
+/// is drawn.
 Range with_room(Range range, double room_share);
 
 struct Ticks {
     double step = 1;
-    std::vector<double> at; // rising
+    std::vector<double> at; // in increasing order
 };
-/// At most `count_max` round numbers inside the range, at a distance of 1, 2 or 5 times a power of ten.
+/// Returns at most `count_max` round numbers inside the range. Their distance is 1, 2 or 5 times a power of ten.
 ///
-/// step_min  least distance: 1 for counts
+/// step_min  least distance between two ticks; 1 for counts
 Ticks ticks_in(Range range, int count_max, double step_min = 0);
 
-/// A tick with as many decimals as the step needs: "1,500", "0.25", "1.5e+20".
+/// The text of a tick, with as many decimals as `step` requires: "1,500", "0.25", "1.5e+20".
 std::string tick_label(double tick, double step);
 
-/// Zooms around the point at `share` of the range, which stays in place; factor > 1 shows less. Stays inside `whole`.
+/// Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result lies
+/// inside `whole`.
 Range zoomed(Range shown, double share, double factor, Range whole, double width_min);
-/// Shifts the range, limited to `whole`.
+/// Shifts the range by `by`, limited to `whole`.
 Range moved(Range shown, double by, Range whole);
 
 // ---- long series -----------------------------------------------------------------------------------------------
 
-/// Numbers begin to end - 1 of a series, drawn in one column of pixels.
+/// The numbers with indices begin to end - 1 of a series. They are drawn in one column of pixels.
 struct Group {
     std::size_t begin, end;
 };
 
-/// Splits the visible part of a series, and the next number on either side of it, into columns of pixels. With at most
-/// two numbers per column, every number is a group of its own.
-/// x  rising.
+/// Divides the visible part of a series, and one more number on either side, into groups, one for each column of
+/// pixels. If there are at most two numbers per column, every number is a group of its own.
+///
+/// x  in increasing order.
 std::vector<Group> groups_of(std::span<const double> x, Range shown, std::size_t columns);
 
-/// A point of a line; a point whose y is NaN splits the line.
+/// A point of a line. A point whose y is NaN interrupts the line.
 struct LinePoint {
     double x, y;
 };
-/// The line through the numbers with at most four points per column (the first, least, greatest and last), so that no
-/// peak is lost.
+/// The line through the numbers. Each group contributes at most four points (the first, least, greatest and last
+/// number), so that no peak is lost.
 std::vector<LinePoint> line_of(std::span<const double> x, std::span<const double> y, std::span<const Group> groups);
 
-/// Least of `low` and greatest of `high` in each group; groups without a finite number are left out.
+/// The least value of `low` and the greatest value of `high` in a group. Groups without a finite number are skipped.
 struct BandPoint {
     double x, low, high;
 };
 std::vector<BandPoint> band_of(std::span<const double> x, std::span<const double> low, std::span<const double> high,
                                std::span<const Group> groups);
 
-/// The mean of the finite numbers in a group; 0 if there are none.
+/// The mean of the finite numbers in a group; 0 if there is none.
 double mean_of(std::span<const double> y, Group group);
 
-/// The index of the number nearest to `at`; nullopt if `x` is empty.
+/// The index of the number in `x` that is nearest to `at`; nullopt if `x` is empty.
 std::optional<std::size_t> nearest(std::span<const double> x, double at);
 
-/// Counts the numbers in each of `count` bins of equal width over the range. Numbers outside are not counted; the upper
-/// end belongs to the last bin.
+/// Counts the numbers in each of `count` bins of equal width. Numbers outside the range are not counted. The upper end
+/// of the range belongs to the last bin.
 std::vector<double> histogram(std::span<const float> numbers, Range range, std::size_t count);
 
 } // namespace evod::viewer

@@ -15,14 +15,14 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float gap = 6; // between text and its neighbours
+constexpr float gap = 6; // space around text
 constexpr float tick_pixels = 4;
 constexpr float line_pixels = 1.6f;
 constexpr float dash_pixels = 6, dash_gap_pixels = 4;
 constexpr std::uint8_t dense_alpha = 110;
-constexpr double y_room = 0.04; // share of the height, above and below
+constexpr double y_room = 0.04; // space above and below, as a share of the height
 constexpr double zoom_of_one_notch = 1.25;
-constexpr double x_units_min = 4; // generations, or units of another x
+constexpr double x_units_min = 4; // least visible width of the x axis, in generations or other units of x
 
 struct Box {
     float left, top, right, bottom;
@@ -36,13 +36,13 @@ class Drawing {
         lay_out(box);
     }
 
-    /// Without axes: the lines fill the box from y.min to y.max.
+    /// Without axes: the vertical range of the box is `y`.
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
         : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
         group(columns());
     }
 
-    /// The rectangle of the data.
+    /// The rectangle in which the data are drawn.
     const Box& area() const { return area_; }
     double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
 
@@ -59,7 +59,8 @@ class Drawing {
         write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
     }
 
-    /// Draws a vertical line through the numbers nearest to x = `at` and returns them as text; empty if there are none.
+    /// Draws a vertical line at the numbers nearest to x = `at`. Returns these numbers as text; empty if there are
+    /// none.
     std::vector<std::string> draw_cursor(double at) {
         std::optional<double> found;
         for (const Series& series : plot_.series) {
@@ -112,7 +113,8 @@ class Drawing {
         }
     }
 
-    /// Computes the groups of every series, the tops of stacks, the y range, and the area that the labels leave.
+    /// Computes the groups of every series, the tops of the stacks, the y range, and the data area that remains beside
+    /// the labels.
     void lay_out(Box box) {
         const float letter = font_.FontSize;
         float legend_rows = 1, at = 0;
@@ -171,7 +173,8 @@ class Drawing {
         area_.right = std::max(box.right - gap, area_.left + 1);
     }
 
-    /// Adds the means of a series to the tops of the stacks below it. All stacks of a plot have the same x.
+    /// Adds the group means of a series to the tops of the stacks drawn so far. All stacked series of a plot have the
+    /// same x.
     void add_stack(const Series& series, std::span<const Group> groups) {
         tops_.resize(groups.size());
         for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -256,7 +259,8 @@ class Drawing {
 
     void draw_line(const Series& series, std::span<const Group> groups) {
         std::vector<ImVec2> points;
-        // Dashes are invisible where a line goes up and down within every column.
+        // If each column of pixels has several numbers, the line goes up and down within it and dashes would be
+        // invisible.
         const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
         const auto finish = [&] {
             if (points.size() == 1) {
@@ -282,7 +286,7 @@ class Drawing {
     }
 
     void draw_dashes(std::span<const ImVec2> points, ImU32 colour) {
-        float left = dash_pixels; // pixels of the current dash or gap
+        float left = dash_pixels; // remaining pixels of the current dash or gap
         bool dash = true;
         for (std::size_t i = 1; i < points.size(); ++i) {
             ImVec2 at = points[i - 1];
@@ -317,7 +321,7 @@ class Drawing {
     void draw_bar(const Series& series, Group group, double from, double to) {
         const float left = column(series.x[group.begin] - series.bar_width / 2);
         const float right = column(series.x[group.end - 1] + series.bar_width / 2);
-        const float space = right - left > 6 ? 1.0f : 0.0f; // gap between bars that are wide enough
+        const float space = right - left > 6 ? 1.0f : 0.0f; // a gap only between wide bars
         list_.AddRectFilled({left + space, row(to)}, {std::max(right - space, left + 1), row(from)},
                             ink(series.colour));
     }
@@ -336,12 +340,12 @@ class Drawing {
     ImDrawList& list_;
     ImFont& font_;
     const Plot& plot_;
-    std::string title_; // empty: none
+    std::string title_; // empty: no title
     Range x_, y_;
     Box area_;
     Ticks y_ticks_;
     std::vector<std::vector<Group>> groups_; // by series
-    std::vector<double> tops_;               // of all stacks, by group
+    std::vector<double> tops_;               // upper ends of all stacks, by group
     std::vector<double> stack_bottoms_;
     float title_top_ = 0, legend_top_ = 0, legend_left_ = 0, legend_right_ = 0, label_top_ = 0, label_left_ = 0;
 };
@@ -372,7 +376,7 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     const ImVec2 place = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 40.0f);
     ImGui::InvisibleButton(id, {width, std::max(height_pixels, 40.0f)});
-    ImGui::SetItemUsingMouseWheel(); // keeps the window from scrolling
+    ImGui::SetItemUsingMouseWheel(); // prevents the window from scrolling
     const Range whole = whole_x(plot);
     if (view.x) { // the compared history may have been removed
         view.x = zoomed(*view.x, 0, 1, whole, x_units_min);

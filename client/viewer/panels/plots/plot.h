@@ -1,4 +1,5 @@
-// Plot: series over axes, drawn with Dear ImGui: as a widget that the user can zoom and read, or as an image.
+// Plot: draws series over axes with Dear ImGui, as a widget in which the user can zoom and read numbers, or as an
+// image.
 //
 // Owner        PlotsPanel.
 // Threads      none; used on the drawing thread.
@@ -22,45 +23,45 @@ namespace evod::viewer {
 struct Series {
     enum class Kind {
         Line,
-        Dashes, // a line of the compared history
-        Band,   // from `low` to `y`
-        Stack,  // bars on top of the stacks before; a long series shows the mean per column of pixels
-        Bars,   // from the axis
+        Dashes, // a dashed line, for the compared history
+        Band,   // an area between `low` and `y`
+        Stack,  // bars on top of the preceding stacks; a long series shows the mean per column of pixels
+        Bars,   // bars that begin at the axis
     };
     Kind kind = Kind::Line;
-    std::string name{}; // in the legend
+    std::string name{}; // name in the legend
     Colour colour{};
-    std::span<const double> x{}; // rising
-    std::span<const double> y{}; // same length; numbers that are not finite are left out
+    std::span<const double> x{}; // in increasing order
+    std::span<const double> y{}; // same length as x; numbers that are not finite are not drawn
     std::span<const double> low{};
-    double bar_width = 1; // of stacks and bars, in the units of x
+    double bar_width = 1; // for stacks and bars, in the units of x
 };
 
 struct Plot {
-    std::string title{};              // drawn on images and curves only
-    std::string x_label{}, y_label{}; // y_label with its unit
-    std::vector<Series> series{};     // the first is drawn first
+    std::string title{};              // drawn only on images and by curve_widget()
+    std::string x_label{}, y_label{}; // y_label contains the unit
+    std::vector<Series> series{};     // in drawing order
     bool from_zero = false;           // the y axis starts at 0 unless a number is negative
-    bool counted_x = false;           // x is whole numbers: no ticks between them
+    bool counted_x = false;           // x contains whole numbers: no ticks between them
 };
 
 /// The visible part of the x axis.
 struct PlotView {
-    std::optional<Range> x; // nullopt: all
+    std::optional<Range> x; // nullopt: the whole axis
 };
 
 /// The x range of all series together.
 Range whole_x(const Plot& plot);
 
-/// A widget as wide as the window. The wheel zooms along the x axis, dragging moves, a double click fits, and a note
-/// shows the numbers under the mouse. Several plots may share a view.
+/// Draws the plot in a widget as wide as the window. The wheel zooms along the x axis, dragging moves the visible part,
+/// and a double click shows the whole axis. A note shows the numbers under the mouse. Several plots may share a view.
 void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_pixels);
 
-/// Only the lines, as wide as the window, with the title in a corner; clipped to the range `y`.
+/// Draws only the lines, as wide as the window and clipped to the range `y`, with the title in a corner.
 void curve_widget(const Plot& plot, Range y, float height_pixels);
 
-/// The same as plot_widget() as an image, with the title. Call it between Gui::begin() and Gui::draw(). Throws
-/// std::runtime_error if the graphics driver cannot draw an image of this size.
+/// Draws the plot as plot_widget() does, with its title, and returns it as an image. Call it between Gui::begin() and
+/// Gui::draw(). Throws std::runtime_error if the graphics driver cannot draw an image of this size.
 sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels);
 
 } // namespace evod::viewer

@@ -15,7 +15,7 @@ namespace evod::viewer {
 namespace {
 
 constexpr float plot_height_min = 120;                           // pixels
-constexpr int image_pixels_min = 200, image_pixels_max = 10'000; // of each side of a saved image
+constexpr int image_pixels_min = 200, image_pixels_max = 10'000; // allowed width and height of a saved image
 
 struct Tab {
     const char* name;
@@ -25,7 +25,7 @@ constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},     {"Genes", Quantity::
                         {"Selection", Quantity::Selection}, {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors}, {"Deaths", Quantity::Deaths}};
 
-/// A field for the width or height of a saved image.
+/// Builds a field for the width or height of a saved image.
 void build_pixels(const char* label, const char* name, int& pixels) {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 4);
     ImGui::InputInt(label, &pixels, 0);
@@ -37,7 +37,7 @@ void build_pixels(const char* label, const char* name, int& pixels) {
                      with_separators(image_pixels_max) + " pixels.");
 }
 
-/// CSV files in the working folder, sorted by name.
+/// The names of the CSV files in the working folder, sorted.
 std::vector<std::string> csv_files() {
     std::vector<std::string> names;
     std::error_code error;
@@ -260,7 +260,7 @@ void PlotsPanel::build_comparison() {
 
 void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     quantity_ = quantity;
-    // Space below for the export row and its message.
+    // Height of the export row and its message, which are below the plot.
     const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
         build_gene_choice("all: their means");
@@ -326,7 +326,7 @@ void PlotsPanel::update_histogram(Context& context) {
                                    names.size()};
     population_.update(context.world, whose, !history.run_id().empty(), context.now);
     const HistogramOf of{gene_, whose, population_.complete_count(), living_only_};
-    if (of == histogram_of_) { // nothing changed; populations may be large
+    if (of == histogram_of_) { // update only after a change, because populations may be large
         return;
     }
     histogram_of_ = of;
@@ -353,7 +353,8 @@ void PlotsPanel::update_histogram(Context& context) {
 
 // ---- files -----------------------------------------------------------------------------------------------------
 
-/// "evoview-default-3f2a9c01-fitness-generation-120": names the content and the run.
+/// The name of a file to save, which contains the content and the run:
+/// "evoview-default-3f2a9c01-fitness-generation-120".
 std::string PlotsPanel::file_name(const std::string& what) const {
     const History& history = own_.history;
     return "evoview-" + history.world() + "-" + history.run_id().substr(0, 8) + "-" + what + "-generation-" +

@@ -1,5 +1,5 @@
-// PlotsPanel: the statistics of a run, generation by generation, while it runs; compared with another world or an
-// earlier run, and saved to files.
+// PlotsPanel: plots the statistics of a run, generation by generation, while it runs. It compares them with another
+// world or an earlier run, and saves them to files.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -26,8 +26,8 @@ class PlotsPanel : public Panel {
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{
-        100}; // a world may finish more generations than a user can see
-    static constexpr std::chrono::seconds population_interval{1}; // between queries of the organisms alive
+        100}; // a world may finish more generations per second than a user can see
+    static constexpr std::chrono::seconds population_interval{1}; // between requests for the living organisms
 
     struct TrackedHistory {
         History history;
@@ -41,7 +41,7 @@ class PlotsPanel : public Panel {
     void build_choices();
     void build_comparison();
     void build_quantity(Context& context, Quantity quantity);
-    /// all  the text of the choice "no single gene".
+    /// all  the label of the choice that selects all genes.
     void build_gene_choice(const char* all);
     /// Computes the histogram of the chosen gene.
     void update_histogram(Context& context);
@@ -54,7 +54,7 @@ class PlotsPanel : public Panel {
     Subject subject() const;
 
     TrackedHistory own_;
-    std::unique_ptr<TrackedHistory> other_world_; // null: another world is not compared
+    std::unique_ptr<TrackedHistory> other_world_; // another world to compare with; null: none
     std::optional<HistoryTable> file_;            // an earlier run to compare with
     std::string other_name_;                      // name of the compared history
     PopulationPoll population_{population_interval};
@@ -64,8 +64,8 @@ class PlotsPanel : public Panel {
     bool worlds_stale_ = true;
     std::vector<std::string> files_; // CSV files in the working folder
 
-    std::uint64_t seen_place_ = 0; // place whose events were processed
-    int seen_in_frame_ = -1;       // frame of Dear ImGui
+    std::uint64_t seen_place_ = 0; // place whose events have been processed
+    int seen_in_frame_ = -1;       // frame number of Dear ImGui
     std::uint64_t connected_count_ = 0;
 
     Quantity quantity_ = Quantity::Fitness;
@@ -81,9 +81,9 @@ class PlotsPanel : public Panel {
         bool living_only = false;
         bool operator==(const HistogramOf&) const = default;
     } histogram_of_;
-    std::string population_note_; // why not only the living are shown
+    std::string population_note_; // why the histogram includes dead organisms
 
-    std::array<char, 256> path_{}; // of a file to compare with
+    std::array<char, 256> path_{}; // of the file to compare with
     std::array<int, 2> image_pixels_{1200, 700};
     std::string message_; // result of the last file operation
     bool message_is_error_ = false;
