@@ -55,15 +55,9 @@ class ServerConnection {
 
     /// Adds a notice: a sentence that the window shows for some seconds.
     void notice(std::string text) { notices_.push_back(std::move(text)); }
-<<<<<<< HEAD
-    /// Adds a notice if the request was refused or not answered. Returns whether it was accepted.
-    bool report_if_refused(const core::Result<evod::v1::Response>& response);
-    /// The notices since the last call, oldest first.
-=======
     /// Adds a notice if the request was refused or not answered. Returns whether the request was accepted.
-    bool accepted_or_noticed(const core::Result<evod::v1::Response>& response);
+    bool report_if_refused(const core::Result<evod::v1::Response>& response);
     /// Returns and removes the notices since the last call, oldest first.
->>>>>>> origin/pass2_viewer
     std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
 
   private:
