@@ -33,12 +33,12 @@ struct MotionRules {
 
 struct MoveCounts {
     std::uint64_t too_fast = 0, speed_limited = 0; // as in StepCounts
-    float displacement_square = 0;                 // px²; of the circle furthest from its anchor
+    float displacement_square = 0;                 // squared distance of the circle furthest from its anchor, px²
 };
 
 struct MotionKernels {
     /// Applies force and damping to velocities, and bounces a circle off a wall that it touches if it moves outward.
-    /// force  of the circles from `begin` on.
+    /// force  the forces on the circles from `begin` on: element 0 is for circle `begin`.
     void (*accelerate)(const MotionColumns& columns, const Forces& force, std::size_t begin, std::size_t end,
                        const MotionRules& rules);
     /// Limits speeds, and applies velocities to positions. Puts circles beyond a wall back inside, and bounces those
@@ -47,7 +47,7 @@ struct MotionKernels {
     // begin is a multiple of lanes_max. Up to lanes_max − 1 void circles beyond `end` are processed too.
 };
 
-/// The kernels for the instructions in use.
+/// The kernels for the instructions in use (base/instructions.h).
 const MotionKernels& motion_kernels();
 
 } // namespace evod::physics

@@ -2,8 +2,8 @@
 // is short enough for the speeds.
 //
 // Determinism  the terms of sums are rounded to multiples of 1/65536, which doubles add exactly up to 2^37. Equal
-//              states give equal reports, in whatever order circles are stored.
-// Cost         O(n); a little more if the list of near pairs is stale, because the report then makes its own.
+//              states therefore give equal reports, in whatever order circles are stored.
+// Cost         O(n); a little more if the list of near pairs is stale, because the report then creates its own list.
 #pragma once
 
 #include "server/physics/bodies.h"

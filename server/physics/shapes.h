@@ -25,9 +25,9 @@ Overlap circle_circle(float dx, float dy, float first_radius, float second_radiu
 ///         the normal is positive.
 Overlap box_box(float dx, float dy, BoxShape first, BoxShape second);
 
-/// dx, dy  circle's centre − box's centre, px. A centre inside the box or on its edge leaves by the nearest side: depth
-///         is the distance to that side plus the radius. If sides are equally near, the x axis wins, then the positive
-///         side.
+/// dx, dy  circle's centre − box's centre, px. If the centre is inside the box or on its edge, the normal points to the
+///         nearest side, and depth is the distance to that side plus the radius. If sides are equally near, the x axis
+///         wins, then the positive side.
 Overlap box_circle(float dx, float dy, BoxShape box, float radius);
 
 } // namespace evod::physics

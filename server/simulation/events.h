@@ -21,7 +21,7 @@ struct MigrationHappened {
     std::uint64_t generation; // the ended generation, whose organisms are replaced
     std::vector<Edge> edges;
 };
-/// Every organism of an island is dead before the generation's time is up.
+/// Every organism of an island has died before the generation's time is over.
 struct Extinction {
     std::uint32_t island;
     std::uint64_t generation;
@@ -36,7 +36,8 @@ struct ParametersChanged {
     std::vector<std::string> names; // of the assigned parameters
     std::uint64_t revision;
 };
-/// A planned or scheduled change was dropped, because it does not fit the parameters in effect at its moment.
+/// A planned or scheduled change was dropped, because it is not valid together with the parameters in effect at its
+/// moment.
 struct ChangeDropped {
     std::uint64_t planned = 0;
     std::string by;                 // as in ParametersChanged

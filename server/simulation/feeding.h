@@ -1,8 +1,8 @@
 // Feeding: finds which bodies touch which items of one kind after the tick's move, and which body gets each item.
 //
 // Threads      blocks of bodies are searched in parallel.
-// Determinism  an item goes to the nearest body that touches it, of equally near bodies to the lowest id, whatever the
-//              order of the search.
+// Determinism  an item goes to the nearest body that touches it; if bodies are equally near, to the one with the lowest
+//              id. The order of the search does not matter.
 #pragma once
 
 #include "server/physics/bodies.h"

@@ -46,12 +46,13 @@ class Island {
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
-    /// tick  of the generation, 1 for the first.
+    /// tick  the tick within the generation; 1 for the first.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
     IslandShape shape() const;
     IslandState state(base::Executor& executor) const;
-    /// Checks whether `state`, after `tick`, is possible for this island, which is at the beginning of its generation.
+    /// Checks whether `state` is possible for this island after `tick`. The island must be at the beginning of its
+    /// generation.
     base::Result<void> check(const IslandState& state, std::uint32_t tick) const;
     /// Sets the island to a state that check() has accepted.
     void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
@@ -61,8 +62,8 @@ class Island {
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
-    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. None for
-    /// dead organisms and on islands without bodies.
+    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. The
+    /// choice is None for dead organisms and on islands without bodies.
     std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                       base::Range ids) const;
 
@@ -96,7 +97,7 @@ class Island {
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
-    /// All of it except health_mean, which would need a loop over all organisms.
+    /// All live statistics except health_mean, which would need a loop over all organisms.
     LiveStatistics live_counts() const;
 
   private:

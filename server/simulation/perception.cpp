@@ -21,8 +21,8 @@ const OrganismKernels& organism_kernels() {
 
 namespace {
 
-// An organism searches further than it perceives, so that it need not search again soon. A wider search costs more, and
-// is needed less often.
+// An organism searches a wider circle than it perceives, so that it need not search again soon. A wider search costs
+// more, but is needed less often.
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
 constexpr float needs_search = -1;
@@ -218,7 +218,7 @@ void Perception::reorder(const physics::Reordering& reordering) {
 
 void Perception::remove(std::size_t body) {
     EVOD_ASSERT(body < x_.size());
-    // As if it had always had void_position.
+    // The stored position becomes void_position, as if the body had always been void.
     x_[body] = y_[body] = physics::void_position;
     for (View* view : {&food_, &poison_}) {
         view->others[body] = never;

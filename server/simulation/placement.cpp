@@ -26,8 +26,8 @@ Place uniform_place(base::RandomStream& random, Coordinate margin, const physics
     return {x, uniform_coordinate(random, margin, area.height)};
 }
 
-/// How far from a place, along either axis, the centres of bodies can be that touch a body of `half_size_px` there. A
-/// few units are added, because shape tests round.
+/// The greatest distance, along either axis, between the centre of a body of `half_size_px` and the centre of a body
+/// that touches it. A few units are added, because shape tests round.
 Coordinate reach_of(float half_size_px, float widest_px) {
     return physics::to_units(half_size_px + widest_px) + 2;
 }
@@ -58,8 +58,8 @@ class PlacedCircles {
     float widest_px_;
 };
 
-// This many circles search for a place in parallel, each clear of those before the batch. So few of them seldom collide
-// with each other. The size of batches does not affect the result.
+// The circles of a batch search for places in parallel, each clear of the circles of earlier batches. Batches are so
+// small that their circles seldom overlap each other. The size of batches does not affect the result.
 constexpr std::size_t batch_circles_min = 2048, batches = 64;
 constexpr std::size_t circles_per_piece = 256;
 constexpr std::size_t prefetched_ahead = 8;

@@ -1,7 +1,8 @@
 // Placement: uniform random places on an island that do not overlap obstacles or bodies already placed.
 //
 // Determinism  a place depends on the given stream and on the bodies already there. Organisms are placed in order of
-//              id, each at the first of its attempts that is clear of those before it, whatever the number of threads.
+//              id. Each gets the first of its attempts that is clear of the bodies placed before it, whatever the
+//              number of threads.
 #pragma once
 
 #include "server/base/executor.h"
@@ -14,7 +15,7 @@
 
 namespace evod::simulation {
 
-/// Boxes in a grid, which tests whether a place is clear of them. The cost does not depend on the number of boxes.
+/// Stores boxes in a grid, and tests whether a place is clear of them. The cost does not depend on the number of boxes.
 class BoxGrid {
   public:
     /// No boxes.

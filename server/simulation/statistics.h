@@ -20,7 +20,7 @@ struct Parameters;
 namespace evod::simulation {
 
 struct GeneStatistics {
-    double mean = 0, deviation = 0, min = 0, max = 0; // deviation of the population: divided by n
+    double mean = 0, deviation = 0, min = 0, max = 0; // standard deviation of the population: divided by n
 };
 
 struct GenerationStatistics {
@@ -30,11 +30,12 @@ struct GenerationStatistics {
     std::uint32_t organism_count = 0;
     double fitness_best = 0, fitness_mean = 0, fitness_median = 0, fitness_worst = 0, fitness_deviation = 0;
     std::array<GeneStatistics, evolution::gene_count> genes;
-    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene of zero width counts 0
+    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene whose bounds are equal
+                          // counts 0
     std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint64_t clamp_count = 0;       // genes that were clamped when the generation was bred
-    std::uint64_t too_fast_count = 0;    // body-ticks that moved more than the body's radius
+    std::uint64_t too_fast_count = 0;    // number of times that a body moved more than its radius in a tick
     std::uint64_t speed_limit_count = 0; // number of times that max_speed_px_s limited a speed
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;

@@ -157,7 +157,7 @@ std::vector<Intention> World::intentions(const Island& island, base::Range ids) 
     if (generation_over_) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
-    std::optional<parameters::Parameters> first; // as they will be in the generation's first tick
+    std::optional<parameters::Parameters> first; // the parameters that will be active in the generation's first tick
     if (moment_.generation_tick == 0) {
         first = parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
@@ -448,7 +448,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         moment.simulated_s < moment_.simulated_s) {
         return wrong("moment");
     }
-    // Parameters that take effect with a generation are as they were when this one began.
+    // Parameters that take effect at a generation must still have the values from the beginning of this generation.
     if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
         !parameters::validate(set.active).empty() ||
         !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
@@ -458,7 +458,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     if (state.islands.size() != islands_.size()) {
         return wrong("number of islands");
     }
-    // No tick follows the last one.
+    // No tick of a generation follows its last one, so the previous tick must not have ended the generation.
     if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
         return wrong("moment");
     }
