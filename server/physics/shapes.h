@@ -10,7 +10,7 @@ namespace evod::physics {
 struct Overlap {
     bool touching = false;
     float depth = 0;                  // px, >= 0
-    float normal_x = 0, normal_y = 0; // from the first to the second
+    float normal_x = 0, normal_y = 0; // the normal, from the first shape to the second
 };
 
 struct BoxShape {

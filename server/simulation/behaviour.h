@@ -49,7 +49,8 @@ void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules
 struct Intention {
     Choice choice = Choice::None;                   // None: there is no such organism
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // of the food or poison; its own position if it wanders
+    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; the organism's own position if it
+                                                    // wanders
 };
 
 /// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.

@@ -87,8 +87,8 @@ struct CancelChange {
 
 struct ForkWorld {
     std::string world; // the world to fork
-    std::string name;  // of the new world; as in CreateWorld
-    // The new world starts at the first moment of this generation; nullopt: from the present state of the original.
+    std::string name;  // name of the new world; as in CreateWorld
+    // The new world starts at the first moment of this generation of the original; nullopt: from its present state.
     // Earlier generations exist only in a run file.
     std::optional<std::uint64_t> at_generation;
     RunId run_id;

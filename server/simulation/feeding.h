@@ -28,7 +28,8 @@ class Feeding {
     void begin(std::size_t blocks);
 
     /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
-    /// that touches an item, and may contain others.
+    /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
+    /// that touches an item, and may contain other bodies.
     void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
                       const Items& items);
 

@@ -83,10 +83,11 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
-    const Living& living() const { return living_; } // by body
+    const Living& living() const { return living_; } // columns by body index
     const physics::Circles& bodies() const {
         return bodies_;
-    }                                                      // of the living, in any order; bodies of the dead are void
+    }                                                      // circles of the living organisms, in any order; void bodies
+                                                           // for the dead
     const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
@@ -115,8 +116,8 @@ class Island {
 
     /// The results of a tick in one block of organisms.
     struct Block {
-        base::StateHash hash;             // of the living organisms
-        std::vector<std::uint32_t> dying; // bodies with no health left, before meals
+        base::StateHash hash;             // hash of the living organisms
+        std::vector<std::uint32_t> dying; // bodies that had no health left before meals
         base::StateHash food_hash_change, poison_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
@@ -147,8 +148,8 @@ class Island {
     Fate fate_;
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;
-    base::Column<std::uint32_t> body_of_; // by id
-    base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
+    base::Column<std::uint32_t> body_of_; // index in bodies(), by id
+    base::StateHash born_hash_;           // hash of the chromosomes, which do not change during a generation
     base::StateHash hash_;
 
     std::vector<Block> blocks_; // kept between ticks

@@ -48,7 +48,7 @@ class Items {
                   base::Executor& executor);
 
     struct Item {
-        physics::Coordinate x, y; // of an absent item: where it was
+        physics::Coordinate x, y; // position; of an absent item, its last position
         std::uint32_t due_tick;   // 0: present; otherwise the tick at whose beginning it reappears
         friend bool operator==(const Item&, const Item&) = default;
     };
@@ -139,7 +139,7 @@ class Items {
     std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
-    const base::Column<Item>& all() const { return all_; } // by id
+    const base::Column<Item>& all() const { return all_; } // all items, by id
     float radius_px() const { return rules_.radius_px; }
     /// The hash of all items; updated as they come and go.
     base::StateHash hash() const { return hash_; }
@@ -177,9 +177,9 @@ class Items {
     struct Due {
         std::uint32_t tick, item;
     };
-    std::vector<Due> due_; // in order of tick, from due_begin_
+    std::vector<Due> due_; // sorted by tick, from index due_begin_ on
     std::size_t due_begin_ = 0;
-    std::int64_t side_ = 1; // as in ItemGrid
+    std::int64_t side_ = 1; // side of a cell, as in ItemGrid
     std::uint64_t scale_ = 0;
     std::uint32_t rows_ = 0, columns_ = 0;
     // Buckets as in ItemGrid, after an empty one. The data that every query reads is stored together, apart from the

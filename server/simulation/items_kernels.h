@@ -45,8 +45,8 @@ struct ItemQuery {
 struct ItemsKernels {
     /// Prefetches the memory that two_nearest() reads.
     void (*prefetch)(const ItemGrid& grid, const ItemQuery* queries, std::size_t count);
-    /// Answers queries. The cost grows with the number of cells that must be searched to find the two nearest items,
-    /// whatever the radius.
+    /// Answers queries. The cost depends only on the number of cells that must be searched to find the two nearest
+    /// items, not on the radius.
     void (*two_nearest)(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count);
 };
 

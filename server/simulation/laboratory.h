@@ -40,7 +40,7 @@ bool remove_reached_goals(RunControl& control, const World& world);
 
 /// The extent of a replay: a world that shows the run of a run file.
 struct Replay {
-    std::string replay_of; // the world whose run it shows; empty: the laboratory has no world with that run
+    std::string replay_of; // the world whose run it shows; empty if the laboratory has no world with that run
     std::uint64_t first_generation = 1, last_generation = 1;
     std::uint64_t first_tick = 0, last_tick = 0;
 };
@@ -121,7 +121,7 @@ class Laboratory {
     /// Whether there are worlds_max worlds; replays of other worlds do not count.
     bool is_full() const;
 
-    /// In order of creation.
+    /// The worlds, in order of creation.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
 
     /// The events since the last call, in order.

@@ -9,10 +9,10 @@
 
 namespace evod::simulation {
 
-/// What organisms perceive of the items of one kind; see Perception.
+/// The views of organisms on the items of one kind (perception.h).
 struct ViewColumns {
     float* others;       // px
-    std::int32_t *x, *y; // of the nearest item
+    std::int32_t *x, *y; // position of the nearest item
     const float* radius; // px; how far organisms perceive
     float item_radius;   // px
 };
@@ -34,7 +34,7 @@ struct ChoiceRules {
     float lookahead_s;
     float certain_impulse;
     float force_per_unit;
-    std::uint32_t pair_counter, pair_key; // of base::RandomKey, for the tick
+    std::uint32_t pair_counter, pair_key; // counter and key of base::RandomKey::pair(), for the tick
 };
 
 /// Indices found in a range, in ascending order; has room for the whole range.

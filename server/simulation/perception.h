@@ -52,7 +52,8 @@ class Perception {
     struct View {
         base::Column<float> others; // no other item is nearer than this, px; < 0: stale, a search is needed
         base::Column<physics::Coordinate> x,
-            y;                       // of the nearest item; void_position if there is none within the search radius
+            y;                       // position of the nearest item; void_position if there is none within the search
+                                     // radius
         float search_radius_max = 0; // px
     };
 

@@ -38,7 +38,7 @@ namespace evod::simulation {
 struct Opening {
     Moment moment; // generation_tick 0
     parameters::ParameterSet parameters;
-    evolution::Progress progress; // of the previous generations
+    evolution::Progress progress; // progress of the run over the previous generations
 };
 
 /// The statistics of an ended generation, one entry per island. They are immutable, and copies share them.
@@ -86,9 +86,9 @@ class World {
     /// Creates a world at the beginning of a generation of a run; it continues as that run did.
     ///
     /// born              the bred organisms, shape (islands): opening.parameters.active.island_count.
-    /// history           statistics of previous generations, as far as available.
-    /// first_population  the one that the run began with, for resets; nullptr: it is drawn.
-    /// founders          of the organisms in `born`; not needed for the first generation.
+    /// history           statistics of the previous generations that are available.
+    /// first_population  the first population of the run, for resets; nullptr: it is drawn.
+    /// founders          founders of the organisms in `born`; not needed for the first generation.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
           parameters::Schedule schedule = {});
@@ -102,9 +102,9 @@ class World {
     WorldState state(base::Executor& executor) const;
     /// The number of entities on each island, for a state of this generation.
     std::vector<IslandShape> shapes() const;
-    /// Brings a world at the beginning of a generation to a later moment of it, where it continues as the world that
-    /// state() was called on. Refused, with nothing changed, if the state is impossible. The caller compares the hash,
-    /// if it has one.
+    /// Brings a world at the beginning of a generation to a later moment of that generation. It then continues as the
+    /// world on which state() was called. Refused, with nothing changed, if the state is impossible. If the caller has
+    /// the hash of that state, it must compare the hash itself.
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// The parameters that the run begins with after a reset: the requested parameters, with the schedule's values of
@@ -168,7 +168,7 @@ class World {
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
-    /// Drops the statistics that a fork does not inherit, and the planned changes of its original.
+    /// Drops the statistics that a fork does not inherit, and the changes that were planned for the original.
     void become_fork();
     /// The fitness in the ended generation, per island, by id. Empty during a generation.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
@@ -197,7 +197,7 @@ class World {
     void find_fitness(base::Executor& executor);
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
-    /// The parents' chromosomes: those of the ended generation or, after migration, `migrated`.
+    /// The parents' chromosomes: `migrated` after a migration, otherwise the chromosomes of the ended generation.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     /// Sets the founders of the organisms in `bred`.
     void find_founders(const std::vector<evolution::NextGeneration>& bred);
@@ -207,7 +207,7 @@ class World {
     parameters::ParameterSet parameters_;
     FirstPopulation first_population_;
     parameters::Schedule schedule_;
-    std::vector<parameters::PlannedChange> planned_; // in order of id
+    std::vector<parameters::PlannedChange> planned_; // sorted by id
     std::uint64_t planned_count_ = 0;                // number of changes planned in this run so far
     Moment moment_;
     bool generation_over_ = false;
@@ -217,9 +217,10 @@ class World {
     History history_;
     std::vector<EventKind> events_;
     Founders founders_;
-    std::vector<std::vector<double>> fitness_; // of the ended generation: per island, by id
+    std::vector<std::vector<double>> fitness_; // fitness in the ended generation: per island, by id
     evolution::Progress progress_;
-    std::vector<std::uint8_t> died_out_; // in the present tick, per island; working memory, kept between ticks
+    std::vector<std::uint8_t> died_out_; // per island: whether its last organism died in this tick; working memory,
+                                         // kept between ticks
 };
 
 } // namespace evod::simulation

@@ -40,7 +40,7 @@ struct IslandCounts {
 
 /// The number of entities of each kind on an island. It determines the shape of the island's state.
 struct IslandShape {
-    std::uint32_t organisms = 0; // that were born
+    std::uint32_t organisms = 0; // number of organisms that were born
     bool has_bodies = true;      // if false, the other parts are empty
     std::uint32_t crates = 0, food = 0, poison = 0;
 
