@@ -231,7 +231,8 @@ class ExperimentReader {
         }
     }
 
-    /// A fault of a reference_population that only follows population_size is reported for population_size alone.
+    /// If the file does not set reference_population, it equals population_size. Its faults are then reported only for
+    /// population_size.
     void add_violations(const base::Refusal& refused) {
         for (const Violation& violation : refused.violations) {
             if (violation.field != "reference_population" || names_reference_) {

@@ -18,10 +18,10 @@ struct JsonMember;
 
 /// A value, and its place in the text that it was parsed from. Valid only while that text exists.
 struct JsonNode {
-    std::string_view text;           // of the value
-    std::size_t line = 1;            // where it begins
-    std::vector<JsonMember> members; // of an object, in order; a repeated name appears several times
-    std::vector<JsonNode> elements;  // of an array
+    std::string_view text;           // text of the value
+    std::size_t line = 1;            // line where the value begins
+    std::vector<JsonMember> members; // members of an object, in order; a repeated name appears several times
+    std::vector<JsonNode> elements;  // elements of an array
 
     bool is_object() const { return text.front() == '{'; }
     bool is_array() const { return text.front() == '['; }

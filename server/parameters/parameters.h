@@ -1,5 +1,5 @@
-// The registry of all parameters of a world: those of the genetic algorithm and, one line each below, those of the
-// model.
+// The registry of all parameters of a world: the parameters of the genetic algorithm (evolution/parameters.h), and the
+// parameters of the model, one line each below.
 //
 // Macros generate the struct, its defaults and the registry from these lines. Validation, JSON files, the protocol,
 // evoctl's help and docs/PARAMETERS.md use the registry, so a new parameter needs one new line, here or in

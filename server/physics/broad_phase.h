@@ -5,8 +5,9 @@
 // contiguous range of an adjacent strip. No array is as large as the area, so the cost depends only on the number of
 // circles. It does not depend on crowds, empty regions or the shape of the island.
 //
-// Pairs are listed with a skin around every body (Verlet 1967, "Computer experiments on classical fluids"). A pair that
-// is not listed cannot touch until one of its bodies has moved half the skin. Until then, only listed pairs are tested.
+// A pair is listed if the gap between the two bodies is less than the skin, a chosen distance (Verlet 1967, "Computer
+// experiments on classical fluids"). A pair that is not listed cannot touch until one of its bodies has moved half the
+// skin. Until then, only listed pairs are tested.
 //
 // Threads      strips and blocks of circles are processed in parallel.
 // Determinism  the list contains every touching pair, however thick the skin is. contacts.h then resolves touching

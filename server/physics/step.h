@@ -5,7 +5,7 @@
 // Owner        an island; it keeps the working memory between ticks.
 // Threads      blocks of circles are accelerated, tested for contacts and moved in parallel. A caller that has more
 //              work per block calls the parts of the step in its own loops.
-// Determinism  see contacts.h; everything else is independent for each body.
+// Determinism  contacts.h states the order of contacts; everything else is independent for each body.
 #pragma once
 
 #include "server/base/executor.h"

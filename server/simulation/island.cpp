@@ -30,7 +30,7 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
 }
 
 ItemRules item_rules(const parameters::Parameters& p) {
-    // Rounds down a little, so that 23 sixtieths are 23 ticks of a sixtieth despite rounding.
+    // Slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,

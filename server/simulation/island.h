@@ -10,7 +10,7 @@
 // Owner        World. Islands share nothing, so a world advances them in parallel.
 // Threads      a tick is two loops over blocks of organisms. Work that concerns single organisms runs between and after
 //              the loops.
-// Determinism  decisions are made by ids; the order of arrays is not part of the state.
+// Determinism  decisions depend on ids. The order of arrays is not part of the state.
 #pragma once
 
 #include "server/base/executor.h"

@@ -1,8 +1,8 @@
 // Items: the food or the poison of an island, in a uniform grid of buckets of eight items. The grid is updated in place
 // when items disappear and reappear.
 //
-// Threads      set_due() in parallel for different items; consume(), take_out() and reappear() by one caller at a time;
-//              queries by any number of threads while nothing changes.
+// Threads      set_due() may run in parallel for different items. consume(), take_out() and reappear() need a single
+//              caller. Any number of threads may query while nothing changes.
 // Determinism  the place where an item reappears depends on (seed, island, generation, item, tick) alone. Queries
 //              select by distance, then by id, never by the order in a bucket.
 #pragma once

@@ -1,6 +1,6 @@
 // Items kernels: find the nearest items, eight places at a time.
 //
-// Determinism  compiled for two sets of instructions, which give the same bits (base/instructions.h).
+// Determinism  the kernels are compiled for two sets of instructions, which give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>

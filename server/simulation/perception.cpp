@@ -26,8 +26,8 @@ namespace {
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
 constexpr float needs_search = -1;
-// A void body has void_position, so its view is of an item at 0. The distance is finite, so arithmetic on it is
-// harmless.
+// The view of a void body: the body has void_position, and the stored item is at 0. Their distance is finite, so
+// arithmetic with it is harmless.
 constexpr float never = 1e30f;
 constexpr Coordinate far_from_void = 0;
 

@@ -4,7 +4,7 @@
 // A cell is one cache line, and a search reads few cells. A caller with many places to try can therefore prefetch the
 // cells of all of them before the first search.
 //
-// Threads      any number of searches while nothing is added.
+// Threads      any number of threads may search while nothing is added.
 // Determinism  a search returns whether any body fulfils a condition, so neither the cells nor their order affect the
 //              result.
 #pragma once

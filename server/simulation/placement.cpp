@@ -157,7 +157,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
 
     for (std::size_t first = 0; first < count; first += batch_size) {
         const std::size_t batch = std::min(batch_size, count - first);
-        // Placed bodies stay there: an attempt that fails now would fail later too.
+        // Placed bodies are not removed, so an attempt that fails now would also fail later.
         executor.parallel_for(batch, circles_per_piece, [&](base::Range piece) {
             std::vector<std::size_t> looking(piece.end - piece.begin);
             std::iota(looking.begin(), looking.end(), piece.begin);

@@ -40,8 +40,8 @@ class BoxGrid {
 /// A uniform random place for a circle, inside the walls and clear of `boxes`.
 Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
 
-/// Adds obstacles, then crates clear of obstacles and of each other. The obstacles of a run stay in place from
-/// generation to generation; crates are placed again.
+/// The rules of place_boxes(), which places obstacles, then crates that are clear of obstacles and of each other.
+/// Obstacles stay in place from generation to generation of a run; crates are placed again.
 struct BoxRules {
     std::uint32_t obstacle_count, crate_count;
     float obstacle_half_size_px, crate_half_size_px;

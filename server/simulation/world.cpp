@@ -348,7 +348,7 @@ void World::advance_tick(base::Executor& executor) {
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (islands_[i].alive_count() == 0) {
-                continue; // an island without living organisms waits
+                continue; // an island without living organisms skips the tick
             }
             islands_[i].advance_tick(p, tick, executor);
             died_out_[i] = islands_[i].alive_count() == 0;
@@ -372,7 +372,7 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     if (generation_tick == 0) {
         return false;
     }
-    // Half a tick of slack, so that 40 s are 2,400 sixtieths despite rounding.
+    // Half a tick of tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
     return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
 }
 
@@ -495,7 +495,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         find_fitness(executor);
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {
-            ended[i].account = islands_[i].born().account; // can be derived from the beginning
+            ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
         }
         close_generation(ended);
     }
