@@ -60,9 +60,9 @@ struct BreedingRecord {
 
     Places places;
     std::uint32_t contender_count = 0, pick_count = 0;
-    std::vector<Contender> contenders;   // by index
+    std::vector<Contender> contenders;   // in order of index
     std::vector<Pick> picks;             // in the order in which they were made
-    std::vector<Descendant> descendants; // by index
+    std::vector<Descendant> descendants; // in order of index
 };
 
 /// Records what next_generation() does with the same arguments.

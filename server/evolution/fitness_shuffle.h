@@ -1,8 +1,7 @@
 // Fitness shuffle: a control for experiments. It permutes the fitness values of an island's organisms at random.
 // Selection is then as strong as before, but unrelated to the organisms' genes.
 //
-// Owner        World, between a generation's end and the migration; also the code that recomputes how a generation was
-//              bred.
+// Owner        World, between a generation's end and the migration. Code that recomputes a breeding uses it too.
 // Threads      none of its own.
 // Determinism  keyed by (seed, FitnessShuffle, island, generation), so the shuffle of one island can be repeated alone.
 // Source       the permutation of a permutation test: Good 2005, "Permutation, Parametric and Bootstrap Tests of

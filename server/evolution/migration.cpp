@@ -118,7 +118,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
         const std::vector<std::uint32_t> leaving =
             share_of_places(std::move(wanted), population(to), stream(to, 0, LastPlaces), executor);
 
-        std::vector<std::uint32_t> replaced; // in the order in which their places are taken
+        std::vector<std::uint32_t> replaced; // organisms to be replaced, in the order in which their places are taken
         if (parameters.immigrants_replace == Replaced::Worst) {
             const auto order = rankings[to].best_first();
             replaced.assign(order.rbegin(), order.rend());

@@ -1,6 +1,6 @@
 // Migration: once per epoch, each island sends copies of some of its organisms to other islands.
 //
-// Owner        World; called between a generation's end and the breeding of the next, so that migrants can breed.
+// Owner        World; called after a generation's end and before the next is bred, so that migrants can breed.
 // Threads      none of its own.
 // Determinism  migrants are chosen and copied from every island before any arrives, islands in index order, so the
 //              result does not depend on the order in which islands were computed.

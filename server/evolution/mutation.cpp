@@ -38,7 +38,8 @@ class Ziggurat {
         while (true) {
             const std::uint32_t word = random.word();
             const unsigned layer = word % layers;
-            const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1; // in (−1, 1), 25 bits
+            const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1; // position in (−1, 1), with 25
+                                                                                         // bits
             const double x = share * width_[layer];
             if (std::abs(share) < wholly_under_[layer]) {
                 return x;

@@ -28,7 +28,7 @@ namespace evod::evolution {
 struct BreedingKey {
     base::Seed seed;
     std::uint32_t island = 0;     // index, from 0
-    std::uint64_t generation = 1; // of the parents, from 1
+    std::uint64_t generation = 1; // generation of the parents, from 1
 };
 
 struct NextGeneration {

@@ -23,8 +23,8 @@ enum class Outcome {
 struct Progress {
     std::uint64_t generations = 0; // ended generations
     std::uint64_t stagnant = 0;    // generations since the last one that improved best_fitness; 0 if the last one did
-    double best_fitness = 0;       // of all ended generations; meaningless before the first
-    double last_best_fitness = 0;  // of the last generation
+    double best_fitness = 0;       // best fitness of all ended generations; meaningless before the first has ended
+    double last_best_fitness = 0;  // best fitness of the last ended generation
     bool last_died_out = false;    // whether every organism died in it
     friend bool operator==(const Progress&, const Progress&) = default;
 };

@@ -1,5 +1,5 @@
-// The wheel: every organism has a slot as wide as its weight. Roulette spins it once per pick, universal sampling once
-// for all picks.
+// The wheel: every organism has a slot as wide as its weight. Roulette spins the wheel once per pick; universal
+// sampling spins it once for all picks.
 //
 // Determinism  widths are added in index order.
 // Cost         O(population) to build; a pick takes two comparisons on average, whatever the weights.
@@ -23,15 +23,15 @@ class Wheel {
     /// position. A slot of width 0 is never hit.
     std::uint32_t at(double turns) const;
 
-    /// The end of each slot, in index order, shape (population); the last is the circumference.
+    /// The position where each slot ends, in index order, shape (population). The last element is the circumference.
     std::span<const double> slot_ends() const { return ends_; }
 
-    /// The organism's share of the circumference: its chance per spin.
+    /// The organism's share of the circumference: the probability that a spin picks it.
     double share(std::uint32_t organism) const;
 
   private:
     std::vector<double> ends_;
-    std::vector<std::uint32_t> guide_; // the organism at i/population of a turn, for each i
+    std::vector<std::uint32_t> guide_; // element i: the organism at i/population of a turn
 };
 
 } // namespace evod::evolution

@@ -35,7 +35,7 @@ std::optional<std::uint64_t> generation_of(std::string_view key) {
 /// The values of one parameter by generation.
 class ValuesByGeneration {
   public:
-    /// values  the object after the name of the parameter; outlives this.
+    /// values  the object after the name of the parameter; must outlive this object.
     ValuesByGeneration(const std::string& name, const JsonNode& values)
         : name_{name}, node_{&values}, description_{find_parameter(name)} {
         if (description_ == nullptr) {
@@ -45,7 +45,7 @@ class ValuesByGeneration {
         } else if (values.members.empty()) {
             refuse(name_, values.line, {{}, R"(a generation and its value, as in {"1": 0.2, "30": 0.05})", "{}"});
         } else if (values.members.size() > 2 * Schedule::values_max) {
-            // Too many to check each value.
+            // There are too many values to check each one.
             refuse(name_, values.line,
                    {{},
                     "at most " + std::to_string(Schedule::values_max) + " values",
@@ -59,7 +59,7 @@ class ValuesByGeneration {
 
     const std::map<std::uint64_t, ParameterValue>& values() const { return values_; }
     const std::vector<Violation>& violations() const { return violations_; }
-    /// nullopt if the generation has no value.
+    /// The line of the value for a generation; nullopt if the generation has no value.
     std::optional<std::size_t> line_at(std::uint64_t generation) const {
         const JsonMember* member = node_->find(std::to_string(generation));
         return member == nullptr ? std::nullopt : std::optional{member->line};
@@ -116,7 +116,7 @@ class ScheduleReader {
         return first;
     }
 
-    /// parameters  of generation 1, valid.
+    /// parameters  the parameters of generation 1, valid.
     std::vector<Violation> finish(const Parameters& parameters, const JsonNode& document) {
         if (const std::size_t count = schedule_.value_count(); count > Schedule::values_max) {
             return {{"the schedule", "at most " + std::to_string(Schedule::values_max) + " values after generation 1",
@@ -135,8 +135,8 @@ class ScheduleReader {
     const Schedule& schedule() const { return schedule_; }
 
   private:
-    /// The line of the faulty value; otherwise of its parameter; otherwise of a parameter that changes in that
-    /// generation.
+    /// The line of the faulty value. If there is none, the line of its parameter; otherwise the line of a parameter
+    /// that changes in that generation.
     std::optional<std::size_t> line_of(const ScheduleFault& fault, const JsonNode& document) const {
         if (const auto read = read_.find(fault.violation.field); read != read_.end()) {
             if (const auto line = read->second.line_at(fault.generation)) {
@@ -164,7 +164,7 @@ class ExperimentReader {
     explicit ExperimentReader(const JsonNode& document) : document_{document} {}
 
     base::Result<Experiment> read() {
-        // More are mistakes, and reporting each would take long.
+        // A file with more members contains mistakes, and reporting each of them would take too long.
         const std::size_t members_max = 2 * parameter_registry().size();
         if (document_.members.size() > members_max) {
             return invalid("invalid experiment",
@@ -231,7 +231,8 @@ class ExperimentReader {
         }
     }
 
-    /// A fault of a reference_population that only follows population_size is reported for population_size alone.
+    /// If the file does not set reference_population, it equals population_size. Its faults are then reported only for
+    /// population_size.
     void add_violations(const base::Refusal& refused) {
         for (const Violation& violation : refused.violations) {
             if (violation.field != "reference_population" || names_reference_) {

@@ -19,7 +19,7 @@ namespace evod::parameters {
 
 struct Experiment {
     Parameters parameters; // of generation 1
-    Schedule schedule;     // in which faults_of() finds nothing
+    Schedule schedule;     // valid: faults_of() returns nothing
     std::optional<base::Seed> seed;
     std::string description;
 };
@@ -28,7 +28,7 @@ struct Experiment {
 /// reference_population, which then equals population_size of generation 1. Violations name the field with its line:
 /// "mutation_chance (line 4)", "mutation_chance at generation 30 (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
-/// The same of a JSON value inside another file, with the lines of that file.
+/// Does the same for a JSON value inside another file. Violations then name the lines of that file.
 base::Result<Experiment> read_experiment(const JsonNode& document);
 
 /// The value of a parameter. A number without a fraction becomes a count if it fits. Returns nullopt for null, arrays

@@ -17,7 +17,7 @@ json::string_view view_of(std::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// Boost.JSON checks the text, and limits how deeply values are nested; JsonPlaces then relies on both.
+/// Checks the text with Boost.JSON, which also limits how deeply values are nested. JsonPlaces relies on both.
 base::Result<void> check_json(std::string_view text) {
     json::stream_parser parser;
     boost::system::error_code error;
@@ -42,7 +42,7 @@ std::string decoded(std::string_view string) {
     return value.is_string() ? std::string{value.get_string()} : std::string{};
 }
 
-/// Finds the values of a valid text, which Boost.JSON returns without their places.
+/// Finds the values of a valid text and their places, because Boost.JSON returns values without their places.
 class JsonPlaces {
   public:
     explicit JsonPlaces(std::string_view text) : text_{text} {}
@@ -122,7 +122,8 @@ std::optional<std::uint64_t> JsonNode::whole_number() const {
 }
 
 double JsonNode::real() const {
-    // Boost.JSON does not guarantee the last bit, but it accepts numbers that no double can represent.
+    // Boost.JSON does not guarantee the last bit of a number, so it is only used for numbers that no double can
+    // represent.
     if (const auto exact = number_in<double>(text)) {
         return *exact;
     }

@@ -1,4 +1,4 @@
-// JSON text: parses files that people write into values that know their line, so that errors can name it.
+// JSON text: parses files that people write. Each parsed value contains its line, so that errors can name it.
 //
 // Threads  none.
 #pragma once
@@ -16,12 +16,12 @@ namespace evod::parameters {
 
 struct JsonMember;
 
-/// A value, and its place in the text that it was parsed from. Valid as long as that text.
+/// A value, and its place in the text that it was parsed from. Valid only while that text exists.
 struct JsonNode {
-    std::string_view text;           // of the value
-    std::size_t line = 1;            // where it begins
-    std::vector<JsonMember> members; // of an object, in order; a repeated name appears several times
-    std::vector<JsonNode> elements;  // of an array
+    std::string_view text;           // text of the value
+    std::size_t line = 1;            // line where the value begins
+    std::vector<JsonMember> members; // members of an object, in order; a repeated name appears several times
+    std::vector<JsonNode> elements;  // elements of an array
 
     bool is_object() const { return text.front() == '{'; }
     bool is_array() const { return text.front() == '['; }
@@ -32,11 +32,11 @@ struct JsonNode {
     const JsonMember* find(std::string_view name) const;
     /// The characters of a string, with escapes decoded.
     std::string string() const;
-    /// The exact value of a number that is written as digits; nullopt for other values, and out of range.
+    /// The exact value of a number written in digits only; nullopt for other values and for numbers out of range.
     std::optional<std::uint64_t> whole_number() const;
     /// The nearest double of a number. A number beyond the range of double becomes infinite or 0.
     double real() const;
-    /// The text for an error message; a long one is only described.
+    /// The text of the value for an error message. A long text is replaced by a description.
     std::string quoted() const;
 };
 struct JsonMember {
@@ -45,7 +45,8 @@ struct JsonMember {
     JsonNode value;
 };
 
-/// Parses the one value that the text contains. Refused as an invalid argument, with the line: "not JSON: line 3: …".
+/// Parses a text that contains one value. Otherwise refuses it as an invalid argument, and names the line: "not JSON:
+/// line 3: …".
 base::Result<JsonNode> parse_json(std::string_view text);
 
 /// "mutation_chance (line 4)"

@@ -108,8 +108,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & 
     return row.back();
 }
 
-/// An upper bound on the share of an island that is blocked for the centre of a new body placed at random, if every
-/// organism had the greatest size. Bodies of the kind being placed count with their own area only.
+/// An upper bound on the share of an island where the centre of a new body cannot be placed, if every organism has the
+/// greatest size. Bodies of the kind that is being placed count with their own area only.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
     const auto square = [](double x) { return x * x; };
     const double radius = p.body_size_max * p.radius_per_unit_px;
@@ -227,7 +227,7 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
     base::Refusal refusal{
         .code = base::RefusalCode::InvalidArgument, .message = "invalid parameter values", .violations = {}};
     if (const std::size_t most = parameter_registry().size(); assignments.size() > most) {
-        // There may be very many: not checked one by one.
+        // There may be very many assignments, so they are not checked one by one.
         const std::string field =
             field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
         refusal.violations.push_back(
@@ -326,8 +326,8 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
     }
 
-    // Limits that a server with a few gigabytes can hold. The range of a single parameter does not limit the number of
-    // islands.
+    // Limits for a server with a few gigabytes of memory. The ranges of single parameters do not limit the totals over
+    // all islands.
     const double organisms = static_cast<double>(p.island_count) * p.population_size;
     if (organisms > 4e6) {
         refuse("island_count", "at most 4000000 organisms on all islands together",

@@ -1,7 +1,7 @@
-// The registry of all parameters of a world: those of the genetic algorithm and, one line each below, those of the
-// model.
+// The registry of all parameters of a world: the parameters of the genetic algorithm (evolution/parameters.h), and the
+// parameters of the model, one line each below.
 //
-// The struct, its defaults and the registry are all made from these lines. Validation, JSON files, the protocol,
+// Macros generate the struct, its defaults and the registry from these lines. Validation, JSON files, the protocol,
 // evoctl's help and docs/PARAMETERS.md use the registry, so a new parameter needs one new line, here or in
 // evolution/parameters.h.
 #pragma once
@@ -77,7 +77,7 @@ struct Parameters : evolution::Parameters {
     EVOD_MODEL_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 };
 
-/// A value at the boundary: in files, options and messages. A choice is its name.
+/// A parameter value in files, options and messages. A choice is represented by its name.
 using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;
 
 std::string to_text(const ParameterValue& value);
@@ -124,7 +124,7 @@ std::vector<const ParameterDescription*> parameters_that_differ(const Parameters
 /// Returns nullptr if no parameter has that name.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// The names most similar to `name`, best first, at most three: for "did you mean".
+/// The parameter names most similar to `name`, best first, at most three: for "did you mean".
 std::vector<std::string_view> similar_parameter_names(std::string_view name);
 
 struct Assignment {
@@ -133,23 +133,23 @@ struct Assignment {
     friend bool operator==(const Assignment&, const Assignment&) = default;
 };
 
-/// Checks one assignment by itself: its name, its kind, its range.
+/// Checks one assignment on its own: the name of its parameter, and the kind and range of its value.
 std::optional<base::Violation> fault_of(const Assignment& assignment, std::string_view field_prefix = "");
 
-/// Applies every assignment to `parameters`. A count is accepted for a real. Refuses unknown and repeated names, wrong
-/// kinds, values outside their range (NaN too) and values that do not fit together. Each violation is named
-/// `field_prefix` + name.
+/// Applies every assignment to `parameters`. A whole number is accepted for a real parameter. Refuses unknown and
+/// repeated names, wrong kinds, values outside their range (NaN too), and values that do not fit together. Each
+/// violation is named `field_prefix` + name.
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix = "");
 
 /// Parses a value from text ("0.05", "true", "tournament"), as in `--set` and on consoles.
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text);
 
-/// Checks parameters that are each within their range against each other: bounds in the wrong order, too little room,
-/// ….
+/// Checks whether parameters fit together, each of which is within its range. Violations are, for example, bounds in
+/// the wrong order or too little room.
 std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
 
-/// The island that the parameters describe, scaled with the population if they say so.
+/// The island that the parameters describe, after scaling with the population if scale_with_population is on.
 struct IslandPlan {
     double width_px, height_px;
     std::uint32_t food_count, poison_count;
@@ -163,10 +163,10 @@ struct ParameterSet {
     std::uint64_t revision = 1; // increases with every accepted change
 };
 
-/// The set after a change. Values with an immediate effect become active at once; the others are only requested.
+/// The set after a change. Values that take effect at once become active; the others are only requested.
 ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
 
-/// `active` with every requested value that has taken effect when `reached` has just happened.
+/// Returns `active` with those requested values that take effect when `reached` happens.
 Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
 
 bool operator==(const Parameters& a, const Parameters& b);

@@ -85,7 +85,7 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     if (!requested) {
         return requested;
     }
-    // Parameters that wait for a reset may wait for ever, so the others must be valid without them.
+    // A reset may never come, so the other parameters must be valid without those that wait for one.
     const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
     if (auto violations = validate(next, field_prefix); !violations.empty()) {
         return refused(std::move(violations));

@@ -1,9 +1,10 @@
 // Schedules: parameters that change by generation, as experiment files list them.
 //
-// A value holds from the first tick of its generation. Parameters of breeding therefore first act when the following
-// generation is bred. The population size and the contents of the islands already apply to the generation itself.
+// A value holds from the first tick of its generation. A breeding parameter set for generation N therefore first
+// affects the breeding of generation N + 1. The population size and the contents of the islands already apply to
+// generation N.
 //
-// Determinism  World applies the changes, from its schedule, its parameters and its moment alone.
+// Determinism  World applies the changes; they depend only on its schedule, its parameters and its moment.
 #pragma once
 
 #include "server/base/result.h"
@@ -34,11 +35,13 @@ class Schedule {
     /// The number of values after generation 1.
     std::size_t value_count() const;
 
-    /// assignment  valid by fault_of(), of a parameter that can_be_scheduled(), and not yet present in that generation.
+    /// assignment  valid (see fault_of()); its parameter can be scheduled (see can_be_scheduled()) and has no value yet
+    ///             in that generation.
     void add(std::uint64_t generation, const Assignment& assignment);
     /// Removes all values of a parameter.
     void remove(std::string_view name);
-    /// Sets the values of generation 1, for every scheduled parameter, from the parameters that a run begins with.
+    /// Sets the values of generation 1, for every scheduled parameter, to those of the parameters that a run begins
+    /// with.
     void begin_with(const Parameters& parameters);
 
     friend bool operator==(const Schedule&, const Schedule&) = default;
@@ -72,25 +75,25 @@ inline bool can_be_scheduled(const ParameterDescription& description) {
     return description.effect != base::Effect::Reset;
 }
 
-/// The requested parameters after the assignments, made while a world runs. Refused if they are not valid, or if those
-/// that do not wait for a reset are not valid without the others.
+/// The requested parameters after assignments that are made while a world runs. Refused if the result is not valid, or
+/// if it is not valid without the parameters that wait for a reset.
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix = "");
-/// The same for a change at the beginning of a generation. That generation is bred with the old values of breeding
+/// Does the same for a change at the beginning of a generation. That generation is bred with the old values of breeding
 /// parameters, but has the new population size.
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix = "");
 
-/// `active` with the values that hold from the first tick of the generation that is being bred. Breeding itself still
-/// uses the other values of `active`.
+/// The parameters for breeding the next generation: `active`, with the requested values of the parameters that take
+/// effect at a generation. Parameters that take effect at a tick keep their active values while the generation is bred.
 Parameters breeding_with(const Parameters& active, const Parameters& requested);
 
 struct ScheduleFault {
     std::uint64_t generation;
     base::Violation violation; // names the parameter
 };
-/// The violations in a run that begins with these parameters if no other change is made: all of the first generation
-/// that has any.
+/// Returns the violations that the schedule causes in a run that begins with these parameters and has no other changes.
+/// Stops at the first generation that has violations, and returns all of them.
 ///
 /// parameters  valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);

@@ -3,7 +3,7 @@
 namespace evod::physics {
 namespace {
 
-/// visit(column, the value of a void circle).
+/// Calls visit(column, value) for every column, with the value of a void circle in that column.
 template <class F>
 void for_each_column(Circles& circles, F&& visit) {
     visit(circles.x, void_position);
@@ -49,7 +49,7 @@ void Circles::add(const AtRest& circle) {
 
 void Circles::remove(std::size_t i) {
     EVOD_ASSERT(i < size_);
-    // The id stays: it identifies the circle that was here.
+    // The id is kept: it still identifies the removed circle.
     x[i] = y[i] = void_position;
     velocity_x[i] = velocity_y[i] = 0;
     inverse_mass[i] = radius[i] = 0;

@@ -33,7 +33,7 @@ inline double to_px(Coordinate units) {
     return static_cast<double>(units) / units_per_px;
 }
 
-/// b − a in units. The subtraction may wrap around for a void body, whose position is far from every place either way.
+/// b − a in units. For a void body the subtraction may wrap around, but the result is still a large distance.
 inline Coordinate difference(Coordinate a, Coordinate b) {
     return static_cast<Coordinate>(static_cast<std::uint32_t>(b) - static_cast<std::uint32_t>(a));
 }
@@ -43,7 +43,7 @@ inline float distance_px(Coordinate a, Coordinate b) {
     return static_cast<float>(difference(a, b)) * px_per_unit;
 }
 
-/// The inside of an island: 0 … width, 0 … height. The walls are the half-planes outside it.
+/// The inside of an island in units: 0 … width, 0 … height. The walls are the half-planes outside it.
 struct Area {
     Coordinate width = 0, height = 0;
 };
@@ -68,7 +68,7 @@ struct Circles : Bodies {
     void clear();
     /// Appends void circles, or removes the last ones.
     void resize(std::size_t size);
-    /// A circle at rest. put() stores it in the place of a void circle; different circles may be put in parallel.
+    /// A circle at rest. put() replaces a void circle by it; different void circles may be replaced in parallel.
     struct AtRest {
         std::uint32_t id;
         Coordinate x, y;

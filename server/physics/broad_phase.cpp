@@ -74,7 +74,8 @@ void Strips::sort(const Circles& circles, const Area& area, float reach_px, base
         count_and_place<false>(circles, executor);
     }
 
-    // Each cell is sorted by itself. This also removes the order in which threads filled it.
+    // Each cell is sorted separately. The result therefore does not depend on the order in which threads filled the
+    // cell.
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
         return circles.x[a] != circles.x[b] ? circles.x[a] < circles.x[b] : circles.id[a] < circles.id[b];
     };
@@ -125,9 +126,9 @@ bool NearPairs::stale(const Circles& circles, const Boxes& boxes) const {
 
 void NearPairs::sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
     radius_max_ = greatest_radius(circles);
-    // With an even distribution, about every second circle has one other circle within reach. That is few enough to
-    // test in each tick, and the list lasts for about twenty ticks. A tick of 20,000 organisms takes a tenth longer
-    // with half of this skin, and 4 % longer with twice as much.
+    // If circles are distributed evenly, this skin gives about every second circle one other circle within reach. So
+    // few pairs can be tested in each tick, and the list lasts for about twenty ticks. A tick of 20,000 organisms takes
+    // a tenth longer with half of this skin, and 4 % longer with twice as much.
     const double share_px2 =
         to_px(area.width) * to_px(area.height) / static_cast<double>(std::max<std::size_t>(circles.size(), 1));
     const auto reach = static_cast<float>(0.56 * std::sqrt(share_px2));
@@ -170,7 +171,8 @@ void NearPairs::list(const Circles& circles, const Boxes& boxes, base::Executor&
 
 bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& executor) {
     const std::span<const std::uint32_t> order = strips_.order();
-    // More pairs mean a crowd, for which a thinner skin is faster, down to what bodies move in a tick or two.
+    // More pairs than this mean that circles are crowded. A thinner skin is then faster, down to the distance that
+    // bodies move in a tick or two.
     constexpr std::size_t pairs_max = 6 * circles_per_block;
     const bool thick = skin_px_ > radius_max_ / 4 + 0.1f;
     const auto window_max = static_cast<Coordinate>((2 * radius_max_ + skin_px_) * units_per_px) + 1;
@@ -186,7 +188,8 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
             const std::size_t end = std::min(begin + circles_per_block, range.end);
             std::uint32_t strip = strips_.strip_of_place(begin);
             std::size_t strip_end = strips_.strip(strip).end;
-            std::size_t below = 0, below_end = 0; // of the next strip: from window_max to the left, to its end
+            std::size_t below = 0, below_end = 0; // places in the next strip: from the left end of the window to the
+                                                  // end of the strip
             const auto enter_strip = [&](std::size_t k) {
                 while (k >= strip_end) {
                     strip_end = strips_.strip(++strip).end;
@@ -269,7 +272,8 @@ void NearPairs::list_box_pairs(const Circles& circles, const Boxes& boxes) {
               [&](std::uint32_t a, std::uint32_t b) { return left(a) != left(b) ? left(a) < left(b) : a < b; });
     for (std::size_t i = 0; i < boxes_by_left_.size(); ++i) {
         const std::uint32_t a = boxes_by_left_[i];
-        // One pixel more: far from 0, a float of an absolute position has an error of several hundredths of a pixel.
+        // One pixel is added, because far from 0 a float of an absolute position has an error of several hundredths of
+        // a pixel.
         const float right = distance_px(0, boxes.x[a]) + boxes.half_width[a] + skin_px_ + 1;
         for (std::size_t j = i + 1; j < boxes_by_left_.size() && left(boxes_by_left_[j]) <= right; ++j) {
             const std::uint32_t b = boxes_by_left_[j];

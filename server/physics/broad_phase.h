@@ -1,16 +1,17 @@
 // Broad phase: sorts circles into strips and lists the pairs of bodies that may touch soon.
 //
-// A strip is a row of the area, at least as high as the greatest reach of two bodies, and its circles are sorted by x.
-// All circles that a circle may touch are therefore its neighbours in its own strip and in one stretch of the next
-// strip. No array is as large as the area, so the cost depends on the number of circles alone: not on crowds, empty
-// land or the shape of the island.
+// A strip is a horizontal band of the area. It is at least as high as the greatest reach of two bodies, and its circles
+// are sorted by x. All circles that a circle may touch are therefore its neighbours in its own strip, or in one
+// contiguous range of an adjacent strip. No array is as large as the area, so the cost depends only on the number of
+// circles. It does not depend on crowds, empty regions or the shape of the island.
 //
-// Pairs are listed with a skin around every body (Verlet 1967, "Computer experiments on classical fluids"). A pair that
-// is not listed cannot touch until one of its bodies has moved half the skin. Until then, only listed pairs are tested.
+// A pair is listed if the gap between the two bodies is less than the skin, a chosen distance (Verlet 1967, "Computer
+// experiments on classical fluids"). A pair that is not listed cannot touch until one of its bodies has moved half the
+// skin. Until then, only listed pairs are tested.
 //
 // Threads      strips and blocks of circles are processed in parallel.
-// Determinism  the list contains every touching pair, whatever the skin; contacts.h resolves touching pairs in an order
-//              of its own.
+// Determinism  the list contains every touching pair, however thick the skin is. contacts.h then resolves touching
+//              pairs in a fixed order.
 #pragma once
 
 #include "server/base/assert.h"
@@ -26,17 +27,17 @@
 
 namespace evod::physics {
 
-/// How many circles one piece of a parallel loop takes. The columns of so few circles stay in the nearest cache while
-/// several kernels process them.
+/// The number of circles that one piece of a parallel loop processes. Their columns are small enough to stay in the
+/// first-level cache while several kernels process them.
 constexpr std::size_t circles_per_block = 512;
 constexpr std::size_t block_count(std::size_t circles) {
     return (circles + circles_per_block - 1) / circles_per_block;
 }
-/// Whether a loop over so many circles is long enough to be cut for several threads.
+/// Whether a loop over so many circles is long enough to be divided among several threads.
 constexpr bool worth_cutting(std::size_t circles) {
     return circles >= 4096;
 }
-/// How many blocks one piece of a parallel loop takes: all of them if the loop is not worth cutting.
+/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth cutting.
 constexpr std::size_t blocks_per_piece(std::size_t circles) {
     return worth_cutting(circles) ? 1 : block_count(circles) + 1;
 }
@@ -44,8 +45,8 @@ constexpr base::Range circles_of_block(std::size_t circles, std::size_t block) {
     return {block * circles_per_block, std::min((block + 1) * circles_per_block, circles)};
 }
 
-/// Provides one list per block. The lists are kept between ticks; a new one reserves memory for what a block usually
-/// needs.
+/// Provides one list per block. Lists are kept between ticks. A new list reserves memory for the usual number of
+/// elements.
 template <class T>
 void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks, std::size_t usually_enough) {
     const std::size_t before = list_of_block.size();
@@ -58,12 +59,12 @@ void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks
 /// The circles that are not void, sorted by strip, and within a strip by (x, id).
 class Strips {
   public:
-    /// reach_px  greatest distance at which neighbours are requested; the least height of a strip.
+    /// reach_px  the greatest distance at which neighbours will be requested; also the minimum height of a strip.
     void sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor);
 
     /// Indices of the circles.
     std::span<const std::uint32_t> order() const { return order_; }
-    /// Call it when circles have been reordered by order(), which then counts up from 0.
+    /// Must be called after the circles have been reordered by order(). order() is then 0, 1, 2, ….
     void follow_reordering();
 
     std::uint32_t strip_count() const { return strips_; }
@@ -78,12 +79,12 @@ class Strips {
     /// The strip that contains place k of order().
     std::uint32_t strip_of_place(std::size_t k) const;
     std::uint32_t strip_at(std::int64_t y) const { return index_at(y, strip_scale_, strips_); }
-    /// Neighbouring cells of one strip; first_ contains where their circles begin.
+    /// A range of neighbouring cells in one strip, as indices into first_.
     struct Stretch {
         std::uint32_t first_cell, end_cell;
     };
-    /// Calls visit(stretch) for one stretch per strip. Together they contain every circle with left <= x <= right and
-    /// top <= y <= bottom, in units, and a few more.
+    /// Calls visit(stretch) for one stretch per strip. Together the stretches contain every circle with left <= x <=
+    /// right and top <= y <= bottom, in units, and a few other circles.
     template <class Visit>
     void for_each_stretch(std::int64_t left, std::int64_t right, std::int64_t top, std::int64_t bottom,
                           Visit&& visit) const {
@@ -104,8 +105,7 @@ class Strips {
     }
 
   private:
-    // The cells of a strip are as wide as one circle's share of the strip. Sorting begins with counting the circles of
-    // each cell.
+    // Each strip is divided into cells: on average one per circle. Sorting first counts the circles of each cell.
     static std::uint32_t index_at(std::int64_t position, std::uint64_t scale, std::uint32_t count) {
         const auto clamped = static_cast<std::uint64_t>(std::clamp<std::int64_t>(position, 0, 0x7fff'ffff));
         return static_cast<std::uint32_t>(std::min<std::uint64_t>(clamped * scale >> scale_bits, count - 1));
@@ -131,54 +131,56 @@ class NearPairs {
         std::uint32_t a, b; // indices
     };
 
-    /// Whether unlisted pairs might touch, so that the list must be renewed. True until the list is made.
+    /// Whether pairs that are not listed might touch, so that the list must be renewed. True until the first list is
+    /// made.
     bool stale(const Circles& circles, const Boxes& boxes) const;
-    /// Makes stale() true, because all bodies are new.
+    /// Makes stale() return true; for use after all bodies have been replaced.
     void invalidate() {
         displacement_square_ = std::numeric_limits<float>::infinity();
         skin_share_ = 1;
     }
-    /// The circle has become void: its displacement no longer counts.
+    /// Must be called when a circle becomes void. Its displacement is ignored from then on.
     void remove(std::size_t circle) {
         EVOD_ASSERT(circle < circle_count_);
         anchor_x_[circle] = anchor_y_[circle] = void_position;
     }
-    /// The input of the next stale(). displacement_square: of the circle furthest from its anchor, px².
+    /// Sets the displacement that the next stale() uses: the squared distance of the circle furthest from its anchor,
+    /// px².
     void set_displacement_square(float displacement_square) {
         EVOD_ASSERT(displacement_square >= 0);
         displacement_square_ = displacement_square;
     }
 
-    /// Renews the list from the present positions: sort(), then list(). To reorder circles, call the two separately and
-    /// reorder between them.
+    /// Renews the list from the present positions: sort(), then list(). To reorder circles, call sort(), then reorder
+    /// them, then call list().
     void renew(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
         sort(circles, boxes, area, executor);
         list(circles, boxes, executor);
     }
-    /// Takes the present positions of the circles as anchors, and sorts the circles.
+    /// Stores the present positions of the circles as their anchors, and sorts the circles.
     void sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor);
     const Strips& strips() const { return strips_; }
-    /// Call it when circles have been reordered by strips().order().
+    /// Must be called after the circles have been reordered by strips().order().
     void follow_reordering(const Circles& circles, base::Executor& executor);
-    /// Lists the pairs as of the last sort().
+    /// Lists the pairs; uses the result of the last sort().
     void list(const Circles& circles, const Boxes& boxes, base::Executor& executor);
 
-    /// Pairs of circles. There is one part per block of circles.
+    /// Pairs of circles, one part per block of circles.
     std::span<const Pair> circle_pairs(std::size_t block) const {
         EVOD_ASSERT(block < pairs_of_block_.size());
         return pairs_of_block_[block];
     }
     /// a is a circle, b a box.
     std::span<const Pair> circle_box_pairs() const { return circle_box_pairs_; }
-    /// Pairs of boxes, of which at least one can move.
+    /// Pairs of boxes, at least one of which can move.
     std::span<const Pair> box_pairs() const { return box_pairs_; }
 
     const base::Column<Coordinate>& anchor_x() const { return anchor_x_; } // per circle
     const base::Column<Coordinate>& anchor_y() const { return anchor_y_; }
     float skin_px() const { return skin_px_; }
 
-    /// Calls visit(stretch) for stretches that together contain every circle now at most `radius` px from (x, y), and
-    /// others.
+    /// Calls visit(stretch) for stretches. Together they contain every circle that is now at most `radius` px from (x,
+    /// y), and some other circles.
     template <class Visit>
     void for_each_stretch_near(Coordinate x, Coordinate y, float radius, Visit&& visit) const {
         const auto reach = static_cast<std::int64_t>((radius + std::sqrt(displacement_square_) + 0.1f) * units_per_px);
@@ -197,7 +199,7 @@ class NearPairs {
     float displacement_square_ = std::numeric_limits<float>::infinity();
     float radius_max_ = 0; // px
     float skin_px_ = 0;
-    float skin_share_ = 1; // share of the skin that suits an even distribution; smaller in crowds
+    float skin_share_ = 1; // the skin as a share of the one for an even distribution; smaller in crowds
     std::vector<std::vector<Pair>> pairs_of_block_;
     std::vector<Pair> circle_box_pairs_, box_pairs_;
     std::vector<std::uint32_t> boxes_by_left_;

@@ -39,7 +39,7 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
     const float total = mass_a + mass_b;
     EVOD_ASSERT(total > 0);
     const float nx = overlap.normal_x, ny = overlap.normal_y;
-    // Immovable bodies are not written to, because several contacts with one may be resolved in parallel.
+    // Immovable bodies are not written to, because several contacts of the same one may be resolved in parallel.
     const auto move = [&](Body body, float distance) {
         if (body.bodies.inverse_mass[body.index] == 0) {
             return;
@@ -147,8 +147,8 @@ void Contacts::resolve(Circles& circles, Boxes& boxes, float restitution, base::
     for (const std::vector<Contact>& found : found_in_block_) {
         left_.insert(left_.end(), found.begin(), found.end());
     }
-    // A long row of touching bodies, or a body with many contacts, resolves only one contact per round. The remaining
-    // contacts are then sorted and resolved in order.
+    // If many bodies touch in a row, or a body has many contacts, each round can resolve only one of these contacts.
+    // The remaining contacts are then sorted and resolved in order.
     const auto resolve_rounds = [&](std::size_t enough, auto resolve_one_round) {
         while (left_.size() > enough) {
             const std::size_t before = left_.size();
@@ -221,7 +221,8 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
 void Contacts::resolve_one(Circles& circles, Boxes& boxes, const Contact& contact, float restitution) {
     std::size_t a = contact.a & ~box_bit, b = contact.b & ~box_bit;
     if (!(contact.b & box_bit)) {
-        // From the lower id to the higher: two circles at the same position separate in that direction.
+        // The normal points from the lower id to the higher. Two circles at the same position separate in that
+        // direction.
         if (circles.id[a] > circles.id[b]) {
             std::swap(a, b);
         }

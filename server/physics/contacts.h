@@ -3,10 +3,10 @@
 // Resolving a contact moves the two bodies apart in proportion to their inverse masses. If they approach each other, it
 // also applies the impulse j = −(1 + e)(v_rel·n)/(Σ inverse mass) along n.
 //
-// Threads      pairs are tested in parallel, by blocks of circles. Contacts are resolved in rounds: each round resolves
-//              in parallel the contacts that are next for both of their bodies.
-// Determinism  a body's contacts are resolved in ascending order of the other body's identity, circles by id before
-//              boxes by index. The result is that of resolving all contacts in order of (first body, second body).
+// Threads      pairs are tested in parallel, by blocks of circles. Contacts are resolved in rounds. Each round
+//              resolves, in parallel, every contact that is the next one for both of its bodies.
+// Determinism  a body's contacts are resolved in ascending order of the other body's identity: circles by id, then
+//              boxes by index. The result equals that of resolving all contacts in order of (first body, second body).
 //              Groups of bodies that do not touch each other do not influence each other.
 // Source       Baraff 1997, "An introduction to physically based modeling", on impulses without rotation.
 #pragma once
@@ -24,21 +24,21 @@ class Contacts {
   public:
     /// Clears the contacts with boxes. Each block clears its own contacts when it is tested.
     void begin(const Circles& circles, const Boxes& boxes);
-    /// Finds the pairs of a block, among those that `near` lists, that touch now. Blocks may be tested in parallel.
+    /// Finds the pairs of a block that touch now, among the near pairs of that block. Blocks may be tested in parallel.
     void find_among_circles(const Circles& circles, const NearPairs& near, std::size_t block);
     void find_with_boxes(const Circles& circles, const Boxes& boxes, const NearPairs& near);
 
     /// Finds every touching pair in which at least one body can move, from a new list of near pairs.
     void find(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor);
 
-    /// Resolves the contacts found, each from the state of its bodies at that moment.
+    /// Resolves the contacts that were found. Each contact uses the state that the previous contacts have left.
     void resolve(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor);
 
     /// The number of pairs found.
     std::size_t size() const;
 
   private:
-    // A body is a circle's index, or a box's index with the highest bit set.
+    // A body is identified by a circle's index, or by a box's index with the highest bit set.
     struct Contact {
         std::uint32_t a, b;
         bool resolved = false;
@@ -52,8 +52,8 @@ class Contacts {
     std::vector<std::vector<Contact>> found_in_block_; // per block of circles; kept between ticks
     std::vector<Contact> found_with_boxes_;
     std::vector<Contact> left_;
-    base::Column<std::uint32_t> first_of_circle_, first_of_box_; // the least identity that it is in contact with, or
-                                                                 // no_identity
+    base::Column<std::uint32_t> first_of_circle_, first_of_box_; // the least identity among the body's contacts;
+                                                                 // no_identity if there is none
 };
 
 } // namespace evod::physics

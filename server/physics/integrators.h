@@ -23,7 +23,7 @@ struct Integration {
 /// damping_rate  1/s, >= 0: after t seconds the share e^(−rate·t) of a velocity is left.
 Integration integration(Integrator integrator, double tick_s, double damping_rate);
 
-/// The rate at which the share `share_kept` of a velocity is left after 1/60 s; share_kept in (0, 1].
+/// The damping rate, 1/s, that leaves the share `share_kept` of a velocity after 1/60 s; share_kept in (0, 1].
 double damping_rate(double share_kept);
 
 /// The velocity after acceleration and damping.

@@ -1,4 +1,4 @@
-// A kernel, compiled once per set of instructions; see base/lanes.h for what it may include.
+// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
 #include "server/physics/motion_kernels.h"
 
 #include "server/base/lanes.h"
@@ -37,7 +37,7 @@ void accelerate(const MotionColumns& columns, const Forces& force, std::size_t b
     }
 }
 
-/// Reduces the speeds of the lanes of `over` to the limit.
+/// Reduces the speed to the limit in the lanes that `over` selects.
 void limit(Floats& vx, Floats& vy, Floats square, Integers over, float limit) {
     const Floats share = limit / square_root(square);
     vx = over ? vx * share : vx;

@@ -1,7 +1,7 @@
 // Motion kernels: update the velocities and positions of circles in a tick, several circles at once.
 //
-// Determinism  each circle is independent; the kernels are compiled for two sets of instructions, which give the same
-//              bits (base/instructions.h).
+// Determinism  each circle is computed independently. The kernels are compiled for two sets of instructions, which give
+//              the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ struct MotionColumns {
     float *velocity_x, *velocity_y;
     const float *inverse_mass, *radius;
     float *drift_x, *drift_y;                // explicit Euler: old velocity − new velocity; otherwise nullptr
-    const std::int32_t *anchor_x, *anchor_y; // see MoveCounts::displacement_square
+    const std::int32_t *anchor_x, *anchor_y; // positions from which MoveCounts::displacement_square is measured
 };
 
 /// The forces on a block of circles in one tick, kg px/s²; padded like the columns, 0 for void circles.
@@ -28,26 +28,26 @@ struct MotionRules {
     float velocity_kept;
     float restitution;
     float max_speed;            // px/s
-    std::int32_t width, height; // of the area, units
+    std::int32_t width, height; // size of the area, units
 };
 
 struct MoveCounts {
     std::uint64_t too_fast = 0, speed_limited = 0; // as in StepCounts
-    float displacement_square = 0;                 // px²; of the circle furthest from its anchor
+    float displacement_square = 0;                 // squared distance of the circle furthest from its anchor, px²
 };
 
 struct MotionKernels {
     /// Applies force and damping to velocities, and bounces a circle off a wall that it touches if it moves outward.
-    /// force  of the circles from `begin` on.
+    /// force  the forces on the circles from `begin` on: element 0 is for circle `begin`.
     void (*accelerate)(const MotionColumns& columns, const Forces& force, std::size_t begin, std::size_t end,
                        const MotionRules& rules);
-    /// Limits speeds, and applies velocities to positions. Puts circles beyond a wall back inside, and bounces those
-    /// that still move outward.
+    /// Limits speeds, and applies velocities to positions. Puts circles beyond a wall back inside, and bounces the
+    /// circles among them that still move outward.
     MoveCounts (*move)(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules);
     // begin is a multiple of lanes_max. Up to lanes_max − 1 void circles beyond `end` are processed too.
 };
 
-/// The kernels for the instructions in use.
+/// The kernels for the instructions in use (base/instructions.h).
 const MotionKernels& motion_kernels();
 
 } // namespace evod::physics

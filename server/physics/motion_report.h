@@ -2,8 +2,8 @@
 // is short enough for the speeds.
 //
 // Determinism  the terms of sums are rounded to multiples of 1/65536, which doubles add exactly up to 2^37. Equal
-//              states give equal reports, in whatever order circles are stored.
-// Cost         O(n); a little more if the list of near pairs is stale, because the report then makes its own.
+//              states therefore give equal reports, in whatever order circles are stored.
+// Cost         O(n); a little more if the list of near pairs is stale, because the report then creates its own list.
 #pragma once
 
 #include "server/physics/bodies.h"
@@ -18,7 +18,7 @@ struct MotionReport {
     double kinetic_energy = 0;                 // kg px²/s²
     double momentum_x = 0, momentum_y = 0;     // kg px/s
     std::uint32_t touching_count = 0;          // pairs of bodies, at least one of which can move
-    double deepest_overlap_px = 0;             // of two bodies, or of a movable body and a wall
+    double deepest_overlap_px = 0;             // greatest overlap of two bodies, or of a movable body and a wall
     double deepest_overlap_share = 0;          // greatest overlap as a share of the smaller body's radius or least half
                                                // side
     double fastest_px_s = 0, fastest_step = 0; // fastest_step: greatest movement in a tick as a share of the body's

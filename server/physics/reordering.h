@@ -15,7 +15,7 @@
 
 namespace evod::physics {
 
-/// Kernels take several bodies at once, so the columns that they read have a multiple of this length.
+/// Kernels process several bodies at once, so the length of the columns that they read is a multiple of this number.
 constexpr std::size_t lanes_max = 8;
 constexpr std::size_t padded(std::size_t size) {
     return (size + lanes_max - 1) / lanes_max * lanes_max;
@@ -24,7 +24,7 @@ constexpr std::size_t padded(std::size_t size) {
 class Reordering {
   public:
     /// order  indices into the columns, none of them twice.
-    /// spare  working memory, shared by all columns; the caller keeps it.
+    /// spare  working memory, shared by all columns; owned by the caller.
     Reordering(std::span<const std::uint32_t> order, base::Column<std::uint32_t>& spare, base::Executor& executor)
         : order_{order}, spare_{spare}, executor_{executor} {}
 

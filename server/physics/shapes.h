@@ -10,7 +10,7 @@ namespace evod::physics {
 struct Overlap {
     bool touching = false;
     float depth = 0;                  // px, >= 0
-    float normal_x = 0, normal_y = 0; // from the first to the second
+    float normal_x = 0, normal_y = 0; // the normal, from the first shape to the second
 };
 
 struct BoxShape {
@@ -25,9 +25,9 @@ Overlap circle_circle(float dx, float dy, float first_radius, float second_radiu
 ///         the normal is positive.
 Overlap box_box(float dx, float dy, BoxShape first, BoxShape second);
 
-/// dx, dy  circle's centre − box's centre, px. A centre inside the box or on its edge leaves by the nearest side: depth
-///         is the distance to that side plus the radius. If sides are equally near, the x axis wins, then the positive
-///         side.
+/// dx, dy  circle's centre − box's centre, px. If the centre is inside the box or on its edge, the normal points to the
+///         nearest side, and depth is the distance to that side plus the radius. If sides are equally near, the x axis
+///         wins, then the positive side.
 Overlap box_circle(float dx, float dy, BoxShape box, float radius);
 
 } // namespace evod::physics

@@ -16,7 +16,7 @@ const MotionKernels& motion_kernels() {
 
 namespace {
 
-/// Reduces a velocity to `limit`, px/s. Returns whether it was above it.
+/// Reduces the speed to `limit`, px/s. Returns whether it was above the limit.
 bool limit_speed(float& vx, float& vy, float limit) {
     const float square = vx * vx + vy * vy;
     if (square <= limit * limit) {

@@ -3,9 +3,9 @@
 // the walls. Forces act for one tick.
 //
 // Owner        an island; it keeps the working memory between ticks.
-// Threads      blocks of circles are accelerated, tested for contacts and moved in parallel. A caller with more work
-//              per block calls the parts of the step in loops of its own.
-// Determinism  see contacts.h; everything else is independent for each body.
+// Threads      blocks of circles are accelerated, tested for contacts and moved in parallel. A caller that has more
+//              work per block calls the parts of the step in its own loops.
+// Determinism  contacts.h states the order of contacts; everything else is independent for each body.
 #pragma once
 
 #include "server/base/executor.h"
@@ -33,25 +33,25 @@ struct StepCounts {
 
 class Stepper {
   public:
-    /// One tick. force: on each circle, padded like the columns.
+    /// Performs one tick. force: the force on each circle, padded like the columns.
     StepCounts step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                     const Forces& force, base::Executor& executor);
 
     // The parts of step(), in the order in which they are called.
 
-    /// The list of near pairs. Renew it when it is stale().
+    /// The list of near pairs. The caller renews it when its stale() returns true.
     NearPairs& near() { return near_; }
     const NearPairs& near() const { return near_; }
     void begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters);
     /// For one block of circles: forces → velocities, damping, bounces off walls; then finds the contacts of the block.
     /// Blocks may be processed in parallel.
-    /// force  of the circles of the block.
+    /// force  the forces on the circles of the block.
     void accelerate(Circles& circles, std::size_t block, const Forces& force);
-    /// The same for the boxes; then resolves all contacts.
+    /// Does the same for the boxes; then resolves all contacts.
     void collide(Circles& circles, Boxes& boxes, base::Executor& executor);
     /// Velocities → positions for one block of circles. Blocks may be processed in parallel.
     void move(Circles& circles, std::size_t block);
-    /// The same for the boxes.
+    /// Velocities → positions for the boxes.
     StepCounts finish(Boxes& boxes);
 
   private:

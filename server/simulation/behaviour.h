@@ -1,10 +1,10 @@
-// Behaviour: what each organism sees, and the force that it chooses in response.
+// Behaviour: computes what each organism sees, and the force with which it responds.
 //
 // An organism sees the nearest food within food_radius and the nearest poison within poison_radius, centre to centre.
 // 1. It flees from seen poison with probability min(1, impulse / certain_impulse), if the poison is nearer than the
 // nearest seen food (FleeRule::Always: regardless of food). The force points straight away from the poison.
 // 2. Otherwise it steers to seen food: a force along (food − position − velocity · lookahead).
-// 3. Otherwise it wanders: a force in a new uniform direction. A direction of length 0 is replaced by a random one too.
+// 3. Otherwise it wanders: a force in a new uniform direction. It also wanders if the direction in 1 or 2 has length 0.
 //
 // Threads      ranges of organisms are processed in parallel; each organism writes its own force.
 // Determinism  all positions are those at the start of the tick; the draws of an organism are keyed by its id and the
@@ -31,7 +31,7 @@ struct BehaviourRules {
     float force_per_unit;  // kg px/s² per gene unit
 };
 
-/// The columns that kernels take. Valid until columns grow or are reordered.
+/// The columns that kernels process. Valid until columns grow or are reordered.
 OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
                                  const Items& poison);
 
@@ -49,11 +49,12 @@ void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules
 struct Intention {
     Choice choice = Choice::None;                   // None: there is no such organism
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // of the food or poison; its own position if it wanders
+    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; the organism's own position if it
+                                                    // wanders
 };
 
-/// Predicts what `bodies_asked` will choose in `tick` if no item reappears before it; changes nothing. No body may be
-/// void.
+/// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.
+/// None of the bodies may be void.
 /// intentions  shape (bodies_asked).
 void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                         const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,

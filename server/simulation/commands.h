@@ -1,6 +1,6 @@
 // Commands: everything that can change a laboratory from outside. Laboratory::apply applies them between two ticks.
 //
-// The caller names the world; the boundary has already replaced an empty name.
+// Each command names its world. The protocol layer has already replaced an empty name by the name of a world.
 #pragma once
 
 #include "server/base/random.h"
@@ -15,7 +15,8 @@
 
 namespace evod::simulation {
 
-/// The permanent identity of a run: random, drawn by the shell for every create and reset. Not part of the state.
+/// The permanent identity of a run: a random number, drawn outside the core for every create and reset. Not part of the
+/// state.
 struct RunId {
     std::uint64_t high = 0, low = 0;
     friend bool operator==(const RunId&, const RunId&) = default;
@@ -36,7 +37,8 @@ struct CreateWorld {
     base::Seed seed;
     RunId run_id;
     FirstPopulation first_population = {}; // valid for these parameters
-    parameters::Schedule schedule = {};    // faults_of() is empty; generation 1 has the values of `parameters`
+    parameters::Schedule schedule = {};    // valid: faults_of() returns nothing; generation 1 has the values of
+                                           // `parameters`
 };
 struct DeleteWorld {
     std::string world;
@@ -56,7 +58,8 @@ struct RunUntilTick {
 };
 struct ReleaseLease {
     std::string world;
-    std::optional<std::uint64_t> lease = {}; // only if this lease still holds
+    std::optional<std::uint64_t> lease = {}; // number of the lease; refused if it is not the last one. nullopt: any
+                                             // lease
 };
 struct Pause {
     std::string world;
@@ -73,7 +76,7 @@ struct SetParameters {
     std::vector<parameters::Assignment> assignments;
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
-    std::optional<parameters::PlannedMoment> at = std::nullopt; // nullopt: at once
+    std::optional<parameters::PlannedMoment> at = std::nullopt; // when to apply the change; nullopt: at once
     std::string by = {};                                        // the author's name as other clients see it
 };
 /// Cancels a planned change.
@@ -84,8 +87,8 @@ struct CancelChange {
 
 struct ForkWorld {
     std::string world; // the world to fork
-    std::string name;  // of the new world; as in CreateWorld
-    // The new world starts at the first moment of this generation; nullopt: from the present state of the original.
+    std::string name;  // name of the new world; as in CreateWorld
+    // The new world starts at the first moment of this generation of the original; nullopt: from its present state.
     // Earlier generations exist only in a run file.
     std::optional<std::uint64_t> at_generation;
     RunId run_id;

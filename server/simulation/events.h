@@ -1,4 +1,5 @@
-// Events: what happened in a laboratory. Laboratory collects them; the runtime takes them after every step.
+// Events: what happened in a laboratory. The Laboratory object collects events, and the runtime takes them after every
+// step.
 #pragma once
 
 #include "server/evolution/termination.h"
@@ -21,7 +22,7 @@ struct MigrationHappened {
     std::uint64_t generation; // the ended generation, whose organisms are replaced
     std::vector<Edge> edges;
 };
-/// Every organism of an island is dead before the generation's time is up.
+/// Every organism of an island has died before the generation's time is over.
 struct Extinction {
     std::uint32_t island;
     std::uint64_t generation;
@@ -33,14 +34,15 @@ struct RunTerminated {
 struct ParametersChanged {
     std::uint64_t planned = 0;      // PlannedChange::id; 0: the schedule of the experiment
     std::string by;                 // author of the plan; empty for the schedule
-    std::vector<std::string> names; // of the assigned parameters
+    std::vector<std::string> names; // names of the assigned parameters
     std::uint64_t revision;
 };
-/// A planned or scheduled change was dropped, because it does not fit the parameters in effect at its moment.
+/// A planned or scheduled change was dropped, because it is not valid together with the parameters in effect at its
+/// moment.
 struct ChangeDropped {
     std::uint64_t planned = 0;
     std::string by;                 // as in ParametersChanged
-    std::vector<std::string> names; // of the parameters to be assigned
+    std::vector<std::string> names; // names of the parameters to be assigned
     std::vector<base::Violation> violations;
 };
 struct GoalReached {}; // the requested generations or ticks are over: the world waits, or is paused

@@ -1,8 +1,8 @@
 // Feeding: finds which bodies touch which items of one kind after the tick's move, and which body gets each item.
 //
 // Threads      blocks of bodies are searched in parallel.
-// Determinism  an item goes to the nearest body that touches it, of equally near bodies to the lowest id, whatever the
-//              order of the search.
+// Determinism  an item goes to the nearest body that touches it; if bodies are equally near, to the one with the lowest
+//              id. The order of the search does not matter.
 #pragma once
 
 #include "server/physics/bodies.h"
@@ -28,7 +28,8 @@ class Feeding {
     void begin(std::size_t blocks);
 
     /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
-    /// that touches an item, and may contain others.
+    /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
+    /// that touches an item, and may contain other bodies.
     void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
                       const Items& items);
 

@@ -1,4 +1,4 @@
-// First population: chromosomes that a run begins with, instead of drawn ones.
+// First population: given chromosomes with which a run begins. Without them, chromosomes are drawn at random.
 #pragma once
 
 #include "server/base/result.h"
@@ -11,18 +11,19 @@
 
 namespace evod::simulation {
 
-/// One matrix per island; nullptr: drawn from the seed. Shared, because it is never changed and may be large.
+/// One matrix per island; nullptr: chromosomes are drawn from the seed. Shared, because it is never changed and may be
+/// large.
 using FirstPopulation = std::shared_ptr<const std::vector<evolution::GeneMatrix>>;
 
-/// Whether two are equal to the last bit, except for the sign of 0.
+/// Whether two first populations are equal to the last bit, except for the sign of 0.
 bool same(const FirstPopulation& a, const FirstPopulation& b);
 
-/// Why a world with these parameters cannot begin with this population: wrong numbers of islands or organisms, genes
-/// out of bounds.
+/// The reasons why a world with these parameters cannot begin with this population: wrong numbers of islands or
+/// organisms, genes out of bounds.
 ///
-/// field    of the population as the sender spells it: "create_world.population"; a gene is
+/// field    name of the population as the sender spells it: "create_world.population". The name of a gene is then
 ///          "create_world.population[0].organism[17].body_size".
-/// returns  empty if it can; at most faults_max violations.
+/// returns  at most faults_max violations; empty if the world can begin with the population.
 std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field);
 constexpr std::size_t faults_max = 20;

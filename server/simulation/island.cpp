@@ -12,11 +12,11 @@
 namespace evod::simulation {
 namespace {
 
-// Kinds of entities in the state hash, besides organisms; part of a run's identity.
+// Kinds of entities in the state hash, besides organisms. The numbers determine the hashes of every run.
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
-/// The greatest health that meals can lead to: above this, rounding of a float loses a meal, which gives at most
+/// The greatest health that meals can reach. Above it, rounding of a float loses a whole meal, which gives at most
 /// 10,000.
 constexpr float health_reachable = 0x1p38f;
 
@@ -30,7 +30,7 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
 }
 
 ItemRules item_rules(const parameters::Parameters& p) {
-    // Rounds down a little, so that 23 sixtieths are 23 ticks of a sixtieth despite rounding.
+    // Slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,
@@ -186,7 +186,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
 }
 
-/// Processes food and poison, in parallel if that pays.
+/// Processes food and poison, in parallel if that is faster.
 template <class OfFood, class OfPoison>
 void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
     executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
@@ -209,8 +209,8 @@ void Island::resize_blocks(std::size_t count) {
 }
 
 void Island::renew_near_pairs(base::Executor& executor) {
-    // Without sorting, a tick of 1,000,000 takes 30 % longer, and one of 20,000 the same time. Sorting more often than
-    // at every fourth renewal costs more than it saves.
+    // Without sorting, a tick of 1,000,000 organisms takes 30 % longer, and a tick of 20,000 takes the same time.
+    // Sorting more often than at every fourth renewal costs more than it saves.
     constexpr std::uint32_t renewals_between = 4;
     constexpr std::size_t worth_ordering = 1024;
     physics::NearPairs& near = stepper_.near();
@@ -263,7 +263,7 @@ void Island::move(std::size_t block) {
 
 base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                              base::Executor& executor) {
-    // Organisms are processed block by block; changes of the items' grid follow one after another.
+    // Organisms are processed in blocks, in parallel. The grids of items are then changed sequentially.
     constexpr std::size_t events_worth_cutting = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
     for (const Block& block : blocks_) {
@@ -321,7 +321,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         __builtin_prefetch(&bodies_.velocity_y[touch.body]);
         __builtin_prefetch(&living_.health[touch.body], 1);
     }
-    // All food before all poison. Items of one kind are equal, so their order does not matter.
+    // All food is eaten before all poison. Items of one kind are equal, so their order does not matter.
     for (const Touch& touch : food_feeding_.touches(index)) {
         if (!touch.gets_it) {
             continue;
@@ -345,8 +345,8 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         ++fate_.poison_eaten[touch.id];
         ++block.poison_eaten;
     }
-    // Living costs health at the beginning of a tick and poison at its end, so poison eaten in this tick was the last
-    // loss.
+    // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
+    // poison in this tick, poison was therefore the cause of death.
     for (const Touch& touch : poison_feeding_.touches(index)) {
         if (touch.gets_it && is_dying(touch.body)) {
             record_death(block, touch.body, tick, CauseOfDeath::Poisoned);
@@ -517,7 +517,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     }
     food_.restore(state.food, executor);
     poison_.restore(state.poison, executor);
-    // At the beginning of a generation every organism has its id as index.
+    // At the beginning of a generation, the index of every organism equals its id.
     base::StateHash organisms;
     std::vector<std::uint32_t> gone;
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {

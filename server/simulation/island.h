@@ -10,7 +10,7 @@
 // Owner        World. Islands share nothing, so a world advances them in parallel.
 // Threads      a tick is two loops over blocks of organisms. Work that concerns single organisms runs between and after
 //              the loops.
-// Determinism  decisions are made by ids; the order of arrays is not part of the state.
+// Determinism  decisions depend on ids. The order of arrays is not part of the state.
 #pragma once
 
 #include "server/base/executor.h"
@@ -46,12 +46,13 @@ class Island {
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
-    /// tick  of the generation, 1 for the first.
+    /// tick  the tick within the generation; 1 for the first.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
     IslandShape shape() const;
     IslandState state(base::Executor& executor) const;
-    /// Checks whether `state`, after `tick`, is possible for this island, which is at the beginning of its generation.
+    /// Checks whether `state` is possible for this island after `tick`. The island must be at the beginning of its
+    /// generation.
     base::Result<void> check(const IslandState& state, std::uint32_t tick) const;
     /// Sets the island to a state that check() has accepted.
     void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
@@ -61,8 +62,8 @@ class Island {
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
-    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. None for
-    /// dead organisms and on islands without bodies.
+    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. The
+    /// choice is None for dead organisms and on islands without bodies.
     std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                       base::Range ids) const;
 
@@ -82,10 +83,11 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
-    const Living& living() const { return living_; } // by body
+    const Living& living() const { return living_; } // columns by body index
     const physics::Circles& bodies() const {
         return bodies_;
-    }                                                      // of the living, in any order; bodies of the dead are void
+    }                                                      // circles of the living organisms, in any order; void bodies
+                                                           // for the dead
     const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
@@ -96,7 +98,7 @@ class Island {
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
-    /// All of it except health_mean, which would need a loop over all organisms.
+    /// All live statistics except health_mean, which would need a loop over all organisms.
     LiveStatistics live_counts() const;
 
   private:
@@ -114,8 +116,8 @@ class Island {
 
     /// The results of a tick in one block of organisms.
     struct Block {
-        base::StateHash hash;             // of the living organisms
-        std::vector<std::uint32_t> dying; // bodies with no health left, before meals
+        base::StateHash hash;             // hash of the living organisms
+        std::vector<std::uint32_t> dying; // bodies that had no health left before meals
         base::StateHash food_hash_change, poison_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
@@ -146,8 +148,8 @@ class Island {
     Fate fate_;
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;
-    base::Column<std::uint32_t> body_of_; // by id
-    base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
+    base::Column<std::uint32_t> body_of_; // index in bodies(), by id
+    base::StateHash born_hash_;           // hash of the chromosomes, which do not change during a generation
     base::StateHash hash_;
 
     std::vector<Block> blocks_; // kept between ticks

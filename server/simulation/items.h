@@ -1,8 +1,8 @@
 // Items: the food or the poison of an island, in a uniform grid of buckets of eight items. The grid is updated in place
-// as items come and go.
+// when items disappear and reappear.
 //
-// Threads      set_due() in parallel for different items; consume(), take_out() and reappear() by one caller at a time;
-//              queries by any number of threads while nothing changes.
+// Threads      set_due() may run in parallel for different items. consume(), take_out() and reappear() need a single
+//              caller. Any number of threads may query while nothing changes.
 // Determinism  the place where an item reappears depends on (seed, island, generation, item, tick) alone. Queries
 //              select by distance, then by id, never by the order in a bucket.
 #pragma once
@@ -30,7 +30,8 @@ struct ItemRules {
     std::uint32_t count;
     float radius_px;
     bool respawn;
-    std::uint32_t respawn_ticks; // ticks from being eaten until the tick that begins with the item present again, >= 1
+    std::uint32_t respawn_ticks; // number of ticks from the one in which an item is eaten to the one that begins with
+                                 // it present again, >= 1
 };
 
 class Items {
@@ -41,17 +42,18 @@ class Items {
     void begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
                           const physics::Area& area, const BoxGrid& obstacles, base::Executor& executor);
 
-    /// Places new items at the given places, shape (rules.count), with the respawn draws of island 0, generation 1.
+    /// Places new items at the given places, shape (rules.count). Reappearing items use the draws of island 0,
+    /// generation 1.
     void begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
                   base::Executor& executor);
 
     struct Item {
-        physics::Coordinate x, y; // of an absent item: where it was
+        physics::Coordinate x, y; // position; of an absent item, its last position
         std::uint32_t due_tick;   // 0: present; otherwise the tick at whose beginning it reappears
         friend bool operator==(const Item&, const Item&) = default;
     };
-    /// Why `items` cannot be the items after `tick` of the generation; nullptr if they can. resting: no item reappears
-    /// any more, due or not.
+    /// Returns why `items` cannot be the items after `tick` of the generation; nullptr if they can. resting: items no
+    /// longer reappear, even if they are due.
     const char* fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const;
     /// Sets the items; fault_of() must have accepted them.
     void restore(std::span<const Item> items, base::Executor& executor);
@@ -63,9 +65,11 @@ class Items {
     void consume(std::uint32_t item, std::uint32_t tick);
 
     // The two parts of consume(), for many items.
-    /// Sets when the item is present again; in parallel for different items. Returns the change of the hash.
+    /// Sets when the item is present again. May be called in parallel for different items. Returns the change of the
+    /// hash.
     base::StateHash set_due(std::uint32_t item, std::uint32_t tick);
-    /// Removes items from the grid, one after another. place: as of before the first of them was removed.
+    /// Removes an item from the grid, by one caller at a time. place: where it was before any item was removed in this
+    /// tick.
     void take_out(std::uint32_t item, std::uint32_t place);
     void add_to_hash(const base::StateHash& change) { hash_ += change; }
     /// Prefetches the memory that take_out() reads.
@@ -95,7 +99,7 @@ class Items {
     std::uint32_t item_at(std::uint32_t place) const {
         return place == none ? none : items_[place / slots][place % slots];
     }
-    /// The grid for items_kernels(), for many queries. Valid until an item is added.
+    /// The grid in the form that items_kernels() read, for many queries. Valid until an item is added.
     ItemGrid grid() const;
 
     /// Calls found(item, its place, square of the distance) for every item whose centre is at most `radius` px from (x,
@@ -108,7 +112,7 @@ class Items {
         for (std::uint32_t row = row_at(y - reach); row <= bottom; ++row) {
             for (std::uint32_t column = column_at(x - reach); column <= right; ++column) {
                 for (std::uint32_t b = row * columns_ + column; b != none;) {
-                    // Of most buckets only the places are read.
+                    // For most buckets only the positions are read.
                     const ItemBucket& places = bucket(b);
                     for (std::uint32_t slot = 0; slot < slots && places.x[slot] != physics::void_position; ++slot) {
                         const float dx = physics::distance_px(x, places.x[slot]),
@@ -124,7 +128,7 @@ class Items {
         }
     }
 
-    /// The items that came and went since forget_changes(), in order.
+    /// Changes since forget_changes(), in order: items that disappeared or reappeared.
     struct Change {
         physics::Coordinate x, y;
         bool came;
@@ -135,7 +139,7 @@ class Items {
     std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
-    const base::Column<Item>& all() const { return all_; } // by id
+    const base::Column<Item>& all() const { return all_; } // all items, by id
     float radius_px() const { return rules_.radius_px; }
     /// The hash of all items; updated as they come and go.
     base::StateHash hash() const { return hash_; }
@@ -146,7 +150,7 @@ class Items {
     template <class PlaceOf>
     void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
                base::Executor& executor, PlaceOf&& place_of);
-    /// item_of: each item as it is now, by id.
+    /// item_of(id)  returns the present state of an item.
     template <class ItemOf>
     void put_all(base::Executor& executor, ItemOf&& item_of);
     void choose_cells(std::uint32_t count);
@@ -173,9 +177,9 @@ class Items {
     struct Due {
         std::uint32_t tick, item;
     };
-    std::vector<Due> due_; // in order of tick, from due_begin_
+    std::vector<Due> due_; // sorted by tick, from index due_begin_ on
     std::size_t due_begin_ = 0;
-    std::int64_t side_ = 1; // as in ItemGrid
+    std::int64_t side_ = 1; // side of a cell, as in ItemGrid
     std::uint64_t scale_ = 0;
     std::uint32_t rows_ = 0, columns_ = 0;
     // Buckets as in ItemGrid, after an empty one. The data that every query reads is stored together, apart from the

@@ -1,4 +1,4 @@
-// A kernel, compiled once per set of instructions; see base/lanes.h for what it may include.
+// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
 #include "server/simulation/items_kernels.h"
 
 #include "server/base/lanes.h"
@@ -21,7 +21,7 @@ T greatest(T a, T b) {
     return a < b ? b : a;
 }
 
-/// to − from. May wrap around for empty slots, whose position is far either way.
+/// to − from. For empty slots the subtraction may wrap around, but the result is still a large distance.
 Floats distances(std::int32_t from, const std::int32_t* to) {
     return to_floats((Integers)(load<Words>(to) - static_cast<std::uint32_t>(from)));
 }
@@ -41,7 +41,8 @@ float least_lane(Floats v) {
 /// The two nearest places found so far. Each lane keeps the two nearest of its own slots, so that no branch depends on
 /// the result.
 ///
-/// Squares are in units² until the end. They equal px² times a power of two, so the bits are the same.
+/// Squared distances are in units² until the end. They equal px² times a power of two, so they have the same
+/// significant bits.
 class Search {
   public:
     Search(const ItemGrid& grid, std::int32_t x, std::int32_t y) : grid_{grid}, x_{x}, y_{y} {}
@@ -57,7 +58,7 @@ class Search {
         }
     }
 
-    /// The buckets of a cell after the first.
+    /// Tests the buckets of a cell after the first.
     void look_at_overflow(std::uint32_t cell) {
         // The places are already loaded. Testing them avoids reading next_ for most buckets.
         for (std::uint32_t b = cell;
@@ -83,7 +84,8 @@ class Search {
         }
     }
 
-    /// The distance of the second nearest so far, units²; greater than any possible value if there is none.
+    /// The squared distance of the second nearest item so far, units²; greater than any possible value if there is
+    /// none.
     float others_square() const {
         const float best = least_lane(best_);
         const Floats without_best = best_ == best ? all_lanes(__FLT_MAX__) : best_;
@@ -108,7 +110,8 @@ class Search {
     }
 
   private:
-    /// Several items at the same distance, which is rare: searches all cells within it, item by item.
+    /// For the rare case of several items at the same distance: finds the one with the lowest id. Searches all cells
+    /// within that distance, item by item.
     std::uint32_t lowest_id_at(float square, std::uint32_t place) const;
 
 #if EVOD_LANES == 8
@@ -168,7 +171,8 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
     const Cells cells = cells_within(grid, x, y, static_cast<std::int64_t>(radius * units) + 1);
     const std::int64_t more_columns = cells.right - cells.left, more_rows = cells.bottom - cells.top;
     if (more_columns <= 1 && more_rows <= 1) {
-        // The usual case: four buckets, with an empty one in place of an unneeded one, so that nothing branches.
+        // The usual case: exactly four buckets are tested, without a branch. An empty bucket replaces each one that is
+        // not needed.
         const std::uint32_t empty = ~0u;
         const auto first =
             static_cast<std::uint32_t>(cells.top) * grid.columns + static_cast<std::uint32_t>(cells.left);
@@ -188,7 +192,7 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
         search.look_at_cells(cells.top, cells.bottom, cells.left, cells.right);
         return search.result(radius);
     }
-    // Rings of cells around the first, until the next ring is further away than both nearest.
+    // Searches rings of cells around the first cell, until the next ring is further away than the two nearest items.
     const std::int64_t column = cell_at(x, grid.scale, grid.columns), row = cell_at(y, grid.scale, grid.rows);
     // The distance from (x, y) to the nearest edge of its cell, slightly reduced, because cell edges are rounded.
     const std::int64_t from_left = x - column * grid.side, from_top = y - row * grid.side;

@@ -1,6 +1,6 @@
 // Items kernels: find the nearest items, eight places at a time.
 //
-// Determinism  compiled for two sets of instructions, which give the same bits (base/instructions.h).
+// Determinism  the kernels are compiled for two sets of instructions, which give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -19,24 +19,24 @@ struct alignas(64) ItemBucket {
 
 /// A uniform grid of buckets, row by row: bucket c is the first bucket of cell c. Overflow buckets follow.
 struct ItemGrid {
-    const ItemBucket* buckets;                       // the one at [-1] is empty
+    const ItemBucket* buckets;                       // buckets[-1] is an empty bucket
     const std::uint32_t (*items)[ItemBucket::slots]; // per bucket
     const std::uint32_t* next;                       // per bucket: the next bucket of the same cell, or no_item
     std::uint32_t rows, columns;
-    std::int64_t side;   // of a cell, units
+    std::int64_t side;   // side of a cell, units
     std::uint64_t scale; // cells per unit, times 2^scale_bits
     static constexpr unsigned scale_bits = 44;
 };
 
 struct TwoNearest {
-    std::uint32_t place; // bucket of the nearest item · ItemBucket::slots + its slot; of equally near items, that of
-                         // the lowest id; no_item if none
+    std::uint32_t place; // bucket of the nearest item · ItemBucket::slots + its slot; of equally near items, the one
+                         // with the lowest id; no_item if there is none
     std::int32_t x, y;   // its position; void_position if there is none
     float square;        // its squared distance, px²; radius² if there is none
     float others_square; // no other item is nearer than this, px²; at most radius²
 };
 
-/// Searches items at most `radius` px from (x, y); a distance equal to the radius is included.
+/// A search for items at most `radius` px from (x, y); a distance equal to the radius is included.
 struct ItemQuery {
     std::int32_t x, y;
     float radius;
@@ -45,12 +45,12 @@ struct ItemQuery {
 struct ItemsKernels {
     /// Prefetches the memory that two_nearest() reads.
     void (*prefetch)(const ItemGrid& grid, const ItemQuery* queries, std::size_t count);
-    /// Answers queries. The cost grows with the number of cells that must be searched to find the two nearest items,
-    /// whatever the radius.
+    /// Answers queries. The cost depends only on the number of cells that must be searched to find the two nearest
+    /// items, not on the radius.
     void (*two_nearest)(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count);
 };
 
-/// The kernels for the instructions in use.
+/// The kernels for the instructions in use (base/instructions.h).
 const ItemsKernels& items_kernels();
 
 } // namespace evod::simulation

@@ -12,7 +12,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-/// Ended generations of the run.
+/// The number of generations of the run that have ended.
 std::uint64_t generations_over(const World& world) {
     return world.moment().generation - (world.generation_over() ? 0 : 1);
 }
@@ -44,7 +44,7 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
                    base::Reason::RunEnded);
 }
 
-/// A replay shows events that have happened. Only the way it is viewed can be changed.
+/// A replay shows a stored run, so commands that would change the run are refused.
 template <class C>
 std::optional<Refusal> refusal_if_replay(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
@@ -302,7 +302,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
     entry.control.until_generation.reset();
     if (command.generations) {
         const std::uint64_t over = generations_over(entry.world);
-        // A number above the counter's range means without end.
+        // A sum beyond the range of the counter becomes its maximum, which no run reaches.
         entry.control.until_generation = over + std::min(*command.generations, ~std::uint64_t{0} - over);
     }
     resume_run(entry.control);
@@ -316,7 +316,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
             return *refused;
         }
     }
-    // A replay belongs to the client that opened it.
+    // A replay needs no lease: it belongs to the client that opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased) {
         ++entry.control.lease;

@@ -1,6 +1,6 @@
 // Laboratory: all worlds of a server, each with its run control. Commands are applied here, between two ticks.
 //
-// Owner        the simulation thread (or `evod run`), alone.
+// Owner        the simulation thread or `evod run`; no other thread uses a laboratory.
 // Determinism  run control (goals, pause, speed) decides when a world advances, never what happens in a tick. It is not
 //              part of the state hash.
 #pragma once
@@ -23,23 +23,24 @@ constexpr std::size_t worlds_max = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
-/// How long and how fast a world is to run.
+/// The goals of a world and its requested speed.
 struct RunControl {
     bool endless = false;                          // run without end; excludes until_generation
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then pause
     bool paused = false;
-    bool leased = false;     // paused or stepping only until the lease ends
+    bool leased = false;     // the pause or step lasts only until the lease ends
     std::uint64_t lease = 0; // number of the last lease since the server started
     Speed speed = 1.0;
 };
 
-/// Removes the goals that the world has reached; a goal in ticks also pauses it. Returns whether there was one.
+/// Removes the goals that the world has reached. A goal in ticks also pauses the world. Returns whether a goal was
+/// removed.
 bool remove_reached_goals(RunControl& control, const World& world);
 
 /// The extent of a replay: a world that shows the run of a run file.
 struct Replay {
-    std::string replay_of; // the world whose run it shows; empty: the laboratory has no world with that run
+    std::string replay_of; // the world whose run it shows; empty if the laboratory has no world with that run
     std::uint64_t first_generation = 1, last_generation = 1;
     std::uint64_t first_tick = 0, last_tick = 0;
 };
@@ -71,7 +72,7 @@ struct Entry {
     std::optional<Replay> replay = std::nullopt;   // nullopt: a live world; otherwise the world is a replay
     std::optional<Storage> storage = std::nullopt; // nullopt: the world's run is not stored
 
-    /// Whether it is a replay of another world's run. Such replays are found only by their own names.
+    /// Whether this is a replay whose original world is in the laboratory. Such a replay is found only by its own name.
     bool replays_another_world() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
@@ -83,7 +84,8 @@ struct Entry {
 struct Applied {
     std::string world;
     std::uint64_t tick = 0;                             // the change holds from this tick on
-    std::optional<parameters::ParameterSet> parameters; // SetParameters: the complete set, or what it would be
+    std::optional<parameters::ParameterSet> parameters; // SetParameters: the complete set after the change; after a dry
+                                                        // run, the set that would result
     // SetParameters: the planned change, with id 0 after a dry run. CancelChange: the cancelled change.
     std::optional<parameters::PlannedChange> planned = std::nullopt;
 };
@@ -94,32 +96,32 @@ class Laboratory {
     /// ForkWorld throw std::bad_alloc, with nothing changed, if memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
 
-    /// Adds a world that was made outside; its name must be free.
+    /// Adds a world that was created elsewhere; its name must be free.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
     /// Removes a world that was added by adopt().
     void dismiss(std::string_view name) {
         std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
     }
-    /// Adds a world as a fork. Refused in the cases in which CreateWorld is.
+    /// Adds `world` as a fork. Refused in the same cases as CreateWorld.
     base::Result<Applied> fork(const ForkWorld& command, World world);
 
-    /// Sets the storage state of every live world, present and future. The simulation loop calls it, for clients that
-    /// read it.
+    /// Sets the storage state of all live worlds, including those created later. The simulation loop calls it, so that
+    /// clients can read the state.
     void set_storage(const Storage& storage);
     const std::optional<Storage>& storage() const { return storage_; }
 
     /// Advances a world that wants a tick by one tick, and removes the goals that it has reached.
     void advance(Entry& entry, base::Executor& executor);
 
-    /// The world of that name. An empty name means the only world, or the world `default`. Refused with NOT_FOUND and
-    /// the existing names.
+    /// The world of that name. An empty name means the only world, or the world `default`. If there is no such world: a
+    /// refusal NOT_FOUND that lists the existing names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 
     /// Whether there are worlds_max worlds; replays of other worlds do not count.
     bool is_full() const;
 
-    /// In order of creation.
+    /// The worlds, in order of creation.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
 
     /// The events since the last call, in order.

@@ -9,7 +9,7 @@
 namespace evod::simulation {
 namespace {
 
-/// visit(column, the value of a void organism).
+/// Calls visit(column, value) for every column, with the value of a void organism in that column.
 template <class F>
 void for_each_column(Living& living, F&& visit) {
     visit(living.health, -std::numeric_limits<float>::infinity());

@@ -23,14 +23,14 @@ struct Living {
     base::Column<float> food_radius, poison_radius; // px; how far it perceives
 
     void clear();
-    /// Like physics::Circles::resize and put.
+    /// Like resize() and put() of physics::Circles.
     void resize(std::size_t size);
     void put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& parameters);
-    /// Like physics::Circles::reorder.
+    /// Like reorder() of physics::Circles.
     void reorder(const physics::Reordering& reordering);
 };
 
-/// The limit that a meal cannot raise health above; infinite if there is none.
+/// The limit above which a meal cannot raise health; infinite if there is none.
 float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& parameters);
 
 /// Radius and mass of the body grown from a chromosome, px and kg.

@@ -1,4 +1,4 @@
-// The model's version, which a run file names, so that a run is never repeated under different rules.
+// The version of the model. Every run file contains it, so that a run is never recomputed under different rules.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,7 @@ namespace evod::simulation {
 /// (tests/determinism/golden_test.cpp), and for changes that no golden scenario shows.
 ///
 /// 3: a child's first parent is the parent that gave more of its genes; an island shares its places among all islands
-/// that send
-///    migrants.
+/// that send migrants.
 constexpr std::uint32_t model_version = 3;
 
 } // namespace evod::simulation

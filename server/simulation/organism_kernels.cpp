@@ -1,4 +1,4 @@
-// A kernel, compiled once per set of instructions; see base/lanes.h for what it may include.
+// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
 #include "server/simulation/organism_kernels.h"
 
 #include "server/base/hash_lanes.h"
@@ -43,7 +43,7 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
     return {dx, dy, dx * dx + dy * dy};
 }
 
-/// predict: health is not subtracted, and the choices are returned.
+/// If `predicting`, health is not subtracted, and the choices are written to `choices`.
 template <bool predicting>
 inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                         float* force_x, float* force_y, std::int32_t* choices) {
@@ -98,7 +98,7 @@ void predict(const OrganismColumns& columns, std::size_t begin, std::size_t end,
     choose_each<true>(columns, begin, end, rules, force_x, force_y, choices);
 }
 
-/// Returns whether the items of the view may be touched.
+/// Updates a view to the present positions. Returns, for each lane, whether the organism may touch items of this kind.
 Integers follow_view(const ViewColumns& view, std::size_t i, Integers x, Integers y, Floats shift, Floats body_radius) {
     const Offset nearest = offset_to_nearest(view, i, x, y);
     Floats others = load<Floats>(view.others + i);

@@ -1,7 +1,7 @@
 // Organism kernels: the steps of every tick for several organisms at once.
 //
-// Determinism  each organism is independent; compiled for two sets of instructions, which give the same bits
-//              (base/instructions.h).
+// Determinism  each organism is computed independently. The kernels are compiled for two sets of instructions, which
+//              give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace evod::simulation {
 
-/// What organisms perceive of the items of one kind; see Perception.
+/// The views of organisms on the items of one kind (perception.h).
 struct ViewColumns {
     float* others;       // px
-    std::int32_t *x, *y; // of the nearest item
+    std::int32_t *x, *y; // position of the nearest item
     const float* radius; // px; how far organisms perceive
     float item_radius;   // px
 };
@@ -34,7 +34,7 @@ struct ChoiceRules {
     float lookahead_s;
     float certain_impulse;
     float force_per_unit;
-    std::uint32_t pair_counter, pair_key; // of base::RandomKey, for the tick
+    std::uint32_t pair_counter, pair_key; // counter and key of base::RandomKey::pair(), for the tick
 };
 
 /// Indices found in a range, in ascending order; has room for the whole range.
@@ -56,24 +56,24 @@ struct OrganismKernels {
     /// Finds the organisms whose view is stale: others < 0.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
     /// Subtracts the health that a tick costs; then chooses forces from current views: see behaviour.h.
-    /// force_x, force_y  of the organisms from `begin` on, padded; kg px/s².
+    /// force_x, force_y  forces on the organisms from `begin` on, padded; kg px/s². Element 0 is for organism `begin`.
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                    float* force_x, float* force_y);
-    /// Makes the same choice without the loss of health, and reports which choice it was. Changes nothing else.
-    /// choices  like the forces; a Choice each.
+    /// Predicts the same choice without subtracting health, and reports it. Changes nothing else.
+    /// choices  one Choice per organism, indexed like the forces.
     void (*predict)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                     float* force_x, float* force_y, std::int32_t* choices);
-    /// Updates views to the present positions of the organisms: their `others` shrink by the distance moved, and become
-    /// −1 if another item may now be the nearest. Finds the organisms that may touch items: all that do, and some
-    /// others.
+    /// Updates views to the present positions of the organisms: their `others` are reduced by the distance moved, and
+    /// become −1 if another item may now be the nearest. Finds the organisms that may touch items: every organism that
+    /// does, and some that do not.
     void (*follow)(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
                    FoundIndices& at_poison);
-    /// The sum of base::hash_of() of the living organisms, and those of them whose health is at most 0.
+    /// Returns the sum of base::hash_of() over the living organisms. `dying` receives those whose health is at most 0.
     HashWords (*hash)(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                       FoundIndices& dying);
 };
 
-/// The kernels for the instructions in use.
+/// The kernels for the instructions in use (base/instructions.h).
 const OrganismKernels& organism_kernels();
 
 } // namespace evod::simulation

@@ -21,13 +21,13 @@ const OrganismKernels& organism_kernels() {
 
 namespace {
 
-// An organism searches further than it perceives, so that it need not search again soon. A wider search costs more, and
-// is needed less often.
+// An organism searches a wider circle than it perceives, so that it need not search again soon. A wider search costs
+// more, but is needed less often.
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
 constexpr float needs_search = -1;
-// A void body has void_position, so its view is of an item at 0. The distance is finite, so arithmetic on it is
-// harmless.
+// The view of a void body: the body has void_position, and the stored item is at 0. Their distance is finite, so
+// arithmetic with it is harmless.
 constexpr float never = 1e30f;
 constexpr Coordinate far_from_void = 0;
 
@@ -218,7 +218,7 @@ void Perception::reorder(const physics::Reordering& reordering) {
 
 void Perception::remove(std::size_t body) {
     EVOD_ASSERT(body < x_.size());
-    // As if it had always had void_position.
+    // The stored position becomes void_position, as if the body had always been void.
     x_[body] = y_[body] = physics::void_position;
     for (View* view : {&food_, &poison_}) {
         view->others[body] = never;

@@ -1,13 +1,13 @@
 // Perception: what each organism perceives of the items around it, cached so that it need not search in every tick.
 //
-// For each kind an organism stores the nearest item, and a distance within which there is no other item. That distance
-// shrinks as the organism moves and as items appear. As long as the stored item is nearer than that, it is the nearest,
-// and no search is needed. An organism thus searches for each kind in about 4 % of the ticks, and perceives, bit for
-// bit, what a search in every tick would find.
+// For each kind of item, an organism stores the nearest item and a distance within which there is no other item. That
+// distance shrinks as the organism moves and as items appear. While the stored item is nearer than that distance, it is
+// the nearest item, and no search is needed. An organism thus searches for each kind in about 4 % of the ticks. It
+// perceives exactly the items that a search in every tick would find.
 //
 // Owner        an island. Columns are by body index, as long as those of the bodies.
 // Threads      organisms search in parallel; changes of items are processed in parallel.
-// Determinism  what is perceived does not depend on when organisms searched.
+// Determinism  the perceived items do not depend on when organisms searched.
 #pragma once
 
 #include "server/base/column.h"
@@ -33,15 +33,16 @@ class Perception {
     void search(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                 base::Range range);
 
-    /// Updates views by the food, or the poison, that has come and gone since the last call. Bodies must be where their
-    /// views were last updated. The two functions may run in parallel.
+    /// notice_food() updates views after food has disappeared or reappeared since the last call; notice_poison() does
+    /// so for poison. Bodies must not have moved since their views were last updated. The two functions may run in
+    /// parallel.
     void notice_food(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
                      base::Executor& executor);
     void notice_poison(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living,
                        Items& poison, base::Executor& executor);
 
     void reorder(const physics::Reordering& reordering);
-    /// The body has become void.
+    /// Must be called when a body becomes void.
     void remove(std::size_t body);
 
     /// Sets the columns that kernels need.
@@ -51,7 +52,8 @@ class Perception {
     struct View {
         base::Column<float> others; // no other item is nearer than this, px; < 0: stale, a search is needed
         base::Column<physics::Coordinate> x,
-            y;                       // of the nearest item; void_position if there is none within the search radius
+            y;                       // position of the nearest item; void_position if there is none within the search
+                                     // radius
         float search_radius_max = 0; // px
     };
 

@@ -4,7 +4,7 @@
 // A cell is one cache line, and a search reads few cells. A caller with many places to try can therefore prefetch the
 // cells of all of them before the first search.
 //
-// Threads      any number of searches while nothing is added.
+// Threads      any number of threads may search while nothing is added.
 // Determinism  a search returns whether any body fulfils a condition, so neither the cells nor their order affect the
 //              result.
 #pragma once
@@ -24,7 +24,7 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  stored with the place of each body: 4 or 8 bytes that describe its size.
+/// What  the type stored with the place of each body: 4 or 8 bytes that describe its size.
 template <class What>
 class PlaceGrid {
   public:
@@ -90,8 +90,8 @@ class PlaceGrid {
     }
 
   private:
-    // The position of empty slots: so far beyond the wall that no radius reaches them, and so near that no difference
-    // from a place on an island leaves 32 bits.
+    // The position of empty slots. It is so far beyond the wall that no radius reaches it, and so near that its
+    // difference from any place on an island fits into 32 bits.
     static constexpr physics::Coordinate nowhere = -(1 << 26);
     struct Thing {
         Place place{nowhere, nowhere};

@@ -26,8 +26,8 @@ Place uniform_place(base::RandomStream& random, Coordinate margin, const physics
     return {x, uniform_coordinate(random, margin, area.height)};
 }
 
-/// How far from a place, along either axis, the centres of bodies can be that touch a body of `half_size_px` there. A
-/// few units are added, because shape tests round.
+/// The greatest distance, along either axis, between the centre of a body of `half_size_px` and the centre of a body
+/// that touches it. A few units are added, because shape tests round.
 Coordinate reach_of(float half_size_px, float widest_px) {
     return physics::to_units(half_size_px + widest_px) + 2;
 }
@@ -58,8 +58,8 @@ class PlacedCircles {
     float widest_px_;
 };
 
-// This many circles search for a place in parallel, each clear of those before the batch. So few of them seldom collide
-// with each other. The size of batches does not affect the result.
+// The circles of a batch search for places in parallel, each clear of the circles of earlier batches. Batches are so
+// small that their circles seldom overlap each other. The size of batches does not affect the result.
 constexpr std::size_t batch_circles_min = 2048, batches = 64;
 constexpr std::size_t circles_per_piece = 256;
 constexpr std::size_t prefetched_ahead = 8;
@@ -157,7 +157,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
 
     for (std::size_t first = 0; first < count; first += batch_size) {
         const std::size_t batch = std::min(batch_size, count - first);
-        // Placed bodies stay there: an attempt that fails now would fail later too.
+        // Placed bodies are not removed, so an attempt that fails now would also fail later.
         executor.parallel_for(batch, circles_per_piece, [&](base::Range piece) {
             std::vector<std::size_t> looking(piece.end - piece.begin);
             std::iota(looking.begin(), looking.end(), piece.begin);

@@ -1,7 +1,8 @@
 // Placement: uniform random places on an island that do not overlap obstacles or bodies already placed.
 //
 // Determinism  a place depends on the given stream and on the bodies already there. Organisms are placed in order of
-//              id, each at the first of its attempts that is clear of those before it, whatever the number of threads.
+//              id. Each gets the first of its attempts that is clear of the bodies placed before it, whatever the
+//              number of threads.
 #pragma once
 
 #include "server/base/executor.h"
@@ -14,7 +15,7 @@
 
 namespace evod::simulation {
 
-/// Boxes in a grid, which tests whether a place is clear of them. The cost does not depend on the number of boxes.
+/// Stores boxes in a grid, and tests whether a place is clear of them. The cost does not depend on the number of boxes.
 class BoxGrid {
   public:
     /// No boxes.
@@ -39,8 +40,8 @@ class BoxGrid {
 /// A uniform random place for a circle, inside the walls and clear of `boxes`.
 Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
 
-/// Adds obstacles, then crates clear of obstacles and of each other. The obstacles of a run stay in place from
-/// generation to generation; crates are placed again.
+/// The rules of place_boxes(), which places obstacles, then crates that are clear of obstacles and of each other.
+/// Obstacles stay in place from generation to generation of a run; crates are placed again.
 struct BoxRules {
     std::uint32_t obstacle_count, crate_count;
     float obstacle_half_size_px, crate_half_size_px;

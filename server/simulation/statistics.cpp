@@ -98,7 +98,7 @@ struct Population {
         Extremes all = blocks.front();
         for (const Extremes& e : blocks) {
             if (fitness[e.best_organism] > fitness[all.best_organism]) {
-                all.best_organism = e.best_organism; // of equals, the first stays
+                all.best_organism = e.best_organism; // among equals, the first is kept
             }
             all.worst = std::min(all.worst, e.worst);
             for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
@@ -163,8 +163,8 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
 }
 
 double mean_health(std::span<const float> health, std::uint32_t alive_count) {
-    // In integers, so that the sum does not depend on the order of bodies. The fractional part is summed separately, so
-    // that no reachable health overflows either sum.
+    // The sum is taken in integers, so that it does not depend on the order of bodies. The fractional part is summed
+    // separately, so that no reachable health overflows either sum.
     constexpr double parts = 1 << 16;
     std::int64_t whole = 0, rest = 0;
     for (const float of_one : health) {

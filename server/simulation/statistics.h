@@ -20,7 +20,7 @@ struct Parameters;
 namespace evod::simulation {
 
 struct GeneStatistics {
-    double mean = 0, deviation = 0, min = 0, max = 0; // deviation of the population: divided by n
+    double mean = 0, deviation = 0, min = 0, max = 0; // standard deviation of the population: divided by n
 };
 
 struct GenerationStatistics {
@@ -30,22 +30,23 @@ struct GenerationStatistics {
     std::uint32_t organism_count = 0;
     double fitness_best = 0, fitness_mean = 0, fitness_median = 0, fitness_worst = 0, fitness_deviation = 0;
     std::array<GeneStatistics, evolution::gene_count> genes;
-    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene of zero width counts 0
+    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene whose bounds are equal
+                          // counts 0
     std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint64_t clamp_count = 0;       // genes that were clamped when the generation was bred
-    std::uint64_t too_fast_count = 0;    // body-ticks that moved more than the body's radius
+    std::uint64_t too_fast_count = 0;    // number of times that a body moved more than its radius in a tick
     std::uint64_t speed_limit_count = 0; // number of times that max_speed_px_s limited a speed
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;
-    // How the genes of this generation developed from those of the previous one. nullopt in the first generation, and
-    // if the previous one is not available. It is known from the generation's beginning on, so a checkpoint does not
-    // contain it.
+    // How the means of the genes changed from the previous generation. nullopt in the first generation, and if the
+    // previous generation is not available. The account is known from the generation's beginning on, so a checkpoint
+    // does not contain it.
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number except those of the account, in the order of columns in files. The columns
-/// of the account follow them.
+/// Calls visit(name, value) for every number except those of the account, in the order of columns in files. In files,
+/// the columns of the account come after these.
 ///
 /// Statistics  GenerationStatistics, or const GenerationStatistics.
 template <class Statistics, class Visit>
@@ -86,13 +87,14 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
                                            std::span<const double> fitness, base::Executor& executor);
 
 struct LiveStatistics {
-    std::uint32_t organism_count = 0, alive_count = 0; // born, living
-    double health_mean = 0;                            // of the living; 0 if there are none
+    std::uint32_t organism_count = 0, alive_count = 0; // organisms born, organisms alive
+    double health_mean = 0;                            // mean health of living organisms; 0 if there are none
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
 };
 
-/// LiveStatistics::health_mean. health: in any order, −infinity for void bodies; alive_count: the number of others.
+/// Computes LiveStatistics::health_mean. health: in any order, −infinity for void bodies; alive_count: number of other
+/// bodies.
 double mean_health(std::span<const float> health, std::uint32_t alive_count);
 
 } // namespace evod::simulation

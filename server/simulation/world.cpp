@@ -157,7 +157,7 @@ std::vector<Intention> World::intentions(const Island& island, base::Range ids) 
     if (generation_over_) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
-    std::optional<parameters::Parameters> first; // as they will be in the generation's first tick
+    std::optional<parameters::Parameters> first; // the parameters that will be active in the generation's first tick
     if (moment_.generation_tick == 0) {
         first = parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
@@ -348,7 +348,7 @@ void World::advance_tick(base::Executor& executor) {
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (islands_[i].alive_count() == 0) {
-                continue; // an island without living organisms waits
+                continue; // an island without living organisms skips the tick
             }
             islands_[i].advance_tick(p, tick, executor);
             died_out_[i] = islands_[i].alive_count() == 0;
@@ -372,7 +372,7 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     if (generation_tick == 0) {
         return false;
     }
-    // Half a tick of slack, so that 40 s are 2,400 sixtieths despite rounding.
+    // Half a tick of tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
     return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
 }
 
@@ -448,7 +448,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         moment.simulated_s < moment_.simulated_s) {
         return wrong("moment");
     }
-    // Parameters that take effect with a generation are as they were when this one began.
+    // Parameters that take effect at a generation must still have the values from the beginning of this generation.
     if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
         !parameters::validate(set.active).empty() ||
         !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
@@ -458,7 +458,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     if (state.islands.size() != islands_.size()) {
         return wrong("number of islands");
     }
-    // No tick follows the last one.
+    // No tick of a generation follows its last one, so the previous tick must not have ended the generation.
     if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
         return wrong("moment");
     }
@@ -495,7 +495,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         find_fitness(executor);
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {
-            ended[i].account = islands_[i].born().account; // can be derived from the beginning
+            ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
         }
         close_generation(ended);
     }

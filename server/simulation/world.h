@@ -1,13 +1,13 @@
 // World: one experiment with its parameters, seed, islands and history. Pure: time passes only in advance_tick().
 //
-// A moment is (generation, tick within it). The last tick of a generation ends it: statistics are made, and the world
-// keeps its organisms, dead and alive, until the next advance_tick() breeds the next generation and performs its first
+// A moment is (generation, tick within it). The last tick of a generation ends it: statistics are computed, and the
+// world keeps its organisms, dead and alive. The next advance_tick() breeds the next generation and performs its first
 // tick. Breeding therefore uses the parameters in effect at that time.
 //
-// Values that a schedule has for a generation are requested before that generation is bred. Its population size and its
-// islands follow them. Parameters that do not wait for a generation take effect in its first tick, so breeding still
-// uses the previous values. At the first moment of a generation, a world therefore has the parameters that bred it as
-// active, and the coming ones as requested.
+// The scheduled values of a generation are requested before that generation is bred. They determine its population size
+// and its islands. Parameters that do not wait for a generation take effect in its first tick, so its breeding still
+// uses their previous values. At the first moment of a generation, the active parameters of a world are therefore those
+// that bred it, and the requested parameters are those that it will run with.
 //
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
@@ -38,7 +38,7 @@ namespace evod::simulation {
 struct Opening {
     Moment moment; // generation_tick 0
     parameters::ParameterSet parameters;
-    evolution::Progress progress; // of the previous generations
+    evolution::Progress progress; // progress of the run over the previous generations
 };
 
 /// The statistics of an ended generation, one entry per island. They are immutable, and copies share them.
@@ -58,14 +58,14 @@ class GenerationRows {
     std::shared_ptr<const std::vector<GenerationStatistics>> rows_;
 };
 
-/// Per island, by id: the organism of the first generation that an organism descends from by first parents, also across
-/// islands. Founders are numbered from 0, island after island. Not part of the state; empty if unknown.
+/// The founder of each organism, per island, by id: its ancestor in the first generation along first parents, also
+/// across islands. Founders are numbered from 0, island after island. Not part of the state; empty if unknown.
 using Founders = std::vector<std::vector<std::uint32_t>>;
 
 class World {
   public:
-    /// The number of generations whose statistics are kept in memory. With many islands there are fewer, to limit the
-    /// number of rows; there is one row per island. The oldest are dropped first.
+    /// The maximum number of generations, and of rows, whose statistics are kept in memory. A generation has one row
+    /// per island, so with many islands fewer generations are kept. The oldest are dropped first.
     static constexpr std::size_t history_generations_kept = 10'000, history_rows_kept = 131'072;
     static constexpr std::size_t history_generations_kept_of(std::size_t island_count) {
         return std::min(history_generations_kept, std::max<std::size_t>(history_rows_kept / island_count, 1));
@@ -83,36 +83,36 @@ class World {
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
           parameters::Schedule schedule = {});
 
-    /// A world at the beginning of a generation of a run; it continues as that run did.
+    /// Creates a world at the beginning of a generation of a run; it continues as that run did.
     ///
     /// born              the bred organisms, shape (islands): opening.parameters.active.island_count.
-    /// history           statistics of previous generations, as far as available.
-    /// first_population  the one that the run began with, for resets; nullptr: it is drawn.
-    /// founders          of the organisms in `born`; not needed for the first generation.
+    /// history           statistics of the previous generations that are available.
+    /// first_population  the first population of the run, for resets; nullptr: it is drawn.
+    /// founders          founders of the organisms in `born`; not needed for the first generation.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
           parameters::Schedule schedule = {});
 
     /// A copy of this world as it was at the first moment of its generation.
     ///
-    /// keep_requests  keep the parameters requested since, if this is still that moment.
+    /// keep_requests  whether to keep the parameters requested since then; only if the world is still at that moment.
     World at_its_opening(base::Executor& executor, bool keep_requests = false) const;
 
     /// The data that restore() needs to bring a world to this moment.
     WorldState state(base::Executor& executor) const;
-    /// What the islands of a state of this generation contain.
+    /// The number of entities on each island, for a state of this generation.
     std::vector<IslandShape> shapes() const;
-    /// Brings a world at the beginning of a generation to a later moment of it, where it continues as the world that
-    /// state() was called on. Refused, with nothing changed, if the state is impossible. The caller compares the hash,
-    /// if it has one.
+    /// Brings a world at the beginning of a generation to a later moment of that generation. It then continues as the
+    /// world on which state() was called. Refused, with nothing changed, if the state is impossible. If the caller has
+    /// the hash of that state, it must compare the hash itself.
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// The parameters that the run begins with after a reset: the requested parameters, with the schedule's values of
     /// generation 1. Refused if they are not valid together.
     base::Result<parameters::Parameters> beginning() const;
-    /// Restarts the run with beginning(), its schedule, and the same first population if one was given, which must be
-    /// valid for those parameters. Throws std::bad_alloc, with nothing changed, if memory does not suffice for the new
-    /// world beside the old one.
+    /// Restarts the run with the parameters of beginning(), the same schedule and, if one was given, the same first
+    /// population. That population must be valid for these parameters. Throws std::bad_alloc, with nothing changed, if
+    /// memory does not suffice for the new world beside the old one.
     void reset(base::Seed seed);
 
     /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running.
@@ -128,7 +128,7 @@ class World {
     const parameters::ParameterSet& parameters() const { return parameters_; }
     const FirstPopulation& first_population() const { return first_population_; }
     const parameters::Schedule& schedule() const { return schedule_; }
-    /// In order of id.
+    /// The planned changes, in order of id.
     const std::vector<parameters::PlannedChange>& planned() const { return planned_; }
     /// Adds a planned change, whose moment must be in the future (is_to_come()). It is applied at its moment; changes
     /// of the same moment are applied in order of id, after those of the schedule. Assigns an id and returns it.
@@ -136,12 +136,13 @@ class World {
     /// Cancels a planned change and returns it; nullopt if there is none with that id.
     std::optional<parameters::PlannedChange> cancel(std::uint64_t id);
     bool is_to_come(const parameters::PlannedMoment& moment) const;
-    /// For a world that was brought past the moment at which changes were planned: adds them again under the same ids,
-    /// and then drops those that are already due, because they have been applied there.
+    /// For a world that was brought to a later moment than the one at which changes were planned. add_planned() adds
+    /// the changes again under the same ids. drop_due_changes() then drops the changes that are already due, because
+    /// they have been applied in the run.
     std::uint64_t add_planned(parameters::PlannedChange change);
     void drop_due_changes();
-    /// Sets the requested parameters, which assign() has made from parameters().requested. Each takes effect as its
-    /// Effect says.
+    /// Sets the requested parameters, which assign() has computed from parameters().requested. Each takes effect at the
+    /// time that its Effect states.
     void request_parameters(const parameters::Parameters& requested);
 
     bool generation_over() const { return generation_over_; }
@@ -149,26 +150,27 @@ class World {
     /// generation.
     evolution::Outcome outcome() const;
 
-    /// Of the present generation. Island::born() has the organisms.
+    /// The opening of the present generation. Island::born() contains its organisms.
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
-    /// Of the present generation. Empty if this world began with a later generation and was given none.
+    /// The founders of the present generation. Empty if this world began with a later generation and received no
+    /// founders.
     const Founders& founders() const { return founders_; }
-    /// Of one island.
+    /// The founders of the organisms of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.
     bool has_bodies() const { return parameters_.active.fitness == parameters::FitnessFunction::Life; }
-    /// What organisms [ids.begin, ids.end) of an island will do next, from the items there now. None for dead
-    /// organisms, at the end of a generation, and if there are no bodies.
+    /// What organisms [ids.begin, ids.end) of an island will do next, computed from the items there now. The choice is
+    /// None for dead organisms, at the end of a generation, and if there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
     /// Living organisms on all islands.
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
-    /// Drops the statistics that a fork does not inherit, and the planned changes of its original.
+    /// Drops the statistics that a fork does not inherit, and the changes that were planned for the original.
     void become_fork();
-    /// The fitness in the ended generation: per island, by id. Empty during a generation.
+    /// The fitness in the ended generation, per island, by id. Empty during a generation.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
 
     /// The events since the last call, in order.
@@ -189,13 +191,13 @@ class World {
     void apply_planned(std::span<const parameters::Assignment> changes,
                        const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
-    /// Whether a generation ends after `generation_tick`, with so many organisms alive.
+    /// Whether a generation ends after `generation_tick`, if `alive` organisms are alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
     void end_generation(base::Executor& executor);
     void find_fitness(base::Executor& executor);
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
-    /// The parents' chromosomes: those of the ended generation or, after migration, `migrated`.
+    /// The parents' chromosomes: `migrated` after a migration, otherwise the chromosomes of the ended generation.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     /// Sets the founders of the organisms in `bred`.
     void find_founders(const std::vector<evolution::NextGeneration>& bred);
@@ -205,7 +207,7 @@ class World {
     parameters::ParameterSet parameters_;
     FirstPopulation first_population_;
     parameters::Schedule schedule_;
-    std::vector<parameters::PlannedChange> planned_; // in order of id
+    std::vector<parameters::PlannedChange> planned_; // sorted by id
     std::uint64_t planned_count_ = 0;                // number of changes planned in this run so far
     Moment moment_;
     bool generation_over_ = false;
@@ -215,9 +217,10 @@ class World {
     History history_;
     std::vector<EventKind> events_;
     Founders founders_;
-    std::vector<std::vector<double>> fitness_; // of the ended generation: per island, by id
+    std::vector<std::vector<double>> fitness_; // fitness in the ended generation: per island, by id
     evolution::Progress progress_;
-    std::vector<std::uint8_t> died_out_; // in the present tick, per island; working memory, kept between ticks
+    std::vector<std::uint8_t> died_out_; // per island: whether its last organism died in this tick; working memory,
+                                         // kept between ticks
 };
 
 } // namespace evod::simulation

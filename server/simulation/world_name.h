@@ -1,4 +1,4 @@
-// World names: which names a world may have, wherever a name is read.
+// World names: the rules for names of worlds, for all code that reads such a name.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,11 @@
-// World state: a world within a generation, without the parts that follow from the generation's beginning. Applied to a
-// world at that beginning, it lets the world continue bit for bit.
+// World state: the state of a world during a generation, without the parts that can be derived from the generation's
+// beginning. A world at that beginning that receives this state continues bit for bit.
 //
-// It omits data that can be derived (bodies, boxes, sizes, chromosomes: from seed, parameters and the bred organisms),
+// It omits data that can be derived from seed, parameters and the bred organisms (bodies, boxes, sizes, chromosomes),
 // and caches (near pairs, views of items, the order in memory).
 //
-// Determinism  columns are by id, so that equal worlds have equal states, whatever happened before.
+// Determinism  columns are in order of id, so equal worlds have equal states, even if they store organisms in different
+//              orders.
 #pragma once
 
 #include "server/base/column.h"
@@ -39,7 +40,7 @@ struct IslandCounts {
 
 /// The number of entities of each kind on an island. It determines the shape of the island's state.
 struct IslandShape {
-    std::uint32_t organisms = 0; // that were born
+    std::uint32_t organisms = 0; // number of organisms that were born
     bool has_bodies = true;      // if false, the other parts are empty
     std::uint32_t crates = 0, food = 0, poison = 0;
 
