@@ -52,7 +52,7 @@ struct DecodedDensity {
     std::vector<std::uint32_t> organisms, food, poison;
 };
 
-/// A visible tile.
+/// A tile that the viewer sees.
 struct DecodedTile {
     std::uint32_t tile = 0; // index of the tile
     evod::v1::Detail detail = evod::v1::DETAIL_FULL;

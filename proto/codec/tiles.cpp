@@ -18,7 +18,7 @@ constexpr unsigned place_bits = 8; // number of bits for a position within a til
 constexpr unsigned cells_per_side_log2_max = 4;
 constexpr std::size_t counted_parts = 3; // a density counts organisms, food and poison
 
-/// The number of tiles from wall to wall.
+/// Returns the number of tiles in one row or column.
 double tiles_along(double length_px, std::uint32_t tile_px) {
     return std::max(1.0, std::ceil(length_px / tile_px));
 }

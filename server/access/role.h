@@ -1,4 +1,4 @@
-// Roles: the permissions of a session.
+// Roles: each session has a role, which determines its permissions.
 //
 // Threads      any; no state.
 #pragma once

@@ -127,7 +127,7 @@ base::Refusal server_goes_away() {
                    base::Reason::ServerGoingAway);
 }
 
-/// Turns a response into a refusal.
+/// Replaces the contents of a response by a refusal.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
     response.clear_answer();

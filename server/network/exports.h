@@ -43,7 +43,7 @@ class Exports {
     LimitCounters& limit_counters_;
     std::uint64_t last_id_ = 0;
     jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // outlives the exports
-    std::map<std::uint64_t, Export> exports_;                             // by session number
+    std::map<std::uint64_t, Export> exports_;                             // key: number of the session
     std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_; // cancelled exports whose jobs are still finishing
 };
 

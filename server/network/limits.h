@@ -20,7 +20,7 @@ namespace evod::network {
 // The table in limits.cpp states what each limit bounds and what happens when it is reached.
 constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
-constexpr std::size_t watched_islands_max = 16'384; // four times the islands of the largest world
+constexpr std::size_t watched_islands_max = 16'384; // four times the number of islands in the largest world
 constexpr double snapshot_rate_hz_max = 120;
 // Lower rates are raised to this one, because the period of a much lower rate would overflow the clock.
 constexpr double snapshot_rate_hz_min = 1e-6;
@@ -94,8 +94,8 @@ struct LimitRow {
     Limit limit;
     std::string_view name; // name of the field in v1::Limits
     std::uint64_t value;   // default value
-    std::string_view of;   // what is bounded
-    std::string_view then; // what happens at the bound
+    std::string_view of;   // description of the bounded quantity
+    std::string_view then; // what the server does when the limit is reached
 };
 
 /// One row per Limit, in the order of the enum.
@@ -156,7 +156,7 @@ constexpr std::uint64_t descriptors_kept = 32;
 // Number of refused connections that may receive a Goodbye at the same time. Further ones are closed without a Goodbye.
 constexpr std::size_t farewells_max = 64;
 
-// HTTP.
+// Constants for HTTP.
 constexpr std::chrono::seconds http_farewell_timeout{1}; // time to send the last bytes of a connection
 // If the simulation thread does not respond within this time, /healthz answers 503.
 constexpr std::chrono::seconds simulation_patience{3};

@@ -100,9 +100,10 @@ class ReplyCache {
     const Bounds bounds_;
     const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
-    std::list<std::string> used_once_, used_again_;                          // keys, most recently used first
-    const std::string* last_used_ = nullptr;                                 // points into one of the two lists
-    std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of the key → its highest request_id
+    std::list<std::string> used_once_, used_again_; // most recently used key first
+    const std::string* last_used_ = nullptr;        // points into one of the two lists
+    // Key: hash of an evicted key; value: its highest request_id.
+    std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_;
     std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;
 };

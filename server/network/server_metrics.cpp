@@ -1,4 +1,4 @@
-// The server's metrics and health checks.
+// The part of Server that collects metrics and checks its health.
 #include "server/metrics/exposition.h"
 #include "server/metrics/families.h"
 #include "server/metrics/process.h"

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t batch_frames_max = 64;
 constexpr std::size_t snapshots_at_once = 32; // snapshots that one session sends before other sessions are served
-// A frame of many parts, or of short parts, is copied into one buffer before it is passed to the kernel.
+// A frame that has many parts, or that is short, is copied into one buffer before it is passed to the kernel.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
 static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a header and a tail, too");
 
@@ -78,7 +78,7 @@ void Session::start(const std::optional<base::Refusal>& refused) {
                                    " s: connect again and send one first",
                                base::Reason::HelloMissing));
             if (!self->begun_) {
-                self->close(); // a Goodbye cannot be sent, because the client does not use TLS
+                self->close(); // the TLS handshake is not complete, so a Goodbye cannot be sent
             }
         }
     });

@@ -201,7 +201,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     } rest_;                                     // the rest of a snapshot that the connection did not accept at once
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in queue_ and sending_
     Transport::Progress progress_;
-    runtime::Clock::duration stalled_{}; // observed time without progress
+    runtime::Clock::duration stalled_{}; // time in which the client was observed and received nothing
     std::size_t in_flight_ = 0;          // number of requests whose answer is not being written yet
     std::uint64_t dropped_events_ = 0;   // number of dropped events that were not reported yet
     std::uint32_t subscription_id_ = 0;

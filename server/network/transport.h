@@ -65,7 +65,7 @@ class Transport {
     std::uint64_t given_ = 0;
 };
 
-/// "127.0.0.1:51234"
+/// Formats an address and a port: "127.0.0.1:51234".
 std::string to_text(const tcp::endpoint& endpoint);
 
 /// The part of an address that identifies one user: the IPv4 address, or the /64 prefix of the IPv6 address.

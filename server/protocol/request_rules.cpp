@@ -5,7 +5,7 @@
 namespace evod::protocol {
 namespace {
 
-/// nullptr: this server does not know the request.
+/// Returns the field that contains the request; nullptr: this server does not know the request.
 const google::protobuf::FieldDescriptor* field_of(const v1::Request& request) {
     return v1::Request::descriptor()->FindFieldByNumber(request.kind_case());
 }

@@ -35,13 +35,13 @@ struct CallMail {
 
 // Requests for replays (replays.h).
 
-/// Opens a replay of the run of the world `world`.
+/// A request to open a replay of the run of the world `world`.
 struct OpenReplay {
     std::string world;
     replay::WantedMoment at; // the first moment to show; without fields: the first moment of the run
     std::uint64_t owner = 0; // number of the session, >= 1
 };
-/// Moves a replay to another moment.
+/// A request to move a replay to another moment.
 struct Seek {
     std::string world;
     replay::WantedMoment to;
@@ -50,7 +50,7 @@ struct Seek {
 struct CloseReplay {
     std::string world;
 };
-/// Closes all replays of a session that has ended, and cancels its seeks.
+/// A request to close all replays of a session that has ended, and to cancel its seeks.
 struct OwnerGone {
     std::uint64_t owner = 0;
 };
@@ -65,8 +65,8 @@ struct FoundRun {
     replay::StoredRun run;
     std::uint64_t generation = 0; // generation of the world when the request was handled
 };
-/// Finds the stored run of a world. The reply waits until everything recorded so far is on the disk, or until writing
-/// fails.
+/// A request to find the stored run of a world. The reply waits until everything recorded so far is on the disk, or until
+/// writing fails.
 struct FindRun {
     std::string world;
     std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread

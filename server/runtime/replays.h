@@ -92,7 +92,7 @@ class Replays {
     };
     /// Called with the number of the seek before it begins. Returns false if the result is no longer needed.
     using Begun = std::function<bool(std::uint64_t number)>;
-    /// A seek whose file is being read.
+    /// A seek that waits until its run file has been read.
     struct PendingSeek {
         std::uint64_t owner = 0;
         Begun begun;

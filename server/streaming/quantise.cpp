@@ -75,7 +75,7 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
     Column indices;
     make_room(organisms.alive_count, to.id, indices);
     std::size_t kept = 0;
-    for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // without a branch, as above
+    for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // no branch, for the same reason as above
         to.id[kept] = static_cast<std::uint32_t>(id);
         indices[kept] = organisms.place_of[id];
         kept += organisms.place_of[id] != simulation::Island::no_body;

@@ -40,7 +40,7 @@ class SnapshotSender {
 /// The body of a frame, divided into parts.
 struct OutgoingFrame {
     StreamedSnapshotPtr snapshot;          // keeps the parts alive
-    std::vector<const SharedBytes*> parts; // fields 1 to 49
+    std::vector<const SharedBytes*> parts; // together they are the fields 1 to 49
     std::array<std::uint8_t, 24> tail;     // fields from 50 on, tail_bytes bytes long
     std::size_t tail_bytes = 0;
 
