@@ -111,7 +111,7 @@ class RunRecorder {
 
     StorageThread& thread_;
     StorageThread::RunNumber number_ = 0;
-    RunNews news_; // what has been passed to the storage thread
+    RunNews news_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
     // Time spent on simulation since the last stored beginning of a generation or checkpoint; since the last
@@ -135,7 +135,7 @@ class Recorder {
     bool has_room() const { return thread_.has_room(); }
     /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const { return thread_.trouble(); }
-    /// Calls `changed` on the storage thread when has_room() or trouble() has changed.
+    /// The storage thread calls `changed` when has_room() or trouble() has changed.
     void when_changed(std::function<void()> changed) { thread_.when_changed(std::move(changed)); }
 
     /// The recorder of a world; nullptr if the world has no file.

@@ -80,7 +80,7 @@ class StorageThread {
     };
     /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path.
     struct Ending {
-        Batch last; // its last record is the end mark
+        Batch last; // the last of these records is the end mark
         std::string renamed;
     };
 

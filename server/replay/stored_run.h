@@ -28,7 +28,7 @@ struct SeekTarget {
     std::uint64_t tick = 0; // ticks since the run began
 };
 
-/// A moment and the stored state from which it is simulated.
+/// A moment, and the stored state from which the simulation of that moment starts.
 struct SeekStart {
     simulation::Replay there; // the moments of the run; replay_of is empty
     SeekTarget to;

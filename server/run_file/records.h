@@ -25,7 +25,7 @@ struct RunIdentity {
     std::string evod_version = EVOD_VERSION;
     std::string build = build_text(); // build of the evod that created the file; empty if the file does not contain it
     std::uint32_t model_version = simulation::model_version;
-    std::int64_t began_unix_ms = 0; // wall clock, for information only
+    std::int64_t began_unix_ms = 0; // wall clock time, only for information
     // A fork begins with a generation of another run. Its `parameters` are the requested parameters of that run.
     std::uint64_t first_generation = 1;
     // Ticks before this run; if the run begins within a generation, it has a checkpoint at this tick.
@@ -115,7 +115,7 @@ struct HashRecord {
     std::uint64_t tick = 0;
     base::StateHash hash;
 };
-/// The recorder stores the state hash after every tick that is a multiple of this.
+/// The recorder stores the state hash after every tick that is a multiple of this number.
 constexpr std::uint64_t ticks_per_hash = 60;
 
 /// The rule for which older generations are retained (retention.h).

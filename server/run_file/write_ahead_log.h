@@ -1,4 +1,4 @@
-// Write-ahead log: distinguishes a damaged log, NAME.evod-wal, from one whose last write was torn by a crash.
+// Write-ahead log: distinguishes a damaged log, NAME.evod-wal, from a log whose last write was torn by a crash.
 //
 // SQLite recovers the frames of a log up to the first frame with a wrong checksum, and silently drops all later frames.
 // This is right after a torn write. But a flipped bit in the middle of a log has the same effect, and acknowledged
