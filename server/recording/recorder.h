@@ -18,7 +18,7 @@ namespace evod::recording {
 
 /// A command that the simulation has applied. `done` is called once the record is on the disk.
 struct CommandRecord {
-    std::uint64_t tick = 0;              // ticks of the run before it was applied
+    std::uint64_t tick = 0;              // the command was applied after this tick
     simulation::RunControl control = {}; // run control of the world after the command
     run_file::Origin origin = {};
     std::string answer = {};
@@ -68,7 +68,7 @@ class RunRecorder {
   public:
     /// A checkpoint is created if simulating the run again from the contents of its file would take longer than this.
     static constexpr std::chrono::seconds worth_a_checkpoint{2};
-    /// After a checkpoint that cost the two threads a time t, the next one follows after this number times t.
+    /// The time between two checkpoints is at least this number times the time that both threads spent on the last one.
     static constexpr int checkpoint_cost_factor = 50;
 
     /// For a run that continues. `so_far` describes the records in its file.
@@ -92,7 +92,7 @@ class RunRecorder {
     void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
     /// Whether a checkpoint is due right after the last followed tick. spent: time for the simulation of that tick.
     bool checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent);
-    /// Creates a checkpoint. The caller must then report with checkpoint_took() how long the simulation waited for it.
+    /// Creates a checkpoint. The caller must then pass the time that the simulation waited for it to checkpoint_took().
     void make_checkpoint(const simulation::World& world, base::Executor& executor);
     void checkpoint_took(std::chrono::nanoseconds time) { copying_took_ = time; }
 

@@ -18,7 +18,7 @@ namespace evod::run_file {
 
 /// The state and settings with which a run began. Written once.
 struct RunIdentity {
-    std::string name; // name of the world
+    std::string name; // the name of the world
     simulation::RunId run_id;
     base::Seed seed;
     parameters::Parameters parameters;
@@ -54,7 +54,7 @@ inline std::string user_of(const Origin& origin) {
 /// A command that the simulation has applied.
 struct JournalEntry {
     std::uint64_t number = 0; // 1 for the first command of the run
-    std::uint64_t tick = 0;   // ticks of the run before it was applied
+    std::uint64_t tick = 0;   // the command was applied after this tick
     Origin origin;
     std::string answer;             // the frame that the client received
     simulation::RunControl control; // run control of the world after the command
@@ -120,8 +120,8 @@ constexpr std::uint64_t ticks_per_hash = 60;
 
 /// The rule for which older generations are retained (retention.h).
 struct RetentionRule {
-    // Up to until_generation, every keep_every-th generation is retained, counted from the file's first. Up to
-    // until_tick, the end of that generation, every keep_every-th hash is retained, counted from tick 0.
+    // Up to until_generation, every keep_every-th generation is retained, counted from the first one in the file. That
+    // generation ended at until_tick. Up to until_tick, every keep_every-th hash is retained, counted from tick 0.
     std::uint64_t keep_every = 1, until_generation = 0, until_tick = 0;
 };
 
