@@ -67,7 +67,7 @@ class Option {
     CLI::Option* option_; // owned by CLI11's App
 };
 
-/// The program itself or one of its subcommands.
+/// The program or one of its subcommands.
 class Command {
   public:
     /// Creates a program. version  the text that --version prints.

@@ -28,7 +28,7 @@ struct Sweep {
     parameters::Schedule schedule;     // schedule of the experiment, without the swept parameters
     base::Seed seed{1};
     std::uint32_t replicates = 1;
-    std::vector<const parameters::ParameterDescription*> swept; // in the order of the file
+    std::vector<const parameters::ParameterDescription*> swept; // in the order in which the file names them
     std::vector<std::vector<parameters::ParameterValue>> cells; // shape (cells, swept)
 
     std::size_t run_count() const { return cells.size() * replicates; }

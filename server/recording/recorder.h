@@ -18,7 +18,7 @@ namespace evod::recording {
 
 /// A command that the simulation has applied. `done` is called once the record is on the disk.
 struct CommandRecord {
-    std::uint64_t tick = 0;              // ticks of the run before it was applied
+    std::uint64_t tick = 0;              // the command was applied after this tick
     simulation::RunControl control = {}; // run control of the world after the command
     run_file::Origin origin = {};
     std::string answer = {};
@@ -68,7 +68,7 @@ class RunRecorder {
   public:
     /// A checkpoint is created if simulating the run again from the contents of its file would take longer than this.
     static constexpr std::chrono::seconds worth_a_checkpoint{2};
-    /// After a checkpoint that cost the two threads a time t, the next one follows after this number times t.
+    /// The time between two checkpoints is at least this number times the time that both threads spent on the last one.
     static constexpr int checkpoint_cost_factor = 50;
 
     /// For a run that continues. `so_far` describes the records in its file.
@@ -92,7 +92,7 @@ class RunRecorder {
     void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
     /// Whether a checkpoint is due right after the last followed tick. spent: time for the simulation of that tick.
     bool checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent);
-    /// Creates a checkpoint. The caller must then report with checkpoint_took() how long the simulation waited for it.
+    /// Creates a checkpoint. The caller must then pass the time that the simulation waited for it to checkpoint_took().
     void make_checkpoint(const simulation::World& world, base::Executor& executor);
     void checkpoint_took(std::chrono::nanoseconds time) { copying_took_ = time; }
 
@@ -111,7 +111,7 @@ class RunRecorder {
 
     StorageThread& thread_;
     StorageThread::RunNumber number_ = 0;
-    RunNews news_; // what has been passed to the storage thread
+    RunNews news_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
     // Time spent on simulation since the last stored beginning of a generation or checkpoint; since the last
@@ -135,7 +135,7 @@ class Recorder {
     bool has_room() const { return thread_.has_room(); }
     /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const { return thread_.trouble(); }
-    /// Calls `changed` on the storage thread when has_room() or trouble() has changed.
+    /// The storage thread calls `changed` when has_room() or trouble() has changed.
     void when_changed(std::function<void()> changed) { thread_.when_changed(std::move(changed)); }
 
     /// The recorder of a world; nullptr if the world has no file.

@@ -16,7 +16,7 @@
 //                the reason.
 // File names     a moved or deleted file counts as an error, because data written to it would be lost when the server
 //                stops. The file stays open, so the error ends when the file is moved back.
-// Backpressure   if at least `waiting_bytes_max` wait, has_room() is false and the caller stops producing records.
+// Backpressure   if at least `waiting_bytes_max` bytes wait, has_room() is false and the caller produces no records.
 //
 // Threads        only the simulation thread calls create(), write(), close() and so on. It never waits for the disk.
 //                Run files belong to the storage thread. Jobs on a job queue compress checkpoints and copy write-ahead
@@ -43,7 +43,7 @@
 
 namespace evod::recording {
 
-/// Everything that was passed to the storage thread and that it has not taken yet.
+/// The records that were passed to the storage thread and that it has not taken yet.
 struct HandedOver {
     std::map<RunNumber, RunLog> new_runs;
     std::map<RunNumber, std::vector<WaitingRecord>> records;
@@ -80,7 +80,7 @@ class StorageThread {
     };
     /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path.
     struct Ending {
-        Batch last; // its last record is the end mark
+        Batch last; // the last of these records is the end mark
         std::string renamed;
     };
 
@@ -92,8 +92,8 @@ class StorageThread {
     /// Continues a run whose file is already open.
     RunNumber adopt(std::unique_ptr<run_file::RunFile> file);
     void write(RunNumber run, Batch batch);
-    /// Writes a checkpoint. The run must have no other waiting checkpoint. writing->waits is true until it is on the
-    /// disk.
+    /// Writes a checkpoint. The run must have no other waiting checkpoint. writing->waits is true until the checkpoint
+    /// is on the disk.
     void write(RunNumber run, run_file::Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing);
     void close(RunNumber run, Ending ending);
 

@@ -40,9 +40,10 @@ class StorageThread::Worker {
     bool write_out();
     /// Writes the records of one run. Returns false after an error, or if the run must wait for another one.
     bool write_out(RunLog& run);
-    /// Whether a run may use the name NAME.evod-next. Runs with the same path use it one after another, in the order of
-    /// their creation. A run may begin when all earlier runs have ended; if it replaces the last of them, that run need
-    /// only have its name. Writes the earlier runs first. Returns false if one of them still uses the name.
+    /// Whether a run may use the name NAME.evod-next. Runs with the same path use this name one after another, in the
+    /// order of their creation. A run may begin when all earlier runs have ended. If it replaces the last of them, it
+    /// may begin when the file of that run has its final name. Writes the earlier runs first. Returns false if one
+    /// of them still uses the name.
     bool is_its_turn(const RunLog& run);
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
     bool take_name(RunLog& run);

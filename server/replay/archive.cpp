@@ -52,7 +52,7 @@ Result<void> finish_replacing(const run_file::DataFolder& folder, const std::str
     const std::string next = run_file::DataFolder::next_file_of(path);
     std::error_code error;
     if (std::filesystem::exists(path, error)) {
-        auto old = run_file::RunFile::open_checked(path); // its end mark may be in the log
+        auto old = run_file::RunFile::open_checked(path); // the end mark of the old run may be in the log
         if (!old) {
             return old.error();
         }

@@ -1,6 +1,6 @@
 // Breeding: recomputes how one generation bred the next, from the records of both generations in the run file.
 //
-// Determinism  the recomputed descendants are compared with the stored ones.
+// Determinism  breeding_of() compares the recomputed descendants with the stored ones.
 #pragma once
 
 #include "server/base/executor.h"

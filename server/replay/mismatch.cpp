@@ -16,7 +16,7 @@ using Found = std::optional<Mismatch>;
 std::string text_of(double value) {
     return base::number_text(value + 0.0); // SQLite stores −0 as 0
 }
-/// "3 4.5 6"
+/// Formats several numbers with spaces between them: "3 4.5 6".
 template <class... Numbers>
 std::string text_of_numbers(Numbers... numbers) {
     std::string text;
@@ -184,7 +184,7 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
     Found found;
     auto simulated_text = again.begin();
     simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
-        const std::string text = text_of(value); // exact
+        const std::string text = text_of(value); // the text contains all digits
         if (!found && text != *simulated_text) {
             found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
         }

@@ -11,7 +11,7 @@ namespace evod::replay {
 
 /// The first number that differs, as text.
 struct Mismatch {
-    std::string part; // "the fitness of organism 3 on island 0"
+    std::string part; // name of the number: "the fitness of organism 3 on island 0"
     std::string stored, simulated;
 };
 

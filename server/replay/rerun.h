@@ -16,7 +16,7 @@ namespace evod::replay {
 /// A command in the journal that changes parameters, plans such a change or cancels a planned change.
 struct ParameterChange {
     std::uint64_t entry = 0; // number of the command in the journal
-    std::uint64_t tick = 0;  // ticks of the run before it was applied
+    std::uint64_t tick = 0;  // the command was applied after this tick
     std::vector<parameters::Assignment> assignments;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
     std::string by = {};                                        // the user who planned the change

@@ -21,7 +21,7 @@ namespace evod::replay {
 
 enum class RunTable { Generations, Organisms, Lineage, Population, Events };
 
-/// An organism, identified by where it was born.
+/// An organism, identified by the generation and island in which it was born, and by its id there.
 struct OrganismName {
     std::uint64_t generation = 0;
     std::uint32_t island = 0, organism = 0;

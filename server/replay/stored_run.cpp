@@ -20,7 +20,7 @@ simulation::Replay replay_of_file(run_file::RunFile& file) {
             .last_tick = file.last_tick()};
 }
 
-/// "3 to 17"
+/// Formats a range: "3 to 17".
 std::string range_text(std::uint64_t first, std::uint64_t last) {
     return std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
 }

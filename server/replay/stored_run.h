@@ -28,7 +28,7 @@ struct SeekTarget {
     std::uint64_t tick = 0; // ticks since the run began
 };
 
-/// A moment and the stored state from which it is simulated.
+/// A moment, and the stored state from which the simulation of that moment starts.
 struct SeekStart {
     simulation::Replay there; // the moments of the run; replay_of is empty
     SeekTarget to;
@@ -52,7 +52,7 @@ struct NewRecords {
 
 class StoredRun {
   public:
-    /// Maximum number of generations before the first moment whose statistics a replay has.
+    /// A replay has the statistics of at most this number of generations before its first moment.
     static constexpr std::size_t history_generations_known = 1'000;
 
     /// paths  the paths of the run's file: the present path, and the path after the run has ended.

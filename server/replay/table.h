@@ -26,7 +26,7 @@ class Table {
     requires std::is_arithmetic_v<T> Table& number(T value) {
         if constexpr (std::is_floating_point_v<T>) {
             if (format_ == Format::JsonLines && !std::isfinite(value)) {
-                return nothing(); // JSON cannot represent it
+                return nothing(); // JSON has no text for this number
             }
         }
         char digits[32];
@@ -46,7 +46,7 @@ class Table {
 
     std::ostream& out_;
     const Format format_;
-    std::vector<std::string> columns_; // for JSON, quoted and with a colon
+    std::vector<std::string> columns_; // in JSON format, each name is quoted and followed by a colon
     std::string line_;
     std::size_t column_ = 0;
 };

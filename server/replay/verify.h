@@ -30,7 +30,7 @@ struct StoredMoment {
 /// The first difference between the stored and the simulated run.
 struct Difference {
     std::optional<StoredMoment> agrees; // the last moment without a difference; nullopt if the beginning differs
-    std::string agreeing_part;          // what agreed there, such as "the state hash"
+    std::string agreeing_part;          // the part that agreed there, such as "the state hash"
     StoredMoment differs;
     std::string part; // "the fitness of organism 3 on island 0"
     std::string stored, simulated;

@@ -1,6 +1,6 @@
 // Check: reads a whole run file and compares every row with its checksum.
 //
-// Rows are numbered without gaps, so a missing row is found as well as a damaged one.
+// Rows are numbered without gaps, so the check detects missing rows as well as damaged ones.
 #pragma once
 
 #include "server/base/executor.h"

@@ -1,5 +1,5 @@
-# Writes OUTPUT, a header with the commit that SOURCE is of; empty where that is not known. Run with every build, so that it
-# is never an older one; a header that would say the same is left as it is.
+# Writes OUTPUT, a header that defines the commit of the folder SOURCE, or an empty text if the commit is unknown. Every build
+# runs this script, so that the header is never outdated. A header whose contents would not change is not written.
 cmake_minimum_required(VERSION 3.25)
 set(commit "")
 find_package(Git QUIET)
@@ -7,7 +7,7 @@ if(Git_FOUND)
   set(git ${GIT_EXECUTABLE} --no-optional-locks -C ${SOURCE})
   execute_process(COMMAND ${git} rev-parse --show-cdup
     OUTPUT_VARIABLE above OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
-  if(NOT failed AND above STREQUAL "") # not within another repository
+  if(NOT failed AND above STREQUAL "") # SOURCE is the top folder of its repository
     execute_process(COMMAND ${git} rev-parse --short=12 HEAD
       OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     execute_process(COMMAND ${git} status --porcelain --untracked-files=no

@@ -17,8 +17,8 @@ namespace evod::run_file {
 
 class DataFolder {
   public:
-    /// Opens the folder, and creates it if it does not exist. Refused if another server uses it, or if it is not
-    /// usable.
+    /// Opens the folder, and creates it if it does not exist. Refused if another server uses it, or if this
+    /// process cannot use it.
     static base::Result<DataFolder> open(const std::string& path);
 
     DataFolder(DataFolder&& other) noexcept;

@@ -18,14 +18,14 @@ namespace evod::run_file {
 
 /// The state and settings with which a run began. Written once.
 struct RunIdentity {
-    std::string name; // name of the world
+    std::string name; // the name of the world
     simulation::RunId run_id;
     base::Seed seed;
     parameters::Parameters parameters;
     std::string evod_version = EVOD_VERSION;
     std::string build = build_text(); // build of the evod that created the file; empty if the file does not contain it
     std::uint32_t model_version = simulation::model_version;
-    std::int64_t began_unix_ms = 0; // wall clock, for information only
+    std::int64_t began_unix_ms = 0; // wall clock time, only for information
     // A fork begins with a generation of another run. Its `parameters` are the requested parameters of that run.
     std::uint64_t first_generation = 1;
     // Ticks before this run; if the run begins within a generation, it has a checkpoint at this tick.
@@ -54,7 +54,7 @@ inline std::string user_of(const Origin& origin) {
 /// A command that the simulation has applied.
 struct JournalEntry {
     std::uint64_t number = 0; // 1 for the first command of the run
-    std::uint64_t tick = 0;   // ticks of the run before it was applied
+    std::uint64_t tick = 0;   // the command was applied after this tick
     Origin origin;
     std::string answer;             // the frame that the client received
     simulation::RunControl control; // run control of the world after the command
@@ -115,13 +115,13 @@ struct HashRecord {
     std::uint64_t tick = 0;
     base::StateHash hash;
 };
-/// The recorder stores the state hash after every tick that is a multiple of this.
+/// The recorder stores the state hash after every tick that is a multiple of this number.
 constexpr std::uint64_t ticks_per_hash = 60;
 
 /// The rule for which older generations are retained (retention.h).
 struct RetentionRule {
-    // Up to until_generation, every keep_every-th generation is retained, counted from the file's first. Up to
-    // until_tick, the end of that generation, every keep_every-th hash is retained, counted from tick 0.
+    // Up to until_generation, every keep_every-th generation is retained, counted from the first one in the file. That
+    // generation ended at until_tick. Up to until_tick, every keep_every-th hash is retained, counted from tick 0.
     std::uint64_t keep_every = 1, until_generation = 0, until_tick = 0;
 };
 

@@ -14,7 +14,8 @@ Result<void> Retention::read() {
     TableReader<ThinnedTable> rules{database_.database, "1 ORDER BY number"};
     ThinnedTable::Row row;
     for (std::uint64_t number = 1; rules.next(row); ++number) {
-        constexpr std::uint64_t keep_every_max = std::uint64_t{1} << 40; // more than repeated doubling can reach
+        // Larger than any value that repeated doubling can reach.
+        constexpr std::uint64_t keep_every_max = std::uint64_t{1} << 40;
         if (!rules.sound() || row.number != number || row.rule.keep_every == 0 ||
             row.rule.keep_every > keep_every_max) {
             return database_.damaged(row_text(ThinnedTable::name, number));

@@ -20,7 +20,7 @@ namespace evod::run_file {
 
 class Retention {
   public:
-    /// identity, keep_every  values of this file. They are kept as references, so they may be read from the file later.
+    /// identity, keep_every  values of this file. They are kept as references, so they may be filled in later.
     Retention(RunDatabase& database, const RunIdentity& identity, const std::uint64_t& keep_every)
         : database_{database}, identity_{identity}, keep_every_{keep_every} {}
 

@@ -33,7 +33,8 @@ void RowChecksum::add(std::int64_t value) {
 }
 
 void RowChecksum::add(double value) {
-    add_type('r', std::bit_cast<std::uint64_t>(value + 0.0)); // SQLite stores −0 as 0
+    // Adding 0.0 turns −0 into 0, because SQLite stores −0 as 0.
+    add_type('r', std::bit_cast<std::uint64_t>(value + 0.0));
 }
 
 void RowChecksum::add_text(std::string_view text) {

@@ -46,7 +46,7 @@ struct ParametersTable {
     struct Row {
         std::int64_t number = 0;
         std::uint64_t revision = 0;
-        std::string active, requested; // experiment files
+        std::string active, requested; // texts of experiment files
     };
     template <class R, class C>
     static void columns(R& row, C&& column) {

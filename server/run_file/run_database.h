@@ -1,6 +1,6 @@
 // Run database: the SQLite database of one run file, with its path for error messages.
 //
-// Owner        the RunFile; its tables refer to it.
+// Owner        the RunFile. The objects for its tables refer to this database.
 // Threads      one at a time.
 #pragma once
 
@@ -59,7 +59,7 @@ struct RunDatabase {
     }
 };
 
-/// "the row 7 of its table journal"
+/// The name of a row in an error message: "the row 7 of its table journal".
 std::string row_text(const std::string& table, std::uint64_t key);
 
 } // namespace evod::run_file

@@ -5,10 +5,10 @@
 // after it can be simulated again (replay/).
 //
 //   run_contents                                      the tables: journal · generations · checkpoints · retention
-//   schema · identity                                 what a file must have before anything else is read
-//   check                                             reads and checks everything
+//   schema · identity                                 checked before anything else in a file is read
+//   check                                             reads the whole file and checks every row
 //
-// Owner        one thread at a time: the storage thread while a server runs.
+// Owner        one thread at a time. While a server runs, it is the storage thread.
 #pragma once
 
 #include "server/base/result.h"

@@ -31,7 +31,8 @@ void create_tables(Database& database) {
     (database.run(create_statement<Tables>().c_str()), ...);
 }
 
-/// The order of the tables is part of the format: it determines the numbers of their first pages.
+/// The order of the tables is part of the format, because it determines the number of each table's first page in the
+/// file.
 void create_all_tables(Database& database) {
     create_tables<RunTable, FirstPopulationTable, ParametersTable, JournalTable, GenerationTable, PopulationTable,
                   OutcomeTable, StateHashTable, ThinnedTable, EndMarkTable, StatisticsTable, InheritedStatisticsTable,

@@ -4,10 +4,10 @@
 // A table is a type with these members (rows.h declares all tables):
 //
 //   name                   the table's name in the file
-//   key_columns            how many of the first columns form the primary key
-//   Row                    one row as it is read
-//   columns(row, column)   calls column("name", member) for each column, in order; a template, so that a struct with the
-//                          same member names can be written without copying its contents into a Row
+//   key_columns            number of columns, from the first, that form the primary key
+//   Row                    the contents of one row, as read from the table
+//   columns(row, column)   calls column("name", member) for each column, in order. This is a template, so it can write
+//                          any struct that has the same member names, without copying it to a Row.
 //
 // The type of a member determines the type of its column. Whole numbers, bool and enumerators are INTEGER, double is
 // REAL, std::string is TEXT, and Blob is BLOB. std::optional allows NULL.

@@ -1,8 +1,8 @@
-// Write-ahead log: distinguishes a damaged log, NAME.evod-wal, from one whose last write was torn by a crash.
+// Write-ahead log: distinguishes a damaged log, NAME.evod-wal, from a log whose last write was torn by a crash.
 //
 // SQLite recovers the frames of a log up to the first frame with a wrong checksum, and silently drops all later frames.
 // This is right after a torn write. But a flipped bit in the middle of a log has the same effect, and acknowledged
-// commands would be lost. So this code also reads the frames after the bad one. Each of two observations proves that
+// commands would be lost. So this code also reads the frames after the bad one. Each of two facts proves that
 // the bad frame had been on the disk:
 //
 //   - A later frame continues the checksum of a commit at or after the bad frame. SQLite writes such a frame only after
