@@ -26,8 +26,8 @@ struct Rectangle {
 
 class Camera {
   public:
-    static constexpr double zoom_max = 64;     // pixels per px of the world
-    static constexpr double wall_pixels = 6;   // thickness of the walls at any zoom
+    static constexpr double zoom_max = 64;     // pixels on the screen per px of the world
+    static constexpr double wall_pixels = 6;   // thickness of the walls in pixels at any zoom
     static constexpr double margin_pixels = 6; // space around the walls when the whole island is shown
 
     /// Sets the viewport. If the whole island was fitted into the old viewport, it is fitted into the new one;
@@ -38,7 +38,7 @@ class Camera {
     /// viewport.
     void set_island(double width, double height);
 
-    /// Shows the whole island with its walls as large as possible.
+    /// Centres the island and chooses the largest zoom at which the whole island and its walls are visible.
     void fit();
     bool fitted() const { return fitted_; }
 
@@ -60,7 +60,7 @@ class Camera {
 
     const Rectangle& viewport() const { return viewport_; }
     Point centre() const { return centre_; } // the point of the world in the middle of the viewport
-    double zoom() const { return zoom_; }    // pixels per px of the world
+    double zoom() const { return zoom_; }    // pixels on the screen per px of the world
     double zoom_min() const;                 // half of the zoom that fit() sets
     Rectangle visible() const;               // the visible part of the world
 

@@ -1,4 +1,4 @@
-// Colour scale: maps numbers to colours of a ramp, and draws the ramp as a bar.
+// Colour scale: assigns colours of a ramp to numbers, and draws the ramp as a bar.
 //
 // Owner        none: a value.
 // Threads      none; bars are drawn on the drawing thread.

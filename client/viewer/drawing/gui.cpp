@@ -70,11 +70,11 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     ImGui::CreateContext();
     ImGui::StyleColorsLight();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.FrameBorderSize = 1; // white fields on light panels
+    style.FrameBorderSize = 1; // makes white fields visible on light panels
     style.Colors[ImGuiCol_Border].w = 0.5f;
     style.ScaleAllSizes(scale_);
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr; // Dear ImGui writes no file
+    io.IniFilename = nullptr; // prevents Dear ImGui from writing a settings file
     io.UserData = spots_.get();
     for (const NamedKey& named : named_keys) {
         io.KeyMap[named.name] = named.key;
@@ -124,7 +124,8 @@ bool Gui::pass_on_key(const sf::Event& event, Received& received) {
             known = down;
         }
     }
-    // The event of a modifier key may carry the modifier's state before the event.
+    // SFML may report the state of modifier keys before the event, so the state of the key that was pressed or released
+    // is taken from the event type.
     const auto held = [&](bool reported, Key::Key left, Key::Key right) {
         return is_one_of(key.code, left, right) ? pressed : reported;
     };

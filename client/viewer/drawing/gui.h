@@ -1,4 +1,4 @@
-// Gui: Dear ImGui in an SFML window. It loads the fonts and draws all text of evoview.
+// Gui: uses Dear ImGui in an SFML window. It loads the fonts and draws all text of evoview.
 //
 // Events are queued until the next frame. Dear ImGui reads the state of keys and buttons once per frame. If a key is
 // pressed and released within one frame, Gui therefore passes the release on in the next frame. No input is lost at a
@@ -58,7 +58,7 @@ class Gui {
     struct Received {
         bool key = false, text = false, button = false;
     };
-    /// Returns false if the event must wait for the next frame.
+    /// Passes an event to Dear ImGui. Returns false if the event must wait for the next frame.
     bool pass_on(const sf::Event& event, Received& received);
     bool pass_on_key(const sf::Event& event, Received& received);
 

@@ -1,4 +1,4 @@
-// Palette: every colour of the window.
+// Palette: defines every colour of the window.
 //
 // Food and poison differ in lightness as well as in hue, so that red-green colour-blind users can distinguish them.
 // Ordered numbers use a ramp of rising lightness. Categories use the colours of Okabe and Ito.
@@ -91,11 +91,11 @@ constexpr Colour series_blue = kinds[4];
 constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
-// Integrators in the time step demonstration.
+// Colours of the integrators in the time step demonstration.
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];
 
-// The glass box.
+// Colours of the glass box.
 constexpr Colour first_parent = kinds[4];
 constexpr Colour second_parent = kinds[0];
 constexpr Colour glass_current{206, 16, 110};

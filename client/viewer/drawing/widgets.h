@@ -20,7 +20,7 @@
 
 namespace evod::viewer {
 
-/// The positions of the widgets of the last complete frame, and the widget on which the mouse rests.
+/// Stores the positions of the widgets of the last complete frame, and the widget on which the mouse rests.
 class Spots {
   public:
     void begin_frame();

@@ -29,7 +29,7 @@ inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
     return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
 }
 
-/// Pixels between neighbouring worlds or tiles.
+/// Gap in pixels between neighbouring worlds or tiles.
 constexpr double gap_pixels = 2;
 
 /// Divides `place` into `count` columns of whole pixels, from left to right. The last column takes the remaining width.

@@ -16,7 +16,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float label_pixels = 14;      // height of the numbers, at scale 1
+constexpr float label_pixels = 14;      // height of the health numbers, at scale 1
 constexpr double label_zoom_min = 0.45; // at a smaller zoom, organisms are smaller than their numbers
 
 const ShapeStyle food_style{.fill = palette::food, .half_pixels_min = 1};

@@ -26,7 +26,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// Health as it is displayed: rounded up, so that a living organism never shows 0.
+/// Rounds the health up for display, so that a living organism never shows 0.
 unsigned shown_health(float health);
 
 /// Whether the health numbers are readable: organisms must be large enough, and few enough that the numbers do not
@@ -36,7 +36,7 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count);
 /// The organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If several
 /// organisms are hit, returns the one whose centre is nearest.
 ///
-/// returns  an index in snapshot.organisms
+/// returns  an index in snapshot.organisms; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& snapshot,
                                        const core::WorldView::Positions& organisms, const Camera& camera);
 

@@ -87,12 +87,12 @@ class IslandView {
     }
 
   private:
-    static constexpr std::chrono::milliseconds poll_interval{250}; // for values that change in every tick
+    static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
 
     /// The place and run that are shown. When one of them changes, all data about the old ones is cleared.
     struct Shown {
         std::uint64_t number = 0; // WorldFeed::place_number()
-        std::string run_id;       // empty before the first snapshot
+        std::string run_id;       // empty until the first snapshot arrives
         friend bool operator==(const Shown&, const Shown&) = default;
     };
     PopulationPoll::Of population_of(const ViewedWorld& world) const;
@@ -104,7 +104,7 @@ class IslandView {
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
     Shown shown_;
-    std::uint64_t generation_ = 0, tick_ = 0;                // of the newest snapshot
+    std::uint64_t generation_ = 0, tick_ = 0;                // generation and tick of the newest snapshot
     std::shared_ptr<const codec::DecodedSnapshot> snapshot_; // the newest snapshot
 
     std::vector<std::string> gene_names_;

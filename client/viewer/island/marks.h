@@ -1,4 +1,4 @@
-// Marks: turns snapshots and populations into shapes, lines and their colours.
+// Marks: converts snapshots and populations into coloured shapes and lines.
 //
 // All work per frame that grows with the number of organisms is done here, except the drawing itself. Functions named
 // add_… append to their last arguments. Positions and colours have the same index as the organism in the snapshot.
@@ -23,7 +23,7 @@ namespace evod::viewer {
 
 using Positions = core::WorldView::Positions;
 
-/// The property that colours organisms.
+/// The property that determines the colours of organisms.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
 /// Ranges from 0 to the greatest health in the snapshot, rounded up to hundreds so that the scale rarely changes; at
@@ -50,7 +50,8 @@ void add_discs(const Positions& at, std::span<const float> radius_px, std::vecto
 
 void add_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
                         std::vector<Colour>& colours);
-/// Organisms that are not in the population get palette::unknown.
+/// Adds the colour of each organism. An organism that is not in the population gets palette::unknown, also in
+/// add_family_colours().
 void add_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
 void add_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,

@@ -19,7 +19,7 @@ struct MinimapPlace {
     static constexpr double side_pixels_max = 180, margin_pixels = 12; // at scale 1
 
     Rectangle screen;
-    double zoom = 1; // pixels per px of the world
+    double zoom = 1; // pixels on the screen per px of the world
 
     Point to_world(Point on_screen) const {
         return {(on_screen.x - screen.left) / zoom, (on_screen.y - screen.top) / zoom};

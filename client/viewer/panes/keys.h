@@ -1,4 +1,4 @@
-// Keys: the table of keys and their actions, from which the help window is generated.
+// Keys: the table that assigns actions to keys. The help window is generated from it.
 //
 // Signs (+ − [ ?) are matched as typed characters, so that they work with every keyboard layout. All other keys are
 // matched by key code.

@@ -20,7 +20,7 @@
 
 namespace evod::viewer {
 
-/// The part of a pane that shows one island.
+/// Part of a pane: shows one island.
 struct Tile {
     std::uint32_t island;
     core::WorldView& view;

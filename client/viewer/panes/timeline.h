@@ -20,7 +20,7 @@ namespace evod::viewer {
 
 class Timeline {
   public:
-    static constexpr double height_pixels = 62; // at scale 1
+    static constexpr double height_pixels = 62; // height of the strip at scale 1
 
     /// Draws the time line of a replay; draws nothing for a live world. Call between Gui::begin() and Gui::draw().
     ///
@@ -37,7 +37,7 @@ class Timeline {
 
     std::string world_, run_id_;                        // identify the replay that the members below describe
     std::map<std::uint64_t, std::uint64_t> first_tick_; // first tick by generation
-    std::set<std::uint64_t> requested_;                 // generations whose first tick was requested
+    std::set<std::uint64_t> requested_;                 // generations whose first tick has been requested
     std::uint64_t shown_generation_ = 0;
     int typed_generation_ = 1;
     bool pressed_ = false;

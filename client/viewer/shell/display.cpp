@@ -14,7 +14,7 @@ namespace {
 
 /// The connection to the X server. Null if there is no X server or it accepts no more clients.
 Display* connection() {
-    static Display* const opened = XOpenDisplay(nullptr); // never closed
+    static Display* const opened = XOpenDisplay(nullptr); // never closed; see display.h
     return opened;
 }
 

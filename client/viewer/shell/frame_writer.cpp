@@ -161,7 +161,7 @@ class FilmWriter final : public FrameWriter {
     struct Close {
         void operator()(FILE* file) const { std::fclose(file); }
     };
-    std::unique_ptr<FILE, Close> output_; // standard output and error of ffmpeg
+    std::unique_ptr<FILE, Close> output_; // receives the standard output and error of ffmpeg
     int pipe_ = -1;
     pid_t process_ = 0;
 };

@@ -1,4 +1,4 @@
-// Options: the command line of evoview.
+// Options: parses the command line of evoview.
 #pragma once
 
 #include "client/core/connection.h"
@@ -31,7 +31,7 @@ struct Options {
     std::optional<Script> script;
     std::string script_path;
 
-    /// Save one frame instead of opening a window.
+    /// Saves one frame instead of opening a window.
     struct Screenshot {
         std::string path;
         std::uint64_t tick = 0; // wait for a snapshot of this tick or a later one
@@ -39,7 +39,7 @@ struct Options {
     };
     std::optional<Screenshot> screenshot;
 
-    /// Save frame after frame instead of opening a window.
+    /// Saves a sequence of frames instead of opening a window.
     struct Record {
         std::string path;                         // a film if it has the ending of one, otherwise a folder
         std::optional<std::uint64_t> ticks;       // ticks to record; both nullopt: until the run ends

@@ -231,7 +231,7 @@ class Recorder {
     WindowRenderer renderer_{scale_};
     Panes panes_;
     std::vector<std::uint64_t> targets_;
-    std::vector<std::string> run_ids_; // by pane
+    std::vector<std::string> run_ids_; // run id of each pane's world
     std::string refusal_;
     std::uint64_t first_tick_ = 0, last_tick_ = 0, first_generation_ = 0, missed_ticks_ = 0;
 };

@@ -138,7 +138,7 @@ void Window::carry_out(Action action) {
         return close_front();
     case Action::Quit:
         return window_.close();
-    case Action::FirstPanel: // handled above
+    case Action::FirstPanel: // handled before the switch
         break;
     }
 }

@@ -7,7 +7,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The end of the UTF-8 character that begins at `at`.
+/// The offset after the UTF-8 character that begins at `at`.
 std::size_t end_of_character(std::string_view text, std::size_t at) {
     for (++at; at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; ++at) {
     }
@@ -18,7 +18,7 @@ std::size_t end_of_character(std::string_view text, std::size_t at) {
 
 std::string in_lines(std::string_view text, float width_max, const std::function<float(std::string_view)>& width_of) {
     std::string lines;
-    std::size_t line_begin = 0; // in `lines`
+    std::size_t line_begin = 0; // offset in `lines`
     const auto begin_line = [&] {
         lines += '\n';
         line_begin = lines.size();

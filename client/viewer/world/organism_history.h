@@ -20,7 +20,7 @@ class OrganismHistory {
     static constexpr std::size_t points_max = 1024; // when reached, every second point is removed
 
     struct Health {
-        double s = 0; // simulated seconds since the start of the run
+        double s = 0; // simulated time since the start of the run
         float health = 0;
     };
     /// A child in the next generation.

@@ -144,7 +144,7 @@ class ParameterEdits {
 
     std::vector<evod::v1::ParameterDescription> registry_;
     std::map<std::string, std::size_t, std::less<>> index_; // index by parameter name
-    std::vector<State> states_;                             // in the order of the registry
+    std::vector<State> states_;                             // one per parameter, in the order of the registry
     std::uint64_t revision_ = 0;                            // 0: no set has been received
     Transaction sent_;
     std::vector<std::vector<Change>> done_, undone_; // newest transaction last

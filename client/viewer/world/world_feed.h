@@ -126,7 +126,7 @@ class WorldFeed {
     core::SubscriptionHandle snapshot_subscription_, event_subscription_;
     std::optional<core::SubscriptionHandle> overview_subscription_;
     std::optional<evod::v1::View> streamed_view_;
-    std::map<std::uint32_t, core::WorldView> views_; // by island
+    std::map<std::uint32_t, core::WorldView> views_; // one view per island number
     std::shared_ptr<const codec::DecodedSnapshot> overview_snapshot_;
     RunControl control_;
     std::optional<evod::v1::Replay> replay_;

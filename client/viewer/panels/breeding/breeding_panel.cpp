@@ -360,7 +360,7 @@ void BreedingPanel::build_stage(const Context& context) {
             widgets::say(
                 "blue: genes of the first parent, orange: of the second, dashed: cuts, framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
-            ImGui::Dummy({1, used}); // makes the panel scroll
+            ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }
         break;
     case BreedingStage::Done:

@@ -14,7 +14,7 @@ const typename Rows::value_type* row(const Rows& rows, std::uint32_t index) {
     return index < static_cast<std::uint32_t>(rows.size()) ? &rows.Get(static_cast<int>(index)) : nullptr;
 }
 
-/// Appends the rows of `page`, up to `count` and rows_kept_max. Returns whether any was added.
+/// Appends the rows of `page` until the list has `count` or rows_kept_max rows. Returns whether any row was added.
 template <class Rows>
 bool append(Rows& have, const Rows& page, std::uint32_t count) {
     const auto kept = static_cast<int>(std::min(count, BreedingRecord::rows_kept_max));

@@ -14,7 +14,7 @@ namespace evod::viewer {
 /// has arrived.
 std::string breeding_summary(const BreedingRecord& record);
 
-/// "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …"
+/// The caption of a moment: "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …".
 std::string caption(const BreedingRecord& record, Moment moment);
 
 /// The value of a parameter with named choices, as text for users: "stochastic universal".

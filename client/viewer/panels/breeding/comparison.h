@@ -24,7 +24,7 @@ struct Comparison {
     Expectation expected;
     std::vector<double> deviations; // deviation of the observed from the expected copies, in standard errors
     std::vector<Prediction> predictions;
-    std::size_t beyond_two = 0; // ranks whose copies deviate by more than two standard errors
+    std::size_t beyond_two = 0; // number of ranks whose copies deviate by more than two standard errors
 };
 
 /// Compares the observed copies with the expected ones.
@@ -38,21 +38,21 @@ std::vector<std::uint32_t> copies_after(const BreedingRecord& record, std::uint3
 
 /// A group of neighbouring ranks that is drawn as one bar.
 struct RankColumn {
-    std::size_t first = 0, last = 0; // ranks
+    std::size_t first = 0, last = 0; // first and last rank of the group
     double copies = 0, expected = 0; // sums over the ranks
     double deviation = 0;            // after all picks, in standard errors; ranks in a group are treated as independent
 };
 
 /// Distributes the ranks over at most `columns` groups. The sizes of any two groups differ by at most one.
 ///
-/// copies          shape (ranks)
+/// copies          observed copies by rank, shape (ranks)
 /// expected_share  the fraction of all picks that `copies` includes, 0 to 1; the expected copies are multiplied by it
 std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<const std::uint32_t> copies,
                                      double expected_share, std::size_t columns);
 
 /// A group of consecutive picks that is drawn as one cell.
 struct PickColumn {
-    std::uint32_t first = 0, last = 0; // picks
+    std::uint32_t first = 0, last = 0; // first and last pick of the group
     std::optional<double> rank{};      // mean rank of the picks made; nullopt if none was made or received
 };
 

@@ -13,7 +13,7 @@ namespace evod::viewer {
 struct Sheet {
     ImDrawList& list;
     ImFont& font;
-    ImVec2 corner, size; // pixels
+    ImVec2 corner, size; // upper left corner and size in pixels
     ImVec2 end() const { return {corner.x + size.x, corner.y + size.y}; }
     float line_height() const { return font.FontSize + 4; }
 

@@ -179,7 +179,7 @@ std::optional<std::uint32_t> takeover_on_wheel(std::span<const double> fitness) 
     std::uint32_t after = 1;
     while (share(after) < goal) {
         if (after > generations_max) {
-            return std::nullopt; // all fitness values are equal
+            return std::nullopt; // takeover never happens, because all fitness values are equal
         }
         after *= 2;
     }

@@ -24,8 +24,8 @@ namespace evod::viewer {
 
 /// The distribution of the copies as sent by the server. Each list is indexed by rank and has shape (population).
 struct Expectation {
-    std::vector<double> copies;          // in all picks
-    std::vector<double> standard_error;  // standard deviation of the copies from one breeding to the next
+    std::vector<double> copies;          // expected copies, in all picks together
+    std::vector<double> standard_error;  // standard deviation of the copies when a breeding is repeated
     std::vector<double> unpicked_chance; // probability of having no copy
 };
 
@@ -45,7 +45,7 @@ struct Selection {
 /// Reads the properties from the parameters of a breeding. A missing parameter has its default value.
 Selection selection_of(const evod::v1::Breeding& breeding);
 
-/// One predicted number.
+/// A number that theory predicts, with the observed number.
 struct Prediction {
     std::string_view name{}, sentence{}, source{};
     std::string_view unit{};                // empty: dimensionless
@@ -64,7 +64,7 @@ double deviation(double observed, double expected, double standard_error);
 /// Predicts the copies of the fittest, selection intensity, the share not selected, loss of diversity, takeover time,
 /// and how well all copies together agree with the law.
 ///
-/// fitness  best first, shape (population), finite.
+/// fitness  fitness values, best first, shape (population), finite.
 /// copies   observed copies by rank, shape (population); empty: unknown, and no prediction contains an observed number.
 /// returns  an empty list if there are no picks.
 std::vector<Prediction> predictions(const Selection& selection, const Expectation& expectation,
@@ -74,7 +74,7 @@ std::vector<Prediction> predictions(const Selection& selection, const Expectatio
 
 /// (mean fitness of the picked − mean fitness of all) / standard deviation of the fitness; 0 if all fitness values are
 /// equal.
-/// copies  by rank, expected or observed; not all 0.
+/// copies  expected or observed copies by rank; not all 0.
 double selection_intensity(std::span<const double> copies, std::span<const double> fitness);
 
 /// The selection intensity that these copies would have if the fitness were normally distributed. In large populations

@@ -17,7 +17,7 @@ namespace evod::viewer {
 using Contenders = google::protobuf::RepeatedPtrField<evod::v1::Contender>;
 
 struct Arc {
-    double begin = 0, end = 0;         // in turns, 0 to 1
+    double begin = 0, end = 0;         // angles in turns, 0 to 1
     std::uint32_t first = 0, last = 0; // ids of the first and the last organism
     double rank = 0;                   // rank of the organism; for several, the mean weighted by slot width
 };
@@ -25,7 +25,7 @@ struct Arc {
 /// The arcs in the order of the slots, without slots of width 0. Neighbouring slots narrower than a pixel are merged
 /// into arcs that are at least a pixel wide.
 ///
-/// circumference_px  > 0
+/// circumference_px  circumference of the wheel in pixels, > 0
 std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_px);
 
 /// The organism whose slot contains the angle `turns`; nullptr if the server has not sent it yet.

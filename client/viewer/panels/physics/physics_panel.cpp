@@ -137,7 +137,7 @@ void PhysicsPanel::build_demo() {
     widgets::mark("damped motion");
     const char* rate_label = spring_ ? "ω, 1/s" : "damping, 1/s";
     changed |= ImGui::SliderFloat(rate_label, &rate_per_s_, 0.5f, 10, "%.1f",
-                                  ImGuiSliderFlags_AlwaysClamp); // a rate of 0 would divide by zero
+                                  ImGuiSliderFlags_AlwaysClamp); // prevents a rate of 0 and a division by 0
     widgets::mark(rate_label);
     changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
                                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);

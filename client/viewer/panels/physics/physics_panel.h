@@ -41,7 +41,7 @@ class PhysicsPanel : public Panel {
         Colour colour;
         std::vector<double> x_px, energy; // by row; energy is relative to its initial value
     };
-    std::vector<double> t_s_;   // by row
+    std::vector<double> t_s_;   // time of each row
     std::vector<Curve> curves_; // in drawing order
 };
 

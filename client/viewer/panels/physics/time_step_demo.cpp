@@ -5,8 +5,8 @@
 namespace evod::viewer {
 
 TimeStepDemo::State TimeStepDemo::exact(double t) const {
-    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2. (C, S) is (cos wt, sin wt / w), (cosh wt, sinh wt / w) or (1,
-    // t).
+    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2.
+    // (C, S) is (cos wt, sin wt / w), (cosh wt, sinh wt / w) or (1, t).
     const double h = system_.damping_per_s / 2, square = system_.omega_per_s * system_.omega_per_s - h * h;
     const auto [x0, v0] = system_.start;
     const double w = std::sqrt(std::abs(square));

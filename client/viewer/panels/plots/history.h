@@ -24,7 +24,7 @@ class History {
     void see_run(const std::string& world, const std::string& run_id);
     void see_run(const evod::v1::WorldInfo& world);
 
-    /// Processes an event; ignores events of other worlds.
+    /// Processes an event. Ignores events of other worlds, except a report of dropped events.
     void see_event(const evod::v1::Event& event);
 
     /// Records that all generations of this run up to `generation` have ended. A snapshot reports this number.

@@ -28,7 +28,7 @@ struct Box {
     float left, top, right, bottom;
 };
 
-/// Draws one plot on a draw list, inside a box.
+/// Draws a plot inside a box on a draw list.
 class Drawing {
   public:
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, std::string title, Range x, Box box)
@@ -344,7 +344,7 @@ class Drawing {
     Range x_, y_;
     Box area_;
     Ticks y_ticks_;
-    std::vector<std::vector<Group>> groups_; // by series
+    std::vector<std::vector<Group>> groups_; // groups of each series
     std::vector<double> tops_;               // upper ends of all stacks, by group
     std::vector<double> stack_bottoms_;
     float title_top_ = 0, legend_top_ = 0, legend_left_ = 0, legend_right_ = 0, label_top_ = 0, label_left_ = 0;
