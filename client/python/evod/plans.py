@@ -95,7 +95,7 @@ class LabPlans:
         return self._registry
 
     def world_name(self, name: str | None) -> Plan[str]:
-        """Checks that a world exists and returns its name. Without a name: the only world, or "default" if there are several."""
+        """Checks that a world exists and returns its name. Default: the only world, or "default" if there are several."""
         known = [info.name for info in (yield from worlds())]
         if name is None:
             name = known[0] if len(known) == 1 else "default"

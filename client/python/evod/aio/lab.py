@@ -444,7 +444,7 @@ class World(ParameterAttributes):
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
     async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
-        """Starts the world, which pauses after this tick, counted from the beginning of the run. Returns at once: see `wait`."""
+        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for it."""
         return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
