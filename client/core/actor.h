@@ -7,8 +7,9 @@
 
 namespace evod::core {
 
-/// "karl: evoctl 127.0.0.1:5000"; "evoctl 127.0.0.1:5000" for a client without a user. The server sends viewers the user only:
-/// "karl", or "a local client" without a user. Also "the schedule", "a goal", "evod".
+/// Returns "karl: evoctl 127.0.0.1:5000" for a client with a user, and "evoctl 127.0.0.1:5000" for a client without
+/// one. The server sends only the user to clients with the role viewer: there the text is "karl", or "a local client"
+/// if there is no user. Other actors are "the schedule", "a goal" and "evod".
 std::string to_text(const v1::Actor& actor);
 
 } // namespace evod::core

@@ -80,7 +80,7 @@ std::string hexadecimal(std::string_view bytes) {
 
 } // namespace
 
-/// The connection's thread and everything on it.
+/// The connection's thread, and the state and functions that belong to it.
 class Connection::Io {
   public:
     explicit Io(Options options) : options_{std::move(options)} {
@@ -95,7 +95,7 @@ class Connection::Io {
         thread_.join();
     }
 
-    // ---- from any thread ---------------------------------------------------------------------------------------
+    // ---- functions for any thread ------------------------------------------------------------------------------
 
     ConnectionStatus status() const {
         const std::lock_guard lock{mutex_};
@@ -104,7 +104,7 @@ class Connection::Io {
 
     bool on_own_thread() const { return std::this_thread::get_id() == thread_.get_id(); }
 
-    /// Waits until `holds(*this)`, with the mutex held.
+    /// Waits until `holds(*this)` returns true. The mutex is locked while `holds` runs.
     template <class Condition>
     bool wait(std::chrono::milliseconds timeout, const Condition& holds) {
         std::unique_lock lock{mutex_};
@@ -142,9 +142,9 @@ class Connection::Io {
         asio::post(context_, [this, handle] { remove_subscription(handle); });
     }
 
-    // ---- shared, under the mutex -------------------------------------------------------------------------------
+    // ---- shared state, guarded by the mutex --------------------------------------------------------------------
 
-    mutable std::mutex mutex_; // guards what follows, up to the next line
+    mutable std::mutex mutex_; // guards all members up to the next section
     std::condition_variable changed_;
     ConnectionStatus status_;
     std::deque<evod::v1::Event> events_;
@@ -152,7 +152,8 @@ class Connection::Io {
     std::map<SubscriptionHandle, evod::v1::Response> answers_;
     std::map<SubscriptionHandle, std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>> snapshots_;
 
-    /// Takes the oldest event, a note about lost ones first. The mutex is held.
+    /// Removes and returns the oldest event. If events were lost, first returns an EventsDropped. The caller holds the
+    /// mutex.
     std::optional<evod::v1::Event> pop_event() {
         evod::v1::Event event;
         if (events_dropped_ > 0) {
@@ -167,29 +168,29 @@ class Connection::Io {
     }
 
   private:
-    /// What happens to a request that is unanswered when the session ends.
+    /// The treatment of a request that is still unanswered when the session ends.
     enum class Loss {
-        SentAgain, // with the same number
-        Renewed,   // a subscription: dropped if it was sent, because every new session requests all of them
-        Forgotten, // it has no meaning outside its session
+        SentAgain, // it is sent again with the same number
+        Renewed,   // a subscription: dropped if it was sent, because every new session requests all subscriptions
+        Forgotten, // it is dropped, because it has no meaning outside its session
     };
     enum class Order { InTurn, First };
 
-    /// A request that has no reply yet.
+    /// A request without a reply.
     struct Pending {
         std::string frame;
         Handler handler;
         asio::steady_timer deadline;
         Loss loss;
         Order order;
-        bool sent = false; // in this session
+        bool sent = false; // whether it was sent in this session
     };
 
     struct ActiveSubscription {
         evod::v1::Request request;
-        bool asked = false;                     // a request for it is pending
-        bool view_changed = false;              // since that, or since the last SetView
-        std::optional<std::uint32_t> server_id; // in this session, once accepted
+        bool asked = false;                     // the request to subscribe is pending
+        bool view_changed = false;              // the view was changed after the last request that contained it
+        std::optional<std::uint32_t> server_id; // its id in this session; nullopt: the server has not accepted it yet
     };
 
     bool connected() const { return session_ && welcomed_; }
@@ -227,7 +228,7 @@ class Connection::Io {
             status_.welcome = std::move(welcome);
             ++status_.connected_count;
         });
-        // Subscriptions come first, so that the caller receives the events of its requests.
+        // Subscriptions are sent first, so that the caller receives the events that its requests cause.
         for (const auto& [handle, subscription] : subscriptions_) {
             if (!subscription.asked) {
                 ask_for_subscription(handle, Order::First);
@@ -273,7 +274,7 @@ class Connection::Io {
             handler(Error{.kind = Error::Kind::NoConnection, .what = ending.reason});
         }
         if (again) {
-            // Jitter: the clients of one server should not all reconnect at the same moment.
+            // Jitter, so that the clients of a server do not all reconnect at the same moment.
             const auto spread = std::uniform_real_distribution{0.5, 1.0}(jitter_);
             retry_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(backoff_ * spread));
             backoff_ = std::min(2 * backoff_, options_.backoff_max);
@@ -341,7 +342,7 @@ class Connection::Io {
         send_waiting();
     }
 
-    /// Sends the waiting requests, up to the server's limit on unanswered requests.
+    /// Sends waiting requests until the server's limit on unanswered requests is reached.
     void send_waiting() {
         if (!connected()) {
             return;
@@ -366,7 +367,8 @@ class Connection::Io {
         if (entry == pending_.end()) {
             return;
         }
-        // A request that was sent still counts for the server's limit; its late reply is dropped and frees its place.
+        // A request that was sent counts towards the server's limit until its reply arrives, even after the timeout.
+        // That late reply is dropped.
         if (entry->second.sent) {
             late_.insert(id);
         }
@@ -405,7 +407,7 @@ class Connection::Io {
                 entry->second.asked = false;
             }
             if (!response) {
-                return; // the session has ended; the next one subscribes again
+                return; // the session has ended; the next session subscribes again
             }
             const std::uint32_t server_id = response->subscription().subscription_id();
             if (entry == subscriptions_.end()) {
@@ -422,7 +424,7 @@ class Connection::Io {
         add_request(subscription.request, answered, std::chrono::hours{24 * 365}, Loss::Renewed, order);
     }
 
-    /// Sends the view if it differs from that of the subscription request.
+    /// Sends the view if it was changed after the subscription was requested.
     void send_view(ActiveSubscription& subscription) {
         if (!subscription.view_changed || !subscription.server_id || !connected()) {
             return;
@@ -480,7 +482,7 @@ class Connection::Io {
         const std::uint32_t server_id = frame.subscription_id();
         const auto known = handle_of_server_id_.find(server_id);
         if (known == handle_of_server_id_.end()) {
-            return; // unsubscribed meanwhile
+            return; // the caller has unsubscribed since
         }
         const SubscriptionHandle handle = known->second;
         if (subscriptions_.at(handle).request.subscribe_snapshots().has_unacknowledged_max()) {
@@ -489,11 +491,11 @@ class Connection::Io {
         IslandStream& stream = streams_[server_id][frame.island()];
         const bool chained = frame.codec() == evod::v1::CODEC_DELTA;
         if (chained && !codec::is_keyframe(frame) && stream.decoder.needs_keyframe() && stream.keyframe_requests > 0) {
-            return; // sent before the requested keyframe
+            return; // the server sent this delta before the requested keyframe
         }
         auto decoded = stream.decoder.decode(std::move(frame));
         if (!decoded) {
-            // If keyframes are damaged too, requesting more does not help.
+            // If keyframes are damaged too, requesting more of them does not help.
             const bool ask = chained && stream.keyframe_requests < keyframe_requests_max;
             share([&] {
                 ++status_.damaged_snapshot_count;
@@ -507,7 +509,7 @@ class Connection::Io {
             return;
         }
         stream.keyframe_requests = 0;
-        // In the format of WorldInfo and Event, so that they can be compared.
+        // The same format as in WorldInfo and Event, so that the values can be compared.
         decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
         share([&] {
@@ -516,7 +518,7 @@ class Connection::Io {
         });
     }
 
-    /// Servers without acknowledgements do not number their snapshots.
+    /// Acknowledges a snapshot that has a number. Servers without acknowledgements do not number their snapshots.
     void acknowledge(const evod::v1::SnapshotFrame& frame) {
         if (frame.sequence() == 0) {
             return;
@@ -536,10 +538,10 @@ class Connection::Io {
             std::move(request), [](const auto&) {}, default_timeout, Loss::Forgotten, Order::First);
     }
 
-    /// The stream of one island for one subscription of this session.
+    /// The snapshot stream for one subscription and one island, in this session.
     struct IslandStream {
         codec::SnapshotDecoder decoder;
-        int keyframe_requests = 0; // since the last decoded snapshot
+        int keyframe_requests = 0; // number of keyframe requests since the last decoded snapshot
     };
     static constexpr int keyframe_requests_max = 3;
 
@@ -547,25 +549,25 @@ class Connection::Io {
     const std::string client_key_ = random_key();
     std::atomic<std::uint32_t> last_handle_ = 0;
 
-    // On the thread only.
+    // Used only on the connection's thread.
     asio::io_context context_{1};
     asio::executor_work_guard<asio::io_context::executor_type> guard_{context_.get_executor()};
     asio::steady_timer retry_{context_};
     std::shared_ptr<Session> session_;
     bool welcomed_ = false, closing_ = false;
-    std::optional<std::string> failed_; // why there will be no further session
+    std::optional<std::string> failed_; // why this client will not reconnect; nullopt: it will
     evod::v1::Limits limits_;
     std::chrono::milliseconds backoff_ = options_.backoff_min;
     std::minstd_rand jitter_{std::random_device{}()};
     std::uint64_t last_request_id_ = 0;
     std::map<std::uint64_t, Pending> pending_; // by request_id
-    std::size_t in_flight_count_ = 0;          // sent in this session and not answered
-    std::set<std::uint64_t> late_;             // of those: the caller no longer waits for the reply
+    std::size_t in_flight_count_ = 0;          // requests that were sent in this session and have no reply
+    std::set<std::uint64_t> late_;             // ids of requests in flight whose callers no longer wait
     std::map<SubscriptionHandle, ActiveSubscription> subscriptions_;
     std::map<std::uint32_t, SubscriptionHandle> handle_of_server_id_;
     std::map<std::uint32_t, std::map<std::uint32_t, IslandStream>> streams_; // by server_id and island
 
-    std::thread thread_; // last: it uses all of the above
+    std::thread thread_; // the last member, because the thread uses all others
 };
 
 Connection::Connection(Options options) : io_{std::make_unique<Io>(std::move(options))} {}
@@ -614,7 +616,7 @@ std::future<Result<evod::v1::Response>> Connection::send(evod::v1::Request reque
 SubscriptionHandle Connection::subscribe(evod::v1::SubscribeSnapshots subscription) {
     evod::v1::Request request;
     if (subscription.codec() == evod::v1::CODEC_UNSPECIFIED) {
-        // A server that does not know these fields ignores them and sends its default codec.
+        // A server without support for these fields ignores them and uses its default codec.
         subscription.set_codec(evod::v1::CODEC_DELTA);
         subscription.set_compression(evod::v1::COMPRESSION_ZSTD);
         subscription.set_unacknowledged_max(unacknowledged_snapshots_max);

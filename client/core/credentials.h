@@ -1,5 +1,5 @@
-// Credentials: the options for the token and TLS of evoctl and evoview. A token comes from a file or the environment, never from
-// the command line, which every user of the machine can read.
+// Credentials: the command-line options of evoctl and evoview for the token and TLS. A token is read from a file or
+// from the environment, never from the command line, because every user of the machine can read command lines.
 #pragma once
 
 #include "client/core/connection.h"
@@ -13,8 +13,8 @@ class Command;
 namespace evod::core {
 
 struct Credentials {
-    std::string token_file; // empty: EVOD_TOKEN of the environment, if set
-    bool tls = false;       // TLS even without a file
+    std::string token_file; // empty: use the environment variable EVOD_TOKEN, if set
+    bool tls = false;       // use TLS even if none of the files is given
     Options::Tls files;
 };
 

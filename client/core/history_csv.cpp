@@ -42,7 +42,7 @@ constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_m
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the cells of a line without the quotation marks that some programs write.
+/// Returns the cells of a line. Removes the quotation marks that some programs write around cells.
 std::vector<std::string_view> cells_of(std::string_view line) {
     std::vector<std::string_view> cells;
     while (true) {
@@ -59,7 +59,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     }
 }
 
-/// Removes and returns the first line of the text.
+/// Removes the first line from the text and returns it.
 std::string_view take_line(std::string_view& text) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
@@ -127,7 +127,7 @@ std::string history_line(std::span<const double> numbers) {
 }
 
 Result<HistoryCsv> read_history_csv(std::string_view text) {
-    if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark, which spreadsheets write
+    if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark, which spreadsheet programs write
         text.remove_prefix(3);
     }
     const std::vector<std::string_view> heading = cells_of(take_line(text));
@@ -140,7 +140,7 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
     }
     const std::vector<std::string> columns = history_columns(read.gene_names);
     const std::size_t account_begin = columns.size() - read.gene_names.size() * std::size(account_parts);
-    std::vector<std::size_t> places; // past the end: an older file, without the column
+    std::vector<std::size_t> places; // index in the file; past the end: an older file without this column
     for (const std::string& column : columns) {
         const auto found = std::find(heading.begin(), heading.end(), column);
         if (found == heading.end() && places.size() < account_begin) {

@@ -1,5 +1,5 @@
-// History CSV: the statistics of ended generations as in `evod run --csv`, `evod export` and `evoctl history --csv`, one row per
-// generation and island.
+// History CSV: the statistics of ended generations as CSV, one row per generation and island. `evod run --csv`, `evod
+// export` and `evoctl history --csv` write this format.
 //
 // Threads      none.
 #pragma once
@@ -14,15 +14,16 @@
 
 namespace evod::core {
 
-/// Names of the columns: "generation", "island", …, then four for each gene, then four of each gene's selection account.
+/// Returns the names of the columns: "generation", "island", …, then four statistics for each gene, then the four
+/// columns of the selection account for each gene.
 std::vector<std::string> history_columns(std::span<const std::string> gene_names);
 
-/// Returns a number for each of these columns; NaN without a selection account.
+/// Returns one number for each column of history_columns(). Columns of the selection account are NaN if there is none.
 std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statistics);
 
 std::string history_heading(const std::vector<std::string>& gene_names);
 
-/// Formats with all digits; NaN becomes an empty cell.
+/// Formats one row of CSV, with all digits of each number; NaN becomes an empty cell.
 std::string history_line(std::span<const double> numbers);
 
 struct HistoryCsv {
@@ -30,8 +31,8 @@ struct HistoryCsv {
     std::vector<std::vector<double>> rows; // shape (rows, history_columns(gene_names))
 };
 
-/// Parses a history. Columns may have any order; unknown columns are ignored; those of selection accounts may be missing or
-/// empty. An error names the line and the column.
+/// Parses a history. Columns may have any order. Unknown columns are ignored. Columns of the selection account may be
+/// missing or empty. An error names the line and the column.
 Result<HistoryCsv> read_history_csv(std::string_view text);
 
 } // namespace evod::core

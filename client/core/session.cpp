@@ -26,9 +26,10 @@ namespace {
 
 constexpr std::size_t read_bytes = 256 << 10;
 
-/// Enables TCP keepalive, which detects a peer that disappeared silently: a pulled cable, a suspended laptop.
+/// Enables TCP keepalive, which detects a peer that disappeared without closing the connection, such as a suspended
+/// laptop.
 void notice_silence(asio::ip::tcp::socket& socket) {
-    error_code ignored; // a socket without these options still works
+    error_code ignored; // if the system lacks an option, the socket still works
     socket.set_option(asio::ip::tcp::no_delay{true}, ignored);
     socket.set_option(asio::socket_base::keep_alive{true}, ignored);
     const int idle_s = 10, interval_s = 5, probes = 3;
@@ -37,7 +38,7 @@ void notice_silence(asio::ip::tcp::socket& socket) {
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
 }
 
-/// The cause of a TLS error and its remedy; empty if unknown.
+/// Returns the cause of a TLS error and how to fix it; empty if the cause is unknown.
 std::string tls_reason_of(const error_code& error) {
     if (error == asio::ssl::error::stream_truncated || error == asio::error::eof ||
         error == asio::error::connection_reset) {
@@ -76,7 +77,7 @@ std::string text_of(const ASN1_TIME* time) {
     return {text, static_cast<std::size_t>(length)};
 }
 
-/// "localhost, 127.0.0.1". Control characters become '?'.
+/// Returns the host names and addresses in a certificate: "localhost, 127.0.0.1". Control characters become '?'.
 std::string names_of(const X509* certificate) {
     const std::unique_ptr<GENERAL_NAMES, decltype(&GENERAL_NAMES_free)> names{
         static_cast<GENERAL_NAMES*>(X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr)),
@@ -106,9 +107,9 @@ std::string names_of(const X509* certificate) {
     return text.empty() ? "no name" : text;
 }
 
-/// Why a server's certificate is not trusted, and the remedy.
+/// Returns why a server's certificate is not trusted, and how to fix it.
 ///
-/// certificate  the certificate in question; nullptr: none.
+/// certificate  the certificate that was rejected; nullptr: unknown.
 std::string distrust_of(int verdict, const X509* certificate, const Options::Tls& files) {
     const std::string why = X509_verify_cert_error_string(verdict);
     if (certificate == nullptr) {
@@ -163,10 +164,11 @@ void Session::start() {
     look_up();
 }
 
-/// A name look-up on its own thread, which owns nothing else: getaddrinfo() cannot be cancelled and may take half a minute.
+/// Looks up a host name on a separate thread, because getaddrinfo() may block for half a minute and cannot be
+/// cancelled. The thread owns only this object, so it may outlive the Session.
 struct Session::LookUp {
-    std::mutex mutex;     // guards what follows
-    asio::io_context* io; // nullptr: cancelled by the caller
+    std::mutex mutex;     // guards the other members
+    asio::io_context* io; // nullptr: the session has cancelled the look-up
     std::weak_ptr<Session> of;
 };
 
@@ -271,7 +273,7 @@ void Session::perform_handshake() {
         }
     }
     tls_.emplace(socket_, *tls_context_);
-    // The session outlives its stream.
+    // The callback may use `this`, because the session owns the stream and outlives it.
     tls_->set_verify_callback(
         [this, named = ssl::host_name_verification{options_.server.host}](bool good, ssl::verify_context& context) {
             X509_STORE_CTX* const store = context.native_handle();
@@ -285,7 +287,7 @@ void Session::perform_handshake() {
             }
             return believed;
         });
-    // An address is not a host name (RFC 6066, section 3), and strict servers refuse one.
+    // The TLS extension server_name must not contain an IP address (RFC 6066, section 3); strict servers reject one.
     if (error_code not_an_address; asio::ip::make_address(options_.server.host, not_an_address), not_an_address) {
         SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
     }
@@ -351,7 +353,8 @@ void Session::handle_frames() {
     while (!ended_) {
         const auto frame = reader_.next();
         if (!frame) {
-            // A peer that never sent a valid message is not an evod server; a known server may recover.
+            // A peer that never sent a valid message is not an evod server: reconnecting would not help. After a
+            // Welcome the damage may be temporary.
             end({.reason = to_text(options_.server) +
                            (welcomed_ ? " sent damaged data: " : " is not an evod server: ") + frame.error().what,
                  .final = !welcomed_});
@@ -409,13 +412,14 @@ void Session::handle_first_message(const evod::v1::ServerMessage& message) {
 }
 
 Session::Ending Session::lost(const error_code& error) const {
-    if (goodbye_) { // a token that was revoked is not accepted the next time either
+    if (goodbye_) { // if the token was revoked, reconnecting would not help
         return refused(*goodbye_, "ended the session", goodbye_->code() == evod::v1::CODE_UNAUTHENTICATED);
     }
-    // With TLS 1.3 a client learns only now that its certificate was rejected; the next attempt would fail too.
+    // With TLS 1.3, only this error reports that the server rejected the client's certificate. Another attempt would
+    // fail too.
     const bool not_taken =
         !welcomed_ && error.category() == asio::error::get_ssl_category() && !tls_reason_of(error).empty();
-    // The server's message about it may be lost with the connection.
+    // The server's message about a rejected client certificate may be lost with the connection.
     const bool without_message = tls_ && !welcomed_ && error.category() != asio::error::get_ssl_category();
     return {.reason = going_away_
                           ? "the server at " + to_text(options_.server) + " was shut down"
@@ -440,7 +444,7 @@ void Session::send(std::string frame) {
 
 void Session::write() {
     auto done = [self = shared_from_this()](const error_code& error, std::size_t) {
-        // After an error, the server's last message may still arrive, and read() ends the session.
+        // After a write error the server's last message may still arrive; read() then ends the session.
         if (self->ended_ || error) {
             return;
         }

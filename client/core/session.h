@@ -1,8 +1,9 @@
-// Session: one TCP connection to a server, from the look-up of its name to the end. Connection creates a new one after a loss.
+// Session: one TCP connection to a server, from the look-up of the host name until the connection is closed. After a
+// lost connection, Connection creates a new Session.
 //
-// Owner        Connection, which drops it after its end.
-// Threads      all on the io_context's one thread; handlers are called there too.
-// Bounded      the queue of frames to send has no limit of its own: Connection keeps the server's limits.
+// Owner        Connection, which destroys it when it has ended.
+// Threads      everything, including the handlers, runs on the single thread of the io_context.
+// Bounded      the queue of frames to send has no limit; Connection observes the server's limits.
 #pragma once
 
 #include "client/core/connection.h"
@@ -27,22 +28,22 @@ class Session : public std::enable_shared_from_this<Session> {
   public:
     struct Ending {
         std::string reason;
-        bool final = false;                           // reconnecting does not help
-        bool token_needed = false;                    // requires another token
-        std::optional<evod::v1::Status> refusal = {}; // the refusal that the reason describes
+        bool final = false;                           // another attempt to connect would fail too
+        bool token_needed = false;                    // the server requires a (different) token
+        std::optional<evod::v1::Status> refusal = {}; // nullopt: the session ended for another reason
     };
     struct Handlers {
-        std::function<void(evod::v1::Welcome)> welcomed; // once, before the next two
+        std::function<void(evod::v1::Welcome)> welcomed; // called once, before `received` and `snapshot_received`
         std::function<void(evod::v1::ServerMessage)> received;
         std::function<void(evod::v1::SnapshotFrame)> snapshot_received;
-        std::function<void(Ending)> ended; // once, as the last call
+        std::function<void(Ending)> ended; // called once, after all other handlers
     };
 
     Session(boost::asio::io_context& io, const Options& options, Handlers handlers);
     ~Session() { cancel_look_up(); }
 
     void start();
-    /// Queues a whole frame. Only after `welcomed` was called.
+    /// Queues a complete frame. Must not be called before `welcomed` was called.
     void send(std::string frame);
     /// Closes immediately; no handler is called afterwards.
     void close();
@@ -53,7 +54,7 @@ class Session : public std::enable_shared_from_this<Session> {
                    const boost::asio::ip::tcp::resolver::results_type& addresses);
     void cancel_look_up();
     void connect(const boost::asio::ip::tcp::resolver::results_type& addresses);
-    /// Only with TLS.
+    /// Performs the TLS handshake. Only for connections with TLS.
     void perform_handshake();
     void begin();
     void send_hello();
@@ -75,14 +76,14 @@ class Session : public std::enable_shared_from_this<Session> {
     boost::asio::ip::tcp::socket socket_;
     std::optional<boost::asio::ssl::context> tls_context_;
     std::optional<boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>> tls_; // nullopt: without TLS
-    std::string distrust_; // why the server's certificate is not trusted
+    std::string distrust_; // why this client does not trust the server's certificate; empty: no such reason is known
     boost::asio::steady_timer deadline_;
     codec::FrameReader reader_{codec::client_limits};
     std::vector<std::byte> received_;
-    std::deque<std::string> to_send_; // the first is being written
+    std::deque<std::string> to_send_; // the first frame is being written
     bool welcomed_ = false, ended_ = false;
     bool going_away_ = false;                 // the server has announced its shutdown
-    std::optional<evod::v1::Status> goodbye_; // the server's reason to end the session
+    std::optional<evod::v1::Status> goodbye_; // the server's reason for ending the session
 };
 
 } // namespace evod::core

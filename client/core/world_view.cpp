@@ -16,7 +16,7 @@ bool follows(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame&
            next.simulated_s() - before.simulated_s() <= WorldView::blended_s_max;
 }
 
-/// For each of the ascending `ids`, its index in the ascending `among`.
+/// Returns for each id in `ids` its index in `among`, or no_match. Both vectors are in ascending order.
 std::vector<std::size_t> match(const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& among) {
     std::vector<std::size_t> indices(ids.size(), no_match);
     for (std::size_t i = 0, j = 0; i < ids.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 using Align = Table::Align;
 
-// The server may first have to simulate a purged generation again.
+// The timeout is long because the server may first have to simulate a purged generation again.
 constexpr std::chrono::minutes answer_timeout{30};
 
 struct BreedingOptions {
@@ -32,7 +32,7 @@ std::string heading(const v1::Breeding& bred) {
         " were made; then came " + std::to_string(bred.elite_count()) + " elite, " +
         count(bred.survivor_count() - bred.elite_count(), "other survivor", "other survivors") + ", " +
         count(bred.descendant_count() - bred.survivor_count(), "child", "children") + "\n";
-    std::string choices; // the parameters in force
+    std::string choices; // the values of the parameters that applied
     for (const auto& parameter : bred.parameters()) {
         if (parameter.value().has_choice() && parameter.name() != "emigrants" &&
             parameter.name() != "immigrants_replace") {
@@ -45,14 +45,14 @@ std::string heading(const v1::Breeding& bred) {
     return text + choices + "\n";
 }
 
-/// "and 15 more: see them with --from 10"
+/// Returns a line about the rows that are not shown: "and 15 more: --from 10".
 std::string more_text(std::uint64_t first, int shown, std::uint32_t count) {
     const std::uint64_t next = first + static_cast<std::uint64_t>(shown);
     return next >= count ? "" : "and " + std::to_string(count - next) + " more: --from " + std::to_string(next) + "\n";
 }
 
 std::string contender_text(const v1::Breeding& bred, const BreedingOptions& options) {
-    // A shuffled fitness is printed beside the organism's own.
+    // If the fitness was shuffled, the organism's own fitness is printed too.
     const bool shuffled = bred.contenders_size() > 0 && bred.contenders(0).has_own_fitness();
     std::vector<Table::Column> columns{{"ORGANISM", Align::Right},
                                        {shuffled ? "SHUFFLED" : "FITNESS", Align::Right},
@@ -121,7 +121,7 @@ std::string name_of(v1::MutationKind kind) {
     }
 }
 
-/// How its genes differ from those of its parents: "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
+/// Returns how crossover and mutation changed a descendant's genes: "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
 std::string changes_of(const v1::Descendant& descendant, const v1::WorldInfo& world) {
     std::string text;
     if (descendant.has_order_mutation()) {

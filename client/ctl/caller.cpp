@@ -22,7 +22,7 @@ core::Endpoint endpoint_of(const std::string& text) {
     return *std::move(endpoint);
 }
 
-/// Switches the terminal's echo off for its lifetime; restores it also when a signal ends the program.
+/// Switches the terminal's echo off during the lifetime of this object. Restores it even if a signal ends the program.
 class EchoOff {
   public:
     explicit EchoOff(const termios& as_it_was) {
@@ -31,7 +31,7 @@ class EchoOff {
         restore.sa_handler = [](int number) {
             ::tcsetattr(STDIN_FILENO, TCSANOW, &echoing);
             std::signal(number, SIG_DFL);
-            std::raise(number); // delivered when this handler returns; ends the program
+            std::raise(number); // the signal is delivered when this handler returns, and ends the program
         };
         for (std::size_t i = 0; i < signals.size(); ++i) {
             ::sigaction(signals[i], &restore, &before_[i]);
@@ -54,7 +54,7 @@ class EchoOff {
     std::array<struct sigaction, signals.size()> before_{};
 };
 
-/// Asks for the token on the terminal without echo; empty if there is no terminal.
+/// Asks for the token on the terminal and returns it. Does not show what the user types. Empty if there is no terminal.
 std::string prompt_for_token(const std::string& server) {
     termios as_it_was{};
     if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &as_it_was) != 0) {
@@ -62,7 +62,7 @@ std::string prompt_for_token(const std::string& server) {
     }
     std::string token;
     {
-        // Before the prompt, so that text typed or pasted early is neither shown nor lost.
+        // Echo is switched off before the prompt, so that text that is typed or pasted early is neither shown nor lost.
         const EchoOff echo_off{as_it_was};
         std::cerr << "token for " << server << ": " << std::flush;
         std::cin >> token;
@@ -135,7 +135,7 @@ v1::Storage Caller::storage() {
             return world.storage();
         }
     }
-    return welcome_.storage(); // no world, so nothing can wait
+    return welcome_.storage(); // there is no world, so none can wait for the disk
 }
 
 void Caller::need_planned_changes() const {
@@ -206,7 +206,7 @@ std::string sentence(const v1::WorldInfo& world) {
     std::string text = world.name() + ": " + state_of(world) + " at " + speed_of(world) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
-    // A replay waits at its end, whatever its goal.
+    // A replay stops at its end and waits there, even if its goal is later.
     const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED ||
                            (world.state() == v1::RUN_STATE_WAITING && world.has_replay());
     if (under_way && world.has_run_until_generation()) {

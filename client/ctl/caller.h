@@ -1,4 +1,4 @@
-// Caller: the connection of one evoctl call to the server. An error ends the call by an exception: see Stop.
+// Caller: the connection of one evoctl call to the server. On an error the functions throw Stop, which ends the call.
 #pragma once
 
 #include "client/core/connection.h"
@@ -27,10 +27,10 @@ namespace evod::ctl {
 struct Common {
     std::string server = "localhost";
     core::Credentials credentials;
-    std::string world; // empty: the server's only world, or `default`
+    std::string world; // empty: the server's only world, or `default` if there are several
     double timeout_s = 10;
     bool json = false;
-    bool may_prompt = true; // may ask for a token on the terminal
+    bool may_prompt = true; // whether evoctl may ask for a token on the terminal
 
     std::chrono::milliseconds timeout() const {
         return std::chrono::milliseconds{static_cast<std::int64_t>(timeout_s * 1000)};
@@ -42,17 +42,19 @@ class Caller {
     /// Connects, or throws Stop.
     explicit Caller(const Common& common);
 
-    /// Returns the server's response. Throws Stop if the server refuses, or does not answer within `timeout` (default: --timeout).
+    /// Sends a request and returns the server's response. Throws Stop if the server refuses the request, or does not
+    /// answer within `timeout`, which is --timeout by default.
     v1::Response call(v1::Request request, std::optional<std::chrono::milliseconds> timeout = {});
 
-    /// The server's registry of parameters.
+    /// Returns the server's registry of parameters.
     Registry registry();
-    /// The current state of the world that `name` means (see Common::world).
+    /// Returns the current state of a world. If `name` is empty, chooses the world as described at Common::world.
     v1::WorldInfo world(const std::string& name);
-    /// The current state of the server's storage.
+    /// Returns the current state of the server's storage.
     v1::Storage storage();
 
-    /// Throws Stop if the server does not support planned changes: it would apply them immediately, or not at all.
+    /// Throws Stop if the server does not support planned changes. Such a server would apply a planned change
+    /// immediately or ignore it.
     void need_planned_changes() const;
 
     core::Connection& connection() { return *connection_; }
@@ -65,38 +67,39 @@ class Caller {
     v1::Welcome welcome_;
 };
 
-/// Prints a reply as JSON with --json, otherwise the result of `text()`.
+/// Prints a reply: as JSON if --json was given, otherwise as the result of `text()`.
 template <class Text>
 void print(const Common& common, const google::protobuf::Message& answer, const Text& text) {
     const std::string output = common.json ? to_json(answer) : visible(text());
     std::fwrite(output.data(), 1, output.size(), stdout);
 }
 
-/// "running", "paused", …, "waits for the disk".
+/// Returns the state of a world in words: "running", "paused", …, "waits for the disk".
 std::string state_of(const v1::WorldInfo& world);
-/// "commands are refused: the disk is full", "worlds wait for the disk: …"; empty if the disk keeps up.
+/// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
+/// Empty if there is no problem.
 std::string trouble_of(const v1::Storage& storage);
-/// What may happen to an acknowledged command if the machine fails; empty if nothing can.
+/// Returns a warning if acknowledged commands may be lost, for example when the machine fails; empty otherwise.
 std::string durability_of(const v1::Welcome& welcome);
-/// The requested speed, and whether the machine is slower: "2x", "max", "100x (slower)".
+/// Returns the requested speed, and whether the world is slower than requested: "2x", "max", "100x (slower)".
 std::string speed_of(const v1::WorldInfo& world);
-/// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
+/// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
-/// Throws Stop with one mistake per line.
+/// Throws Stop with `what` and then the mistakes, one per line.
 [[noreturn]] void stop_for(const std::string& what, const Mistakes& mistakes);
 
 /// From now on Ctrl-C sets a flag instead of ending the program.
 void catch_interrupts();
 bool interrupted();
-/// Whether stdout is a terminal.
+/// Returns whether stdout is a terminal.
 bool on_terminal();
 
-/// Checks of options.
+/// Checks for the values of options.
 inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1},
-    index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // of islands and organisms
+    index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // an index of an island or organism
 
-/// Each adds its subcommands to `app`.
+/// Each of these functions adds a group of subcommands to `app`.
 void add_query_commands(command_line::Command& app, const Common& common);
 void add_parameter_commands(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
@@ -106,7 +109,8 @@ void add_watch_commands(command_line::Command& app, const Common& common);
 void add_top_command(command_line::Command& app, const Common& common);
 void add_complete_command(command_line::Command& app);
 
-/// Prints the possible completions of the last of `words`. Prints nothing if a server is needed and none answers.
+/// Prints the possible completions of the last word in `words`. Prints nothing if the completions come from the server
+/// and it does not answer.
 void complete(const command_line::Command& app, const std::vector<std::string>& words);
 
 } // namespace evod::ctl

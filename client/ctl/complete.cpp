@@ -12,8 +12,8 @@ namespace {
 
 using command_line::Command;
 
-// Bash splits COMP_WORDS at '=' and ':', so the script splits the line itself, at blanks. Readline inserts only what follows
-// the last '=', so the script removes the part before it from the completions.
+// Bash splits COMP_WORDS at '=' and ':', so the script itself splits the line at blanks. Readline replaces only the
+// text after the last '=', so the script removes the text before it from each completion.
 constexpr const char* bash_script = R"(# Completion of evoctl for bash. Use it: source <(evoctl complete bash)
 _evoctl() {
     local line=${COMP_LINE:0:COMP_POINT} words word current
@@ -30,7 +30,7 @@ _evoctl() {
 complete -F _evoctl evoctl
 )";
 
-/// Prints the candidates that begin with the word being typed.
+/// Prints those candidates that begin with the word that the user is typing.
 class Candidates {
   public:
     explicit Candidates(std::string word) : word_{std::move(word)} {}
@@ -44,7 +44,7 @@ class Candidates {
     std::string word_;
 };
 
-/// The options of the words and the environment, with a short timeout because the user is typing.
+/// Reads the connection options from the words and the environment. Sets a short timeout, because the user is typing.
 Common common_of(const std::vector<std::string>& words) {
     Common common;
     common.timeout_s = 1;
@@ -112,7 +112,7 @@ void complete(const Command& app, const std::vector<std::string>& words) {
     const std::string last = before.empty() ? "" : before.back();
     try {
         if (last == "--server" || last == "--experiment" || last == "--output") {
-            return; // hosts and files: left to the shell
+            return; // the shell itself completes hosts and files
         }
         if (last == "--world") {
             complete_world(common_of(before), word);
@@ -137,7 +137,7 @@ void complete(const Command& app, const std::vector<std::string>& words) {
             Candidates{word}.add("bash");
         }
     } catch (const Stop&) {
-        // The user is typing: an error message would be in the way.
+        // The user is typing, and an error message would disturb the command line.
     }
 }
 

@@ -1,4 +1,4 @@
-// evoctl export: writes the tables of a world's run file as CSV or JSON lines.
+// evoctl export: writes a table of a world's run file as CSV or JSON lines.
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
 
@@ -14,7 +14,7 @@ namespace evod::ctl {
 
 namespace {
 
-/// Timeout of one part: the server may have to simulate purged generations again.
+/// Timeout for one part of the table. It is long because the server may have to simulate purged generations again.
 constexpr std::chrono::minutes part_timeout{60};
 
 const std::map<std::string, v1::RunTable> tables{{"generations", v1::RUN_TABLE_GENERATIONS},
@@ -30,7 +30,7 @@ struct ExportOptions {
     std::optional<std::uint64_t> generation;
 };
 
-/// "30:0:12".
+/// Parses GENERATION:ISLAND:ID, for example "30:0:12"; nullopt for any other text.
 std::optional<v1::OrganismName> organism_named(const std::string& text) {
     std::uint64_t generation = 0;
     std::uint32_t island = 0, organism = 0;
@@ -81,7 +81,7 @@ void export_run(const Common& common, const ExportOptions& options) {
     v1::Request request = request_of(common, options);
     Caller caller{common};
     v1::ExportPart part = caller.call(std::move(request), part_timeout).export_part();
-    // Opened when the first part arrives, so that a refusal leaves an existing file unchanged.
+    // The file is opened when the first part arrives, so that an existing file stays unchanged if the server refuses.
     std::ofstream file;
     if (!options.output.empty()) {
         file.open(options.output, std::ios::binary);

@@ -13,17 +13,18 @@
 namespace evod::ctl {
 namespace {
 
-/// Protobuf writes every 64-bit number as a string: here those below 2^53 become numbers.
+/// Replaces strings by numbers where the field is a 64-bit integer and the value is below 2^53. Protobuf writes every
+/// 64-bit integer as a string.
 ///
-/// of  the descriptor of the object's message.
+/// of  descriptor of the message in `json`.
 std::string with_numbers(std::string_view json, const google::protobuf::Descriptor& of) {
     using google::protobuf::FieldDescriptor;
     struct Level {
         const google::protobuf::Descriptor* of;
-        const FieldDescriptor* in; // the field that contains it
+        const FieldDescriptor* in; // the field that contains this object or array
     };
     std::vector<Level> levels;
-    const FieldDescriptor* field = nullptr; // of the next value
+    const FieldDescriptor* field = nullptr; // the field of the next value
     std::string text;
     for (std::size_t i = 0; i < json.size(); ++i) {
         if (json[i] == '{') {

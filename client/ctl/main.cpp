@@ -14,7 +14,7 @@ using namespace evod::ctl;
 
 namespace {
 
-/// Checks the subcommand before everything else, so that a typing error in it is reported as such.
+/// Checks the name of the subcommand before the options, so that a misspelled name is reported as an unknown command.
 void require_known_command(const evod::command_line::Command& app, int argc, char** argv) {
     std::vector<std::string> names;
     for (const auto& command : app.commands()) {
@@ -24,7 +24,7 @@ void require_known_command(const evod::command_line::Command& app, int argc, cha
         const std::string word = argv[i];
         if (word == "--server" || word == "--world" || word == "--timeout" || word == "--token-file" ||
             word == "--ca" || word == "--cert" || word == "--key") {
-            ++i; // its value
+            ++i; // skips the value of the option
         } else if (word == "--token" || word.starts_with("--token=")) {
             throw Stop{
                 ExitCode::Usage,

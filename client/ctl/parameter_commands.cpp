@@ -15,7 +15,7 @@ struct SetOptions {
     std::optional<std::uint64_t> at_generation, at_tick;
 };
 
-/// "change 3, from generation 30: mutation_chance=0.05, by evoctl 127.0.0.1:5"
+/// Formats a planned change: "change 3, from generation 30: mutation_chance=0.05, by evoctl 127.0.0.1:5".
 std::string line_of(const v1::PlannedChange& change) {
     std::string text =
         (change.id() == 0 ? "a change" : "change " + std::to_string(change.id())) +
@@ -37,7 +37,7 @@ const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::st
     return nullptr;
 }
 
-/// "mutation_chance=0.05", followed by its pending and scheduled values.
+/// Formats the value of a parameter: "mutation_chance=0.05", followed by its pending and scheduled values.
 std::string line_of(const v1::ParameterState& state, const Registry& registry, const v1::ParameterSet& set) {
     std::string coming;
     if (state.has_pending()) {

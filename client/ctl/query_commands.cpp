@@ -25,7 +25,7 @@ void status(const Common& common) {
     v1::WorldList worlds = worlds_of(caller);
     if (!common.world.empty()) {
         v1::WorldList one;
-        *one.add_worlds() = caller.world(common.world); // refused if there is no world of that name
+        *one.add_worlds() = caller.world(common.world); // throws Stop if there is no world with this name
         worlds = std::move(one);
     }
     print(common, worlds, [&] {
@@ -106,7 +106,7 @@ void add_generation(Table& table, const v1::GenerationStatistics& g) {
                std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
 }
 
-/// A generation and tick of a world's run; without both, the current one.
+/// Options for a generation and a tick of a world's run. Without them the current moment is used.
 struct MomentOptions {
     std::optional<std::uint64_t> generation, tick;
     bool is_replay() const { return generation || tick; }
@@ -120,7 +120,8 @@ void add_options(command_line::Command& command, MomentOptions& options) {
         .check(whole_number);
 }
 
-/// The name of the world; for an earlier moment, the name of a replay of it, which ends with this call.
+/// Returns the name of the world. For an earlier moment, opens a replay at that moment and returns the name of the
+/// replay, which ends with this call of evoctl.
 std::string world_at(Caller& caller, const Common& common, const MomentOptions& options) {
     if (!options.is_replay()) {
         return common.world;
@@ -137,7 +138,7 @@ std::string world_at(Caller& caller, const Common& common, const MomentOptions& 
     return caller.call(std::move(request)).world().name();
 }
 
-/// "default as it was: generation 4, tick 9000 (2:30 min)".
+/// Describes the moment that a replay shows: "default as it was: generation 4, tick 9000 (2:30 min)".
 std::string replay_sentence(const v1::WorldInfo& world) {
     return world.replay().replay_of() + " as it was: generation " + std::to_string(world.generation()) + ", tick " +
            std::to_string(world.tick()) + " (" + duration(world.simulated_s()) + ")";

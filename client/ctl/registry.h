@@ -1,4 +1,4 @@
-// Registry: the server's descriptions of its parameters; converts words of the command line into values.
+// Registry: the server's descriptions of its parameters. Also converts words of the command line into parameter values.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -11,7 +11,7 @@
 
 namespace evod::ctl {
 
-/// Errors in the given words, one line each.
+/// Errors in words of the command line, one line for each error.
 struct Mistakes {
     std::vector<std::string> lines;
     void add(const Mistakes& more) { lines.insert(lines.end(), more.lines.begin(), more.lines.end()); }
@@ -30,25 +30,26 @@ class Registry {
     const v1::ParameterDescription* find(std::string_view name) const;
     std::vector<std::string> names() const;
 
-    /// "there is no parameter 'mutation_chanse'; did you mean mutation_chance?"
+    /// Returns the error for an unknown name: "there is no parameter 'mutation_chanse'; did you mean mutation_chance?"
     std::string unknown(std::string_view name) const;
 
-    /// Parses words of the form name=value. The server checks the ranges and reports all violations together.
+    /// Parses words of the form name=value. Does not check ranges: the server checks them and reports all violations
+    /// together.
     Checked<std::vector<v1::ParameterAssignment>> assignments(const std::vector<std::string>& words) const;
 
   private:
     std::vector<v1::ParameterDescription> parameters_;
 };
 
-/// Parses a value of the parameter's kind: numbers (a count may be written 1e6), flags as true, on, yes, 1 and their
-/// opposites, choices by name.
+/// Parses a value according to the kind of the parameter. A count may be written as 1e6. A flag is true, on, yes or 1,
+/// or false, off, no or 0. A choice is given by its name.
 Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& parameter, std::string_view word);
 
-/// Formats a value as a user types it: "0.15", "true", "roulette"; "-" for none.
+/// Formats a value as a user types it: "0.15", "true", "roulette"; "-" if there is no value.
 std::string to_text(const v1::ParameterValue& value);
-/// "0 to 1", "true or false", "roulette, tournament".
+/// Returns the allowed values: "0 to 1", "true or false", "roulette, tournament".
 std::string allowed(const v1::ParameterDescription& parameter);
-/// "next tick", "next generation", "reset".
+/// Returns when a change of the parameter takes effect: "next tick", "next generation", "reset".
 std::string effect_of(const v1::ParameterDescription& parameter);
 
 } // namespace evod::ctl

@@ -34,12 +34,14 @@ struct CreateOptions {
     std::optional<std::uint64_t> seed;
 };
 
-/// what  "experiment".
+/// Opens a file for reading; throws Stop if this fails.
+///
+/// what  kind of the file, for the error message: "experiment".
 std::ifstream open_file(const std::string& what, const std::string& path) {
     std::error_code error;
     std::ifstream file;
     if (std::filesystem::is_directory(path, error)) {
-        errno = EISDIR; // a stream would open it, and throw when it is read
+        errno = EISDIR; // a stream can open a folder, but throws when it reads from it
     } else {
         file.open(path, std::ios::binary);
     }
@@ -49,7 +51,7 @@ std::ifstream open_file(const std::string& what, const std::string& path) {
     return file;
 }
 
-/// Adds the text of an experiment file, which the server reads.
+/// Adds the text of an experiment file to a request. The server parses the text.
 void add_experiment(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file = open_file("experiment", path);
     command.set_experiment_json(std::string{std::istreambuf_iterator<char>{file}, {}});
@@ -71,7 +73,7 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     for (const std::vector<float>& genes : *islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
-    // The other fields of the request need much less than the reserve.
+    // This many bytes are reserved for the other fields of the request, which need much less.
     constexpr std::size_t rest_bytes_max = 32 << 10;
     if (command.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {
         throw Stop{ExitCode::Usage, "the population file " + path +
@@ -164,7 +166,7 @@ void seek(const Common& common, const SeekOptions& options) {
     v1::Request request;
     auto& command = *request.mutable_seek();
     command.set_world(common.world);
-    command.mutable_to(); // default: the last tick
+    command.mutable_to(); // an empty moment means the last tick
     if (options.generation) {
         command.mutable_to()->set_generation(*options.generation);
     }
@@ -184,7 +186,7 @@ void shut_down(const Common& common) {
 
 // ---- running ---------------------------------------------------------------------------------------------------
 
-/// Prints progress on stderr: one overwritten line on a terminal, one line per generation elsewhere.
+/// Prints progress on stderr. On a terminal it overwrites a single line; otherwise it prints one line per generation.
 class Progress {
   public:
     ~Progress() {
@@ -205,7 +207,7 @@ class Progress {
         }
     }
 
-    /// Prints the state of the storage if it has changed.
+    /// Prints the state of the storage if it differs from the state printed before.
     void show(const v1::Storage& storage) {
         const std::string trouble = trouble_of(storage);
         if (trouble != trouble_) {
@@ -223,13 +225,13 @@ class Progress {
     std::string trouble_;
 };
 
-/// Waits until `reached(world)`, or until the world stops running. Prints generations as they end.
+/// Waits until `reached(world)` returns true or the world stops running. Prints each generation when it ends.
 ///
 /// returns  the final state of the world.
 template <class Reached>
 v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached& reached) {
     using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::milliseconds poll_interval{500}; // events may be lost, so the world is polled too
+    constexpr std::chrono::milliseconds poll_interval{500}; // polls the world too, because events may be lost
     catch_interrupts();
     Progress progress;
     for (auto look_at = Clock::now();;) {
@@ -263,7 +265,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
     }
 }
 
-/// Ends the call with an error if the world stopped before its goal.
+/// Throws Stop if the world stopped before it reached its goal.
 void require_reached(bool reached, const v1::WorldInfo& world) {
     if (!reached) {
         throw Stop{ExitCode::Refused, "stopped before its goal: " + sentence(world)};
@@ -285,7 +287,8 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
         const v1::WorldInfo world = wait_for(caller, response.world(), [](const v1::WorldInfo&) { return false; });
         *response.mutable_world() = world;
         print_world(common, response);
-        // A world that has run its generations has no goal left; a paused world, or a replay at its end, has.
+        // When a world has run all requested generations, it has no goal any more. A world that was paused before, or a
+        // replay at its end, still has its goal.
         require_reached(!generations || !world.has_run_until_generation() || world.state() == v1::RUN_STATE_TERMINATED,
                         world);
     } else {
@@ -293,7 +296,8 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
 }
 
-/// Pauses the world for good; a step alone would only lease it.
+/// Pauses the world, so that it stays paused after the step. Without this it would run on when the lease of the step
+/// ends.
 v1::WorldInfo pause_world(const Common& common, Caller& caller) {
     v1::Request request;
     request.mutable_pause()->set_world(common.world);
@@ -318,7 +322,7 @@ void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) 
                     response.world());
 }
 
-/// Refuses a tick that the run has passed, and leaves the world as it was.
+/// Runs the world until a tick. If the run has already passed this tick, throws Stop and leaves the world unchanged.
 void run_until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) {
     const auto require_ahead = [tick](std::uint64_t now) {
         if (tick < now) {
@@ -340,7 +344,7 @@ void run_until(const Common& common, Caller& caller, std::uint64_t tick, bool wa
 
 void step(const Common& common, std::uint64_t ticks, bool wait) {
     Caller caller{common};
-    // The goal is a tick, so that a step that is resent after a lost connection is not executed twice.
+    // The request contains the tick at which to stop, so that a request that is sent twice has the same effect as one.
     until(common, caller, pause_world(common, caller).tick() + ticks, wait);
 }
 

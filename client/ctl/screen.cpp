@@ -23,8 +23,8 @@ TerminalSize terminal_size() {
 void Drawing::draw(const std::string& text) {
     const TerminalSize size = terminal_size();
     const std::string clipped = clip_page(text, size.columns, size.lines);
-    // Move the cursor to the start of the last drawing and clear everything below. After a change of the terminal's size the
-    // lines may have wrapped differently, so the start is unknown.
+    // Moves the cursor to the start of the last drawing and clears everything below. If the size of the terminal has
+    // changed, lines may have wrapped differently, so the start of the last drawing is unknown.
     const bool moved = lines_ > 0 && size != size_;
     std::cout << (moved        ? "\033[H"
                   : lines_ > 0 ? "\033[" + std::to_string(lines_) + "A"

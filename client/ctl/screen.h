@@ -9,15 +9,15 @@
 namespace evod::ctl {
 
 struct TerminalSize {
-    std::size_t columns = 80, lines = 24; // used without a terminal
+    std::size_t columns = 80, lines = 24; // these defaults apply if there is no terminal
     bool operator==(const TerminalSize&) const = default;
 };
 TerminalSize terminal_size();
 
-/// Text of whole lines that each draw() replaces.
+/// A text on the terminal that each draw() replaces. It consists of whole lines.
 class Drawing {
   public:
-    /// Replaces the previous text. Text beyond the right and lower edge of the terminal is cut.
+    /// Replaces the previous text. Cuts text that does not fit into the width and height of the terminal.
     void draw(const std::string& text);
     /// Keeps the current text on the terminal; the next draw() starts below it.
     void leave();
@@ -25,14 +25,14 @@ class Drawing {
 
   private:
     std::ptrdiff_t lines_ = 0;
-    bool ends_line_ = true; // whether the last drawing did
+    bool ends_line_ = true; // whether the text drawn last ends with a line break
     TerminalSize size_;
 };
 
-/// Reports a lost connection on stderr; throws Stop if it has failed for good.
+/// Reports a lost connection on stderr; throws Stop if the client will not reconnect.
 class ConnectionNews {
   public:
-    /// drawing  the text on the screen, which is kept above the message.
+    /// drawing  the text on the terminal; it stays there, and the message is printed below it.
     void report(const core::Connection& connection, Drawing& drawing);
 
   private:

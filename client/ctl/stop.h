@@ -9,16 +9,16 @@ namespace evod::ctl {
 
 enum class ExitCode {
     Ok = 0,
-    Refused = 1,      // by the server; or the awaited event did not happen
-    Usage = 2,        // wrong usage, found by evoctl or by the server (INVALID_ARGUMENT)
-    NoConnection = 3, // no server, or no reply
+    Refused = 1,      // the server refused the command, or the awaited event did not happen
+    Usage = 2,        // evoctl or the server (INVALID_ARGUMENT) found an error in the arguments
+    NoConnection = 3, // there is no server, or it did not reply
     TokenNeeded = 4,  // the server requires a valid token
 };
 
 struct Stop {
     ExitCode code;
-    std::string text;       // for stderr; may be empty
-    v1::Status status = {}; // the server's refusal, if that is the reason
+    std::string text;       // the message for stderr; may be empty
+    v1::Status status = {}; // the server's refusal, if the server refused the command
 };
 
 } // namespace evod::ctl

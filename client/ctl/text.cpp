@@ -95,7 +95,7 @@ std::size_t width_of(std::string_view utf8) {
 std::string visible(std::string utf8) {
     for (std::size_t i = 0; i < utf8.size(); ++i) {
         const auto byte = static_cast<unsigned char>(utf8[i]);
-        const bool second_of_control = // U+0080 to U+009F
+        const bool second_of_control = // second byte of a control character from U+0080 to U+009F
             i > 0 && static_cast<unsigned char>(utf8[i - 1]) == 0xc2 && byte >= 0x80 && byte < 0xa0;
         if ((byte < 0x20 && byte != '\n') || byte == 0x7f) {
             utf8[i] = '?';
@@ -121,11 +121,11 @@ std::string clip_lines(std::string_view utf8, std::size_t width) {
 }
 
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines) {
-    std::size_t end = 0; // of the text that fits, without its last line break
+    std::size_t end = 0; // end of the text that fits, without its last line break
     for (std::size_t line = 0; line < std::max<std::size_t>(lines, 1); ++line) {
         const std::size_t line_end = utf8.find('\n', line == 0 ? 0 : end + 1);
         if (line_end == std::string_view::npos) {
-            return clip_lines(utf8, width); // one line stays free for the cursor
+            return clip_lines(utf8, width); // the whole text fits, with one line left for the cursor
         }
         end = line_end;
     }
@@ -133,7 +133,8 @@ std::string clip_page(std::string_view utf8, std::size_t width, std::size_t line
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // Optimal string alignment distance (Damerau, each substring edited once), with three rows of the table.
+    // Optimal string alignment distance: Damerau's distance, with the restriction that each substring is edited at most
+    // once. Stores only three rows of the table.
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
     std::iota(above.begin(), above.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -155,7 +156,7 @@ std::vector<std::string> nearest(std::string_view word, std::span<const std::str
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const std::string& name : names) {
         const std::size_t distance = edit_distance(word, name);
-        // A part of a name counts as near: "mutation" for "mutation_chance".
+        // A word that is part of a name counts as similar: "mutation" to "mutation_chance".
         const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
         if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
             ranked.emplace_back(distance, name);

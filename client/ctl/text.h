@@ -1,4 +1,4 @@
-// Text: tables, sparklines and numbers for people to read.
+// Text: formats tables, sparklines and numbers for the user.
 #pragma once
 
 #include "client/core/duration.h"
@@ -12,7 +12,7 @@
 
 namespace evod::ctl {
 
-/// A table of text whose columns are as wide as their cells.
+/// A table of text. Each column is as wide as its widest cell.
 class Table {
   public:
     enum class Align { Left, Right };
@@ -23,7 +23,7 @@ class Table {
 
     explicit Table(std::vector<Column> columns) : columns_{std::move(columns)} {}
 
-    void add(std::vector<std::string> cells); // as many as there are columns
+    void add(std::vector<std::string> cells); // adds a row; one cell for each column
     /// Returns the title and the rows, one line each. Columns are separated by two blanks; no line ends in a blank.
     std::string to_text() const;
 
@@ -32,36 +32,37 @@ class Table {
     std::vector<std::vector<std::string>> rows_;
 };
 
-/// One of eight bars per value, for the newest `width_max` values; empty for no values. If all values are equal, the bars
-/// have middle height.
+/// Draws the last `width_max` values as a row of bars with eight heights. Empty if there are no values. If all values
+/// are equal, the bars have middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
-/// Makes text from a server safe for a terminal: control characters except line breaks become '?'.
+/// Makes text from a server safe to print on a terminal: replaces control characters except line breaks by '?'.
 std::string visible(std::string utf8);
 
 using core::exact;
-/// Formats with a fixed number of decimals.
+/// Formats a number with a fixed number of decimals.
 std::string fixed(double value, int decimals);
 using core::duration;
-/// "12 µs", "3.4 ms", "1.2 s".
+/// Formats a short duration: "12 µs", "3.4 ms", "1.2 s".
 std::string short_time(double seconds);
-/// "512 B", "1.5 KiB", "12 MiB".
+/// Formats a number of bytes: "512 B", "1.5 KiB", "12 MiB".
 std::string short_bytes(double bytes);
-/// Characters (code points), not bytes.
+/// Returns the number of characters (code points) in a text.
 std::size_t width_of(std::string_view utf8);
 
-/// Cuts each line after `width` characters, so that no line wraps on a terminal.
+/// Cuts each line after `width` characters, so that no line wraps on a terminal of this width.
 std::string clip_lines(std::string_view utf8, std::size_t width);
 
-/// Returns the beginning of `utf8` that a screen of this width and height shows without scrolling. Lines are cut as above; the
-/// last line has no line break, so that the cursor stays behind it.
+/// Returns the beginning of `utf8`, as much as a terminal of this width and height shows without scrolling. Cuts lines
+/// as clip_lines() does. The last line has no line break, so that the cursor stays at its end.
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines);
 
-/// The number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`.
+/// Returns the edit distance: the smallest number of insertions, deletions, replacements and swaps of adjacent
+/// characters that turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b);
-/// The names that `word` may be a misspelling of, nearest first, at most three.
+/// Returns at most three names that are similar to the misspelled `word`, the most similar first.
 std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names);
-/// "; did you mean A or B?", or nothing.
+/// Returns "; did you mean A or B?" with the names most similar to `word`; empty if no name is similar.
 std::string did_you_mean(std::string_view word, std::span<const std::string> names);
 
 } // namespace evod::ctl

@@ -18,7 +18,8 @@ const v1::MetricFamily* family_in(const v1::Metrics& metrics, std::string_view n
     return found == metrics.families().end() ? nullptr : &*found;
 }
 
-/// The sample whose only label has that value; for an empty value, the sample without labels.
+/// Returns the sample of a metric whose only label has the value `label`. If `label` is empty, returns the sample
+/// without labels.
 const v1::MetricSample* sample_in(const v1::Metrics& metrics, std::string_view name, std::string_view label) {
     const auto* family = family_in(metrics, name);
     if (family == nullptr) {
@@ -30,14 +31,14 @@ const v1::MetricSample* sample_in(const v1::Metrics& metrics, std::string_view n
     return found == family->samples().end() ? nullptr : &*found;
 }
 
-/// Distribution of tick durations between two measurements.
+/// The distribution of the durations of ticks between the two measurements.
 struct TickTimes {
     std::vector<double> bounds;
     std::vector<std::uint64_t> counts;
     std::uint64_t count = 0;
     double sum = 0;
 
-    /// Interpolates linearly within a bucket; `count` is not 0.
+    /// Returns a quantile, interpolated linearly within a bucket of the histogram. `count` must not be 0.
     std::string quantile(double share) const {
         const double wanted = share * static_cast<double>(count);
         double so_far = 0;
@@ -61,7 +62,8 @@ class Page {
         const auto* sample = sample_in(measurements_.after, name, label);
         return sample == nullptr ? 0 : sample->value();
     }
-    /// The increase of a counter; empty if the server was restarted in between.
+    /// Returns the increase of a counter between the two measurements; at least 0, because a restart of the server
+    /// resets its counters.
     double risen(std::string_view name, std::string_view label = {}) const {
         const auto* sample = sample_in(measurements_.before, name, label);
         return std::max(0.0, now(name, label) - (sample == nullptr ? 0 : sample->value()));
@@ -86,7 +88,7 @@ class Page {
             return times;
         }
         const v1::MetricHistogram& last = after->histogram();
-        // A later world of the same name has smaller counts.
+        // If a world was deleted and a new one has the same name, its counts are smaller than before.
         const bool goes_on = before != nullptr && before->histogram().counts_size() == last.counts_size() &&
                              std::ranges::equal(before->histogram().counts(), last.counts(), std::less_equal{});
         times.bounds.assign(last.bounds().begin(), last.bounds().end());
@@ -138,7 +140,8 @@ class Page {
                fixed(now("evod_journal_lag_seconds"), 1) + " s";
     }
 
-    /// "requests 12, sessions 3"; empty if none was reached, or the server does not count it.
+    /// Returns the limits that clients have reached, with their counters: "requests 12, sessions 3". Empty if none was
+    /// reached, or if the server does not count this.
     std::string limits() const {
         std::string text;
         if (const auto* family = family_in(measurements_.after, "evod_limit_reached_total")) {
@@ -158,7 +161,7 @@ class Page {
         }
         std::vector<v1::MetricSample> all{family->samples().begin(), family->samples().end()};
         std::ranges::stable_sort(all, std::ranges::greater{}, &v1::MetricSample::value);
-        const std::size_t room = std::max<std::size_t>(lines_max, 2) - 1; // below the titles
+        const std::size_t room = std::max<std::size_t>(lines_max, 2) - 1; // lines below the titles
         const std::size_t shown = all.size() <= room ? all.size() : room - 1;
         Table table{{{"world"},
                      {"ticks/s", Table::Align::Right},

@@ -1,4 +1,4 @@
-// evoctl top: the server's metrics, live.
+// evoctl top: shows the server's metrics live.
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/top.h"
@@ -53,7 +53,7 @@ class Top {
         Clock::time_point at;
     };
 
-    /// Whether the server answered; no answer is not an error during a reconnection.
+    /// Returns whether the server answered. A missing answer during a reconnection is not an error.
     bool look() {
         v1::Request request;
         request.mutable_get_metrics();
@@ -78,7 +78,7 @@ class Top {
     void wait() {
         const auto until = Clock::now() + std::chrono::duration<double>{options_.interval_s};
         while (!interrupted() && Clock::now() < until) {
-            // Ctrl-C is noticed within a tenth of a second.
+            // Short waits, so that evoctl reacts to Ctrl-C within a tenth of a second.
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
@@ -97,7 +97,7 @@ class Top {
         const std::size_t lines = redraw_ ? terminal_size().lines : all_lines;
         const std::string text =
             top_text({before_->metrics, last_->metrics, std::max(between.count(), 1e-3)}, common_.server, now.count(),
-                     lines - std::min<std::size_t>(lines, 3)) + // the last line, and the line of the cursor
+                     lines - std::min<std::size_t>(lines, 3)) + // space for the last line and the cursor
             farewell;
         if (redraw_) {
             drawing_.draw(text);

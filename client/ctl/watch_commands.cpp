@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Statistics of one generation over all islands.
+/// The statistics of one generation, combined over all islands.
 struct GenerationLine {
     std::uint64_t generation = 0;
     double fitness_best = 0, fitness_mean = 0, diversity = 0;
@@ -55,7 +55,7 @@ class WatchDisplay {
         : common_{common}
         , generations_{generations}
         , caller_{common}
-        , redraw_{on_terminal() && !common.json && !generations} {} // with --generations, one line each
+        , redraw_{on_terminal() && !common.json && !generations} {} // --generations prints a line per generation
 
     void run() {
         catch_interrupts();
@@ -92,7 +92,7 @@ class WatchDisplay {
     }
 
   private:
-    /// Loads earlier generations, so that the sparkline does not start empty.
+    /// Loads the generations before the first event, so that the sparkline does not start empty.
     void load_past() {
         if (world_.generation() < 2) {
             return;
@@ -103,7 +103,7 @@ class WatchDisplay {
         history.set_first_generation(world_.generation() > width + 1 ? world_.generation() - width : 1);
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
         if (!response || !core::accepted(*response)) {
-            return; // only the earlier generations are missing
+            return; // evoctl can continue: only the earlier generations are missing
         }
         const auto& generations = response->history().generations();
         for (int first = 0; first < generations.size();) {
@@ -116,7 +116,7 @@ class WatchDisplay {
         }
     }
 
-    /// Lines on stdout are for programs; the state of the storage goes to stderr and explains why no line comes.
+    /// Prints the state of the storage on stderr, because programs read stdout. It explains why no generation ends.
     void say(const v1::Storage& storage) {
         const std::string trouble = trouble_of(storage);
         if (!redraw_ && trouble != trouble_) {
@@ -201,7 +201,8 @@ class WatchDisplay {
                 best.push_back(line.fitness_best);
                 mean.push_back(line.fitness_mean);
             }
-            // Keep room for the number after the sparkline; drop its oldest generations instead.
+            // Leaves space for the number after the sparkline. If the line is too long, the sparkline omits its oldest
+            // generations.
             constexpr std::size_t figures = 18;
             const std::size_t columns = terminal_size().columns;
             const std::size_t shown = std::min(width, columns > figures ? columns - figures : 1);
@@ -229,7 +230,7 @@ class WatchDisplay {
         return table.to_text();
     }
 
-    static constexpr std::size_t width = 60; // generations in a sparkline
+    static constexpr std::size_t width = 60; // maximal number of generations in a sparkline
 
     const Common& common_;
     const std::optional<std::uint64_t> generations_;
@@ -237,11 +238,11 @@ class WatchDisplay {
     const bool redraw_;
     v1::WorldInfo world_;
     v1::Statistics statistics_;
-    std::deque<GenerationLine> lines_; // the newest `width`
-    std::uint64_t seen_ = 0;           // generations that ended while watching
+    std::deque<GenerationLine> lines_; // the newest generations, at most `width`
+    std::uint64_t seen_ = 0;           // number of generations that ended while this command ran
     Drawing drawing_;
     ConnectionNews news_;
-    std::string trouble_; // of the storage, as last printed
+    std::string trouble_; // the problem of the storage that was printed last; empty: none
     Clock::time_point draw_at_{};
     bool ended_ = false;
 };
@@ -350,7 +351,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         throw Stop{ExitCode::Refused, core::to_text(answer->status())};
     }
     if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
-        std::cerr << trouble << '\n'; // it started earlier
+        std::cerr << trouble << '\n'; // the problem began before this command
     }
     ConnectionNews news;
     Drawing none;

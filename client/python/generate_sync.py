@@ -2,8 +2,9 @@
 
     generate_sync.py SOURCE TARGET
 
-Removes `async`, `await`, the parentheses around an awaited call, and what comes from evod.aio.awaitable; replaces evod.aio.X
-by evod.X and the special names of asynchronous iteration by those of iteration. In docstrings it does the same to examples.
+Removes `async`, `await`, the parentheses around an awaited call, and everything imported from evod.aio.awaitable. Replaces
+evod.aio.X by evod.X, and method names such as `__aiter__` by their synchronous names. Changes the examples in docstrings in
+the same way.
 """
 import io
 import keyword
@@ -20,14 +21,14 @@ DECORATORS = ("opens", "opens_stream")
 
 
 def without_async(text):
-    """The text of a docstring or comment."""
+    """Converts the text of a docstring or comment."""
     text = re.sub(r"\basync (?=with|for\b)", "", text)
     text = re.sub(r"\bawait ", "", text)
     return text.replace("evod.aio", "evod")
 
 
 def synchronous(source):
-    """The synchronous module with the same classes and functions."""
+    """Returns the source of the synchronous module with the same classes and functions."""
     lines = source.splitlines(keepends=True)
     lines = [line for line in lines if line.strip() not in {f"@{name}" for name in DECORATORS}
              and not line.startswith("from evod.aio.awaitable import ")]
@@ -40,8 +41,8 @@ def synchronous(source):
     def offset(place):
         return starts[place[0] - 1] + place[1]
 
-    edits = []  # (begin, end, replacement) in the source
-    grouping = []  # for each open bracket: it is a parenthesis around an awaited call
+    edits = []  # changes of the source: (begin, end, replacement)
+    grouping = []  # for each open bracket: whether it is a parenthesis around an awaited call
     for i, token in enumerate(tokens):
         begin, end = offset(token.start), offset(token.end)
         if token.string in ("(", "[", "{") and token.type == tokenize.OP:

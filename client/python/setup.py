@@ -1,6 +1,6 @@
-"""Generates, while the package is built, the message classes of evod.v1 (with protoc), evod/lab.py and evod/version.py.
+"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/lab.py and evod/version.py.
 
-The environment variable PROTOC names the protoc to use; by default the one on the path.
+The environment variable PROTOC contains the path of protoc; by default protoc is searched in PATH.
 """
 import os
 import pathlib
@@ -17,7 +17,7 @@ sources = here.parent.parent
 
 
 class BuildWithGenerated(build_py):
-    """Copies the package, and adds what is generated."""
+    """Copies the package and adds the generated files."""
 
     def run(self) -> None:
         super().run()
@@ -44,7 +44,7 @@ def generate_messages(folder: pathlib.Path) -> None:
 
 
 def version() -> str:
-    """The version of evod itself."""
+    """Returns the version of evod, which is also the version of this package."""
     found = re.search(r"project\(evod\s+VERSION\s+([0-9.]+)", (sources / "CMakeLists.txt").read_text())
     if not found:
         raise SystemExit(f"{sources / 'CMakeLists.txt'} contains no version of evod")

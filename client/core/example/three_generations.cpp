@@ -1,4 +1,4 @@
-// The smallest useful client: connects, runs three generations, prints the fitness of each.
+// The smallest useful client: connects to a server, runs three generations and prints the fitness of each.
 //
 //     three_generations [HOST:PORT]
 #include "client/core/connection.h"

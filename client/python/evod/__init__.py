@@ -1,4 +1,4 @@
-"""evod: an evolution laboratory, from Python.
+"""evod: controls an evolution laboratory from Python.
 
     import evod
 

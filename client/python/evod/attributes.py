@@ -1,4 +1,4 @@
-"""A World's parameters as attributes, for the synchronous World alone: an attribute cannot be awaited."""
+"""The parameters of a World as attributes. Only the synchronous World has them, because an attribute cannot be awaited."""
 from __future__ import annotations
 
 from typing import Any, Iterator, Mapping, Protocol
@@ -20,13 +20,14 @@ class _World(Protocol):
 
 
 class ParameterAttributes:
-    """The base class of World."""
+    """The base class of World. It provides the property `parameters`."""
 
     @property
     def parameters(self: _World) -> LiveParameters:
-        """The current parameters as attributes; assigning one sets it on the server.
+        """The current parameters as attributes. Assigning a value to an attribute sets the parameter on the server.
 
-        Every read asks the server. To read several at one moment use `get_parameters`, to set several at once use `set`.
+        Every access sends a request to the server. Use `get_parameters` to read several parameters at the same moment, and
+        `set` to set several of them together.
 
         Examples
         --------
@@ -41,7 +42,10 @@ class ParameterAttributes:
 
 
 class LiveParameters(Mapping[str, Any]):
-    """The current parameters of a world: values as attributes, `Parameter` objects by name; made by `World.parameters`."""
+    """The current parameters of a world, returned by `World.parameters`.
+
+    The attributes are the values. Indexing with the name of a parameter returns a `Parameter` object.
+    """
 
     def __init__(self, world: _World) -> None:
         object.__setattr__(self, "_world", world)

@@ -1,14 +1,14 @@
-"""The client's side of the protocol as a state machine without a socket, a clock or a thread.
+"""The client side of the protocol, as a state machine without sockets, clocks and threads.
 
-The connection reports what happens to it (opened, received, lost) and sends what outgoing() returns. Callers hand in
-requests and subscriptions, and find answers, events and snapshots in Pending and Subscription. After a reconnect the core
-sends its Hello, subscribes again, and repeats every unanswered request with the same client_key and request_id. The server's
-reply cache makes that idempotent: each command is applied once.
+The code that owns the socket calls opened(), received() and lost(), and sends the bytes that outgoing() returns. Callers
+pass requests and subscriptions to a Core, and find the answers, events and snapshots in Pending and Subscription. After a
+reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with the same client_key and
+request_id. The repetition is idempotent, because the server has a reply cache: it applies each command once.
 
-Threads      none of its own; one thread at a time may call a Core.
-Bounds       requests beyond the server's limit are queued here; a subscription keeps the newest EVENTS_KEPT events and
-             reports the others in an EventsDropped; a snapshot is acknowledged when the caller takes it, so that at most
-             UNACKNOWLEDGED_MAX snapshots of an island are in flight.
+Threads      none of its own. Only one thread at a time may call a Core.
+Bounds       Requests beyond the server's limit are queued here. A subscription keeps the newest EVENTS_KEPT events and
+             reports dropped ones by an EventsDropped. A snapshot is acknowledged when the caller takes it; therefore at
+             most UNACKNOWLEDGED_MAX snapshots of an island are in flight.
 """
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from evod.version import __version__
 
 PROTOCOL_VERSION = 1
 EVENTS_KEPT = 10_000
-UNACKNOWLEDGED_MAX = 8  # snapshots of an island
-_KEYFRAME_REQUESTS_MAX = 3  # while no snapshot could be decoded
+UNACKNOWLEDGED_MAX = 8  # number of snapshots of each island
+_KEYFRAME_REQUESTS_MAX = 3  # number of keyframe requests without a decoded snapshot in between
 
-#: Requests for which the server may have to simulate generations again: their timeout is this many times longer.
+#: Requests for which the server may have to simulate generations again; their timeout is longer.
 _REPLAY_REQUESTS = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
 _REPLAY_TIMEOUT_FACTOR = 20
 
-#: Requests about ids that end with their session: they fail with it instead of being repeated.
+#: Requests that contain an id which is valid only in its session. They fail when the session ends, and are not repeated.
 _SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
 
@@ -44,12 +44,12 @@ def _no_connection(error: Error) -> NoConnection:
 
 
 class Pending:
-    """A request and its outcome: `response` once the server has answered, or `error` if no answer can arrive any more."""
+    """A request and its result: `response` after the server has answered, or `error` if no answer can arrive any more."""
 
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
         self.kind: str = request.WhichOneof("kind") or ""
-        self.sent = False  # in this session
+        self.sent = False  # whether it was sent in this session
         self.response: commands_pb2.Response | None = None
         self.error: Error | None = None
 
@@ -59,34 +59,34 @@ class Pending:
         return self.response is not None or self.error is not None
 
     def timeout_s(self, usual_s: float) -> float:
-        """The timeout of this request, where usual_s is that of requests without a replay."""
+        """Returns the timeout of this request. usual_s is the timeout of requests that need no replay."""
         return usual_s * _REPLAY_TIMEOUT_FACTOR if self.kind in _REPLAY_REQUESTS else usual_s
 
 
 class Subscription:
-    """A subscription across sessions. It ends with unsubscribe(), or when it is garbage collected."""
+    """A subscription that continues after a reconnect. It ends with unsubscribe(), or when it is garbage collected."""
 
     def __init__(self, request: commands_pb2.Request) -> None:
         self.request = request
         self.world: str = getattr(request, request.WhichOneof("kind") or "").world
-        self.server_id: int | None = None  # in this session, once accepted
+        self.server_id: int | None = None  # its id in this session; None: the server has not accepted it yet
         self.pending: Pending | None = None
-        self.refused: Error | None = None  # the server refused it, in this session or a later one
+        self.refused: Error | None = None  # the error if the server has refused the subscription
         self.sessions = 0  # number of sessions in which the server accepted it
-        self.rate_hz = 0.0  # of snapshots, as the server granted it
+        self.rate_hz = 0.0  # snapshots per second that the server granted
         self.ended = False
-        self.arrived: collections.deque[Any] = collections.deque()  # Event or Snapshot, the oldest first
-        self._lost = 0  # number of events dropped here since the last EventsDropped
+        self.arrived: collections.deque[Any] = collections.deque()  # Event or Snapshot objects, the oldest first
+        self._lost = 0  # number of events that this object dropped since the last EventsDropped
 
     def take_event(self) -> stream_pb2.Event | None:
-        """Removes and returns the oldest event, after an EventsDropped for those that were not kept; None if there is none."""
+        """Removes and returns the oldest event, or first an EventsDropped if events were dropped; None if there is none."""
         if self._lost:
             lost, self._lost = self._lost, 0
             return stream_pb2.Event(events_dropped=stream_pb2.EventsDropped(dropped_count=lost))
         return self.arrived.popleft() if self.arrived else None
 
     def add_event(self, event: stream_pb2.Event) -> None:
-        """Appends an event; drops the oldest beyond EVENTS_KEPT."""
+        """Appends an event. If there are more than EVENTS_KEPT, drops the oldest."""
         self.arrived.append(event)
         if len(self.arrived) > EVENTS_KEPT:
             self.arrived.popleft()
@@ -100,15 +100,15 @@ class Subscription:
 
 @dataclasses.dataclass
 class _StreamState:
-    """The snapshot stream of one island of one subscription in this session."""
+    """The snapshot stream for one subscription and one island, in this session."""
 
     decoder: snapshot_decoder.SnapshotDecoder = dataclasses.field(default_factory=snapshot_decoder.SnapshotDecoder)
     keyframe_needed: bool = False
-    keyframe_requests: int = 0  # since the last snapshot that could be decoded
+    keyframe_requests: int = 0  # number of keyframe requests since the last decoded snapshot
 
 
 class Core:
-    """The state of one client. `server` is shown in error messages."""
+    """The state of one client. Error messages contain `server`."""
 
     def __init__(self, *, token: str, client_name: str, server: object) -> None:
         self._hello = session_pb2.ClientMessage(
@@ -118,32 +118,32 @@ class Core:
         )
         self._server = server
         self.client_key = secrets.token_hex(16)
-        self.welcome: session_pb2.Welcome | None = None  # of the current or the last session
-        self.connected = False  # the server has sent its Welcome on the current connection
-        self.failed: Error | None = None  # set once reconnecting is pointless, with the reason
-        self.loss: Error | None = None  # the reason why there is no session at present
-        self.damaged_snapshot_count = 0  # dropped because they could not be decoded
+        self.welcome: session_pb2.Welcome | None = None  # received in the current or the last session
+        self.connected = False  # whether the server has sent its Welcome on the current connection
+        self.failed: Error | None = None  # why reconnecting is pointless; None: it is not
+        self.loss: Error | None = None  # why there is no session at present
+        self.damaged_snapshot_count = 0  # snapshots dropped because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
         self._last_request_id = 0
-        self._pending: dict[int, Pending] = {}  # by request_id, in the order of the calls
-        self._first: set[int] = set()  # ids of those to send before the others
-        self._in_flight: set[int] = set()  # sent in this session and unanswered, whether or not a caller still waits
-        self._abandoned_replays: set[int] = set()  # unanswered OpenReplay requests whose callers no longer wait
+        self._pending: dict[int, Pending] = {}  # requests by request_id, in the order of the calls
+        self._first: set[int] = set()  # ids of the requests to send before all other requests
+        self._in_flight: set[int] = set()  # ids of unanswered requests of this session, even if no caller waits for them
+        self._abandoned_replays: set[int] = set()  # ids of unanswered OpenReplay requests whose callers no longer wait
         self._subscriptions: list[weakref.ref[Subscription]] = []
         self._of_server_id: dict[int, weakref.ref[Subscription]] = {}
-        self._streams: dict[tuple[int, int], _StreamState] = {}  # by server_id and island
+        self._streams: dict[tuple[int, int], _StreamState] = {}  # keys: server_id and island
 
     # ---- the connection -------------------------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """Call after connecting: queues the Hello."""
+        """Queues the Hello. Call it after connecting."""
         self._outgoing.clear()
         self._reader = framing.FrameReader()
         self._send(self._hello)
 
     def received(self, data: bytes | bytearray | memoryview) -> None:
-        """Processes bytes from the server. After NoConnection or DamagedData close the connection and call lost()."""
+        """Processes bytes from the server. If it raises NoConnection or DamagedData, close the connection and call lost()."""
         self._reader.feed(data)
         try:
             for channel, body in self._reader.frames():
@@ -161,7 +161,7 @@ class Core:
             raise self.failed from None
 
     def lost(self, error: Error) -> None:
-        """Call after a connection was lost or could not be opened. Connect again unless `failed` is set."""
+        """Call it when the connection was lost or could not be opened. Reconnect afterwards, unless `failed` is set."""
         self.connected, self.loss = False, error
         self._outgoing.clear()
         self._in_flight.clear()
@@ -171,7 +171,7 @@ class Core:
         for subscription in self._live_subscriptions():
             subscription.server_id = subscription.pending = None
             if subscription.request.HasField("subscribe_snapshots"):
-                subscription.arrived.clear()  # their sequence numbers have no meaning in another session
+                subscription.arrived.clear()  # the sequence numbers of the snapshots are not valid in another session
         for request_id, pending in list(self._pending.items()):
             subscribing = pending.kind.startswith("subscribe_")
             if self.failed is not None or subscribing or pending.sent and pending.kind in _SESSION_REQUESTS:
@@ -181,7 +181,7 @@ class Core:
             pending.sent = False
 
     def close(self) -> None:
-        """Fails all requests; the client cannot be used again."""
+        """Makes all requests fail. The client cannot be used again."""
         self.failed = NoConnection("the connection was closed here")
         self.lost(self.failed)
 
@@ -194,7 +194,7 @@ class Core:
     # ---- requests -------------------------------------------------------------------------------------------------
 
     def request(self, request: commands_pb2.Request, *, first: bool = False) -> Pending:
-        """Sends a request now or once there is a session; sets its request_id and client_key.
+        """Queues a request, which is sent when there is a session. Sets its request_id and client_key.
 
         Raises Error if the client is closed or has failed, or if the request is longer than the server allows.
         """
@@ -215,7 +215,7 @@ class Core:
         return pending
 
     def forget(self, pending: Pending) -> None:
-        """Call when the caller no longer waits. If the request opens a replay, the core closes it once its name is known."""
+        """Call it when the caller no longer waits. If the request opens a replay, the answer makes the core close it."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
         if pending.kind == "open_replay" and pending.sent and not pending.done:
@@ -224,7 +224,7 @@ class Core:
     # ---- subscriptions --------------------------------------------------------------------------------------------
 
     def subscribe(self, request: commands_pb2.Request) -> Subscription:
-        """Subscribes now or once there is a session, and again in each new session, until the subscription ends."""
+        """Subscribes when there is a session, and again in each new session, until the subscription ends."""
         if self.failed is not None:
             raise _no_connection(self.failed)
         subscription = Subscription(request)
@@ -241,7 +241,7 @@ class Core:
             self._unsubscribe_from(subscription.server_id)
 
     def acknowledge(self, subscription: Subscription, snapshot: Snapshot) -> None:
-        """Acknowledges a snapshot, which lets the server send another."""
+        """Acknowledges a snapshot, so that the server can send another one."""
         if subscription.server_id is not None and snapshot.sequence:
             self._send(
                 session_pb2.ClientMessage(
@@ -257,10 +257,11 @@ class Core:
         self._outgoing += framing.encode(message.SerializeToString())
 
     def _send_waiting(self) -> None:
-        """Sends queued requests, up to half the server's limit on unanswered ones."""
+        """Sends queued requests, up to half of the server's limit on unanswered requests."""
         if not self.connected or self.welcome is None:
             return
-        # The server counts a request until it has sent the answer completely. The answer may arrive here before that.
+        # The server counts a request until it has sent the complete answer. The answer may arrive here before the server
+        # stops counting the request.
         limit = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
         for urgent in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
@@ -303,7 +304,7 @@ class Core:
             )
             raise self.failed
         self.welcome, self.connected, self.loss = message.welcome, True, None
-        # Subscribing first lets subscribers see the events of the requests that follow.
+        # Subscriptions are sent first, so that subscribers receive the events that the other requests cause.
         for subscription in self._live_subscriptions():
             self._resubscribe(subscription)
         self._send_waiting()
@@ -349,7 +350,7 @@ class Core:
             subscription.sessions += 1
             self._of_server_id[server_id] = weakref.ref(subscription)
             if subscription.sessions > 1 and pending.kind == "subscribe_events":
-                # The number of events missed in between is not known: the count stays 0.
+                # The number of events missed between the sessions is not known, so the count is 0.
                 subscription.add_event(stream_pb2.Event(events_dropped=stream_pb2.EventsDropped()))
 
     def _unsubscribe_from(self, server_id: int) -> None:
@@ -372,7 +373,7 @@ class Core:
         server_id = message.subscription_id
         known = self._of_server_id.get(server_id)
         if known is None:
-            return  # unsubscribed while the snapshot was in flight
+            return  # the subscription ended while the snapshot was in flight
         subscription = known()
         if subscription is None:
             self._unsubscribe_from(server_id)
@@ -388,7 +389,7 @@ class Core:
             except DamagedData:
                 self.damaged_snapshot_count += 1
                 stream.keyframe_needed = True
-                # Without a limit, damaged keyframes would be requested for ever.
+                # If keyframes are damaged too, requesting more of them does not help.
                 if message.codec == stream_pb2.CODEC_DELTA and stream.keyframe_requests < _KEYFRAME_REQUESTS_MAX:
                     stream.keyframe_requests += 1
                     self.request(

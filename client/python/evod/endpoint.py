@@ -1,4 +1,4 @@
-"""A server's address, the token and the TLS settings to connect with."""
+"""The address of a server, and the token and TLS settings for connecting to it."""
 from __future__ import annotations
 
 import dataclasses
@@ -19,7 +19,7 @@ class Endpoint:
 
     @classmethod
     def parse(cls, text: str) -> Endpoint:
-        """Reads HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; an IPv6 address without a port needs no brackets.
+        """Parses HOST, HOST:PORT, [IPV6] or [IPV6]:PORT. An IPv6 address without a port needs no brackets.
 
         >>> Endpoint.parse("lab.example:7000")
         Endpoint(host='lab.example', port=7000)
@@ -56,9 +56,9 @@ def _malformed(text: str, why: str) -> Error:
 
 
 def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
-    """The token given, or the first word of the file, or the environment variable EVOD_TOKEN, or "".
+    """Returns `token`, or else the first word of the file, or else the environment variable EVOD_TOKEN, or else "".
 
-    A file that others than its owner may read is refused.
+    Raises Error if users other than the owner can read the file.
     """
     if token is not None:
         if token_file is not None:
@@ -82,10 +82,11 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
 def tls_context(
     tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None, key: str | os.PathLike[str] | None
 ) -> ssl.SSLContext | None:
-    """The TLS settings, or None without TLS. Any of `tls`, `ca` and `cert` turns TLS on.
+    """Returns the TLS settings; None if TLS is not used. Each of `tls`, `ca` and `cert` turns TLS on.
 
-    ca         PEM file of trusted certificates; without it the environment variable EVOD_CA, or those that the system trusts.
-    cert, key  PEM files of the client certificate and its key; the key may be in the same file.
+    ca         PEM file with trusted certificates. Without it, the file named by the environment variable EVOD_CA is used, or
+               else the certificates that the system trusts.
+    cert, key  PEM files with the client certificate and its private key. One file may contain both.
     """
     if key is not None and cert is None:
         raise Error("key is given without cert: name the file of the certificate, too")

@@ -1,4 +1,4 @@
-"""Exceptions: a message for people, a code for programs, and every field with a wrong value."""
+"""Exceptions. Each has a message for the user, a code for programs, and a list of all fields with wrong values."""
 from __future__ import annotations
 
 from typing import Iterable, NamedTuple, TypeVar
@@ -12,13 +12,13 @@ E = TypeVar("E", bound="Error")
 class Violation(NamedTuple):
     """A field of a request whose value is not allowed."""
 
-    field: str  #: path in the request: "set_parameters.mutation_chance"
-    allowed: str  #: "0 to 1"
-    got: str  #: "1.5"
+    field: str  #: path of the field in the request: "set_parameters.mutation_chance"
+    allowed: str  #: the allowed values: "0 to 1"
+    got: str  #: the given value: "1.5"
 
 
 class Error(Exception):
-    """A call was refused, here or by the server; nothing was changed.
+    """This package or the server refused a call. Nothing was changed.
 
     Examples
     --------
@@ -33,13 +33,13 @@ class Error(Exception):
       set_parameters.survivors: got -1, allowed 0 to 1
     """
 
-    #: ``evod.v1.Code``, of the server or as the server would have answered; None if no server was involved.
+    #: ``evod.v1.Code``: sent by the server, or the code that the server would have sent; None if no server was involved.
     code: int | None
-    #: ``evod.v1.Reason``: which documented case of the code it is; 0 if none was given.
+    #: ``evod.v1.Reason``: the documented reason for the code; 0 if the server gave none.
     reason: int = 0
-    #: One sentence, without code and violations.
+    #: One sentence, without the code and the violations.
     message: str
-    #: Every field whose value is not allowed, not only the first.
+    #: All fields whose values are not allowed.
     violations: tuple[Violation, ...]
 
     def __init__(self, message: str, code: int | None = None, violations: Iterable[Violation] = ()) -> None:
@@ -62,29 +62,29 @@ class Error(Exception):
 
 
 class NoConnection(Error):
-    """There is no server, it refuses this client, or the connection was lost and not restored within the timeout."""
+    """No server answers, the server refuses this client, or a lost connection was not restored within the timeout."""
 
 
 class Timeout(Error):
-    """No answer came within the timeout. A command may have been applied all the same."""
+    """No answer arrived within the timeout. The server may have applied the command nevertheless."""
 
 
 class DamagedData(Error):
-    """The data is not evod's, or was damaged: bytes from a connection, or a run file."""
+    """Bytes from a connection, or a run file, are damaged or are not in evod's format."""
 
 
 def refusal(status: commands_pb2.Status) -> Error:
-    """The error for a response whose status is not OK."""
+    """Returns the error for a response whose status is not OK."""
     error = Error(status.message, status.code, (Violation(v.field, v.allowed, v.got) for v in status.violations))
     error.reason = status.reason
     return error
 
 
 def copy_of(error: E) -> E:
-    """A new exception with the same content.
+    """Returns a new exception with the same content.
 
-    Every caller raises its own copy. The traceback of the original refers to the frames of the connection task, and a caller
-    that clears the frames of a traceback, as unittest does, would end that task.
+    Every caller raises its own copy. The traceback of the original refers to the stack frames of the connection task. A
+    caller that clears the frames of a traceback, as unittest does, would end this task.
     """
     copy = type(error)(error.message, error.code, error.violations)
     copy.reason = error.reason
@@ -92,5 +92,5 @@ def copy_of(error: E) -> E:
 
 
 def wrong_argument(field: str, allowed: str, got: object, message: str = "the request is wrong") -> Error:
-    """The error for a wrong argument, with the code that the server would answer."""
+    """Returns the error for a wrong argument. It has the same code as the server's answer would have."""
     return Error(message, commands_pb2.CODE_INVALID_ARGUMENT, [Violation(field, allowed, str(got))])

@@ -7,7 +7,7 @@ from typing import Iterator
 from evod.errors import DamagedData
 
 CONTROL, STREAM = 1, 2
-BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # the largest that a client accepts
+BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # size of the largest body that a client accepts
 HEADER_BYTES = 8
 
 _header = struct.Struct("<2sBBI")
@@ -23,17 +23,17 @@ class FrameReader:
 
     def __init__(self) -> None:
         self._data = bytearray()
-        self._offset = 0  # of the first byte not yet returned in a frame
+        self._offset = 0  # offset of the first byte that was not yet returned in a frame
 
     def feed(self, data: bytes | bytearray | memoryview) -> None:
-        """Appends bytes in the order in which they arrived."""
+        """Appends the bytes that arrived next."""
         if self._offset:
             del self._data[: self._offset]
             self._offset = 0
         self._data += data
 
     def frames(self) -> Iterator[tuple[int, bytes]]:
-        """Yields (channel, body) of each complete frame. After DamagedData the stream cannot be read any further."""
+        """Yields (channel, body) for each complete frame. After DamagedData the rest of the stream cannot be read."""
         while len(self._data) - self._offset >= HEADER_BYTES:
             magic, version, channel, length = _header.unpack_from(self._data, self._offset)
             if magic != b"EV":

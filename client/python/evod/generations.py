@@ -14,7 +14,7 @@ ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 def account_part(gene: world_pb2.GeneStatistics, part: str) -> float:
-    """One of ACCOUNT_PARTS of a gene; nan if the server has no account for this generation."""
+    """Returns one of ACCOUNT_PARTS for a gene; nan if the server has no selection account for this generation."""
     return float(getattr(gene.account, part)) if gene.HasField("account") else numpy.nan
 
 
@@ -34,7 +34,7 @@ class Generation:
     generation 2: best 294.4, mean 84.7, 27 of 50 alive
     """
 
-    number: int  #: 1 for the first
+    number: int  #: number of the generation; the first is 1
     islands: tuple[world_pb2.GenerationStatistics, ...]  #: all statistics of each island, in index order
 
     @property
@@ -69,7 +69,7 @@ class Generation:
 
     @property
     def diversity(self) -> float:
-        """Standard deviation of a gene divided by the width of its bounds; mean over genes and islands; 0 to 1."""
+        """The genetic diversity, 0 to 1: a gene's standard deviation divided by its range, averaged over genes and islands."""
         return self._mean([island.diversity for island in self.islands])
 
     @property
@@ -80,10 +80,10 @@ class Generation:
 
     @property
     def selection(self) -> numpy.typing.NDArray[Any]:
-        """The part of `change` due to selection: some organisms had more descendants than others.
+        """The part of `change` that is due to selection, because some organisms had more descendants than others.
 
-        Shape (6,), in gene units, in the order of `evod.GENE_NAMES`; nan in the first generation, and in runs stored by
-        versions that did not record it. selection + transmission + migration = change (docs/MODEL.md).
+        Shape (6,), in the units of the genes and in the order of `evod.GENE_NAMES`. nan in the first generation, and in runs
+        of older versions, which did not record it. selection + transmission + migration = change (docs/MODEL.md).
 
         Examples
         --------
@@ -99,17 +99,17 @@ class Generation:
 
     @property
     def transmission(self) -> numpy.typing.NDArray[Any]:
-        """The part of `change` due to differences between parents and descendants: crossover, mutation, bounds."""
+        """The part of `change` that is due to crossover, mutation and the bounds of the genes."""
         return self._mean_part("transmission")
 
     @property
     def migration(self) -> numpy.typing.NDArray[Any]:
-        """The part of `change` due to migrants between islands."""
+        """The part of `change` that is due to migration between islands."""
         return self._mean_part("migration")
 
     @property
     def change(self) -> numpy.typing.NDArray[Any]:
-        """The mean of each gene minus that of the generation before; shape (6,), nan in the first generation."""
+        """The mean of each gene minus its mean in the previous generation; shape (6,), nan in the first generation."""
         return self._mean_part("change")
 
     def _mean_part(self, name: str) -> numpy.typing.NDArray[Any]:
@@ -133,7 +133,7 @@ class Generation:
 
 
 def generations_of(rows: Sequence[world_pb2.GenerationStatistics]) -> list[Generation]:
-    """Groups rows that are ordered by generation and island."""
+    """Combines the rows of each generation into a Generation. The rows must be ordered by generation and island."""
     by_number: dict[int, list[world_pb2.GenerationStatistics]] = {}
     for row in rows:
         by_number.setdefault(row.generation, []).append(row)
@@ -142,23 +142,23 @@ def generations_of(rows: Sequence[world_pb2.GenerationStatistics]) -> list[Gener
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Population:
-    """The organisms of the current generation on one island, alive and dead; row i is the organism with the id i."""
+    """All organisms of the current generation on one island, including dead ones. Row i is the organism with id i."""
 
     generation: int
     generation_tick: int  #: ticks since the generation began
     genes: numpy.typing.NDArray[numpy.float32]  #: shape (count, 6), in the order of evod.GENE_NAMES
-    parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids in the generation before; (0, 2) in the first generation
-    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder that each descends from; (0,) if unknown
-    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.v1.Choice, what each is about to do
-    forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the force that each is about to exert, kg px/s²
-    targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the position that each is heading for, px
+    parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids of the parents; (0, 2) in the first generation
+    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder of the lineage; (0,) if unknown
+    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.v1.Choice: the action in the next tick
+    forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): force in the next tick, kg px/s²
+    targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): position of the target, px
 
     def __len__(self) -> int:
         return len(self.genes)
 
 
 def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
-    """Joins the parts of one population, given in order."""
+    """Joins the parts of one population. The parts must be in order."""
 
     def rows(field: str, kind: str, columns: int) -> Any:
         whole = [

@@ -1,7 +1,7 @@
-"""The synchronous connection: runs the asyncio one on a thread of its own and waits for its results.
+"""The synchronous connection: runs the asyncio connection on a separate thread and waits for its results.
 
-Threads      any number of threads may use one Link. Only the connection thread touches the Core and the plans; it ends with
-             close(), when the Link is garbage collected, and with the program.
+Threads      any number of threads may use one Link. Only the connection thread accesses the Core and the plans. This thread
+             ends on close(), when the Link is garbage collected, or when the program ends.
 """
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ P = ParamSpec("P")
 
 
 def blocking_call(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-    """Calls a function that blocks; evod.aio.link has the same for an event loop."""
+    """Calls a blocking function. evod.aio.link has the corresponding function for an event loop."""
     return function(*args, **kwargs)
 
 
 class Link:
-    """As evod.aio.link.Link; every method blocks until its result is there."""
+    """The synchronous version of evod.aio.link.Link. Every method blocks until it has a result."""
 
     def __init__(
         self, server: Endpoint, core: Core, tls: ssl.SSLContext | None, *, timeout_s: float, reconnect: bool
@@ -38,15 +38,15 @@ class Link:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=_serve, args=(self._loop,), name="evod connection", daemon=True)
         self._thread.start()
-        self._lock = threading.Lock()  # guards `end`: no coroutine is started after it
+        self._lock = threading.Lock()  # guards `end`, after which no coroutine is started
         self._end = weakref.finalize(self, _end, self._inner, self._loop, self._thread)
 
     def perform(self, plan: Plan[T]) -> T:
-        """Carries out a plan; an exception such as KeyboardInterrupt in the calling thread cancels it."""
+        """Executes a plan. An exception in the calling thread, such as KeyboardInterrupt, cancels the plan."""
         return self._run(self._inner.perform(plan))
 
     def apply(self, change: Callable[[], None]) -> None:
-        """Changes the core and sends what that produces."""
+        """Calls a function that changes the core, and sends the resulting bytes."""
         try:
             self._run(self._inner.apply(change))
         except NoConnection:  # the connection thread has ended, so this thread may use the core
@@ -54,7 +54,7 @@ class Link:
             change()
 
     def open(self) -> None:
-        """Connects for the first time. Raises NoConnection, or DamagedData if the other end is no evod server."""
+        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is no evod server."""
         try:
             self._run(self._inner.open())
         except BaseException:
@@ -62,7 +62,7 @@ class Link:
             raise
 
     def close(self) -> None:
-        """Closes the connection and ends its thread; calls of other threads that wait fail with NoConnection."""
+        """Closes the connection and ends its thread. Waiting calls in other threads raise NoConnection."""
         with self._lock:
             self._end()
 
@@ -84,7 +84,7 @@ class Link:
 class _Call(Generic[T]):
     """A coroutine that the connection thread runs for another thread. start() and cancel() run on the connection thread.
 
-    An interrupt may reach the calling thread at any moment, also before it knows whether start() was scheduled.
+    The calling thread may be interrupted at any moment, even before it knows whether start() was scheduled.
     """
 
     def __init__(self, coroutine: Coroutine[Any, Any, T]) -> None:
@@ -122,7 +122,7 @@ def _end(link: aio_link.Link, loop: asyncio.AbstractEventLoop, thread: threading
     async def end() -> None:
         await link.close()
         others = asyncio.all_tasks() - {asyncio.current_task()}
-        if others:  # their callers wait for the error
+        if others:  # the callers of these tasks wait for an error
             await asyncio.wait(others)
         loop.stop()
 

@@ -1,4 +1,4 @@
-"""A private server: started for this program, and stopped with it."""
+"""A private server, which is started by this program and stops when this program ends."""
 from __future__ import annotations
 
 import collections
@@ -16,10 +16,10 @@ import numpy
 from evod.errors import Error, wrong_argument
 from evod.program import find_program
 
-_STOP_TIMEOUT_S = 30  # for the server to write its runs; then it is killed
+_STOP_TIMEOUT_S = 30  # time for the server to write its runs; after this time it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
-# A shell that starts the server and stops it when its own input is closed. The kernel closes that input when this program
-# ends, even if it is killed.
+# A shell script that starts the server, and stops it when the standard input of the shell is closed. The kernel closes this
+# input when the Python program ends, even if it is killed.
 _SUPERVISOR = (
     '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"; [ -z "$FOLDER" ] || rm -rf "$FOLDER"'
 )
@@ -33,16 +33,17 @@ def start(
     threads: int | None,
     program: str | os.PathLike[str] | None,
 ) -> Server:
-    """Starts a server with the options of evod.local(), and waits until it listens. Raises Error if it does not start."""
+    """Starts a server with the options of evod.local() and waits until it accepts connections. Raises Error if it fails."""
     command = [find_program(program), "--port", "0"]
     temporary = tempfile.mkdtemp(prefix="evod-runs-") if data is None else ""
-    # A temporary folder need not survive a power failure. It holds one world, whose speed is an option of the program.
+    # The data in a temporary folder need not survive a power failure. A new folder contains no worlds, so the speed of the
+    # single world can be set by an option of the program.
     command += ["--data", temporary, "--durability", "relaxed", "--speed", str(speed)] if data is None else ["--data", os.fspath(data)]
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
     with tempfile.TemporaryDirectory(prefix="evod-") as folder:
         if isinstance(experiment, Mapping):
-            path = os.path.join(folder, "default.json")  # the name of the file becomes the name of the world
+            path = os.path.join(folder, "default.json")  # the server gives the world the name of this file: default
             with open(path, "w", encoding="utf-8") as file:
                 json.dump(dict(experiment), file, default=_json_value)
             command += ["--experiment", path]
@@ -58,7 +59,7 @@ def _json_value(value: object) -> object:
 
 
 class Server:
-    """A running server. It ends with this program, and its temporary folder, if any, is deleted then."""
+    """A running server. It stops when this program ends. Its temporary folder, if it has one, is then deleted."""
 
     def __init__(self, command: list[str], temporary: str = "") -> None:
         self._supervisor: subprocess.Popen[str] = subprocess.Popen(
@@ -69,7 +70,7 @@ class Server:
             text=True,
             errors="replace",
             env={**os.environ, "FOLDER": temporary},
-            start_new_session=True,  # Ctrl-C at the terminal must not reach the server
+            start_new_session=True,  # so that Ctrl-C on the terminal does not stop the server
         )
         self.lines: collections.deque[str] = collections.deque(maxlen=1000)
         assert self._supervisor.stdout is not None

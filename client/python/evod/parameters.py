@@ -1,4 +1,4 @@
-"""Parameters: their descriptions in the registry, their values in a world, and the checks before a value is sent."""
+"""Parameters: the descriptions in the registry, the values in a world, and the checks of values before they are sent."""
 from __future__ import annotations
 
 import dataclasses
@@ -33,17 +33,17 @@ class Description:
 
     name: str
     kind: str  #: "real", "count", "flag" or "choice"
-    unit: str  #: "px", "s", "chance", …; "" for none
-    min: float  #: smallest value allowed, for the kinds "real" and "count"
-    max: float  #: largest value allowed
-    choices: tuple[str, ...]  #: values allowed, for the kind "choice"
+    unit: str  #: "px", "s", "chance", …; "" if the parameter has no unit
+    min: float  #: smallest allowed value, for the kinds "real" and "count"
+    max: float  #: largest allowed value, for the kinds "real" and "count"
+    choices: tuple[str, ...]  #: allowed values, for the kind "choice"
     default: Value
     effect: str  #: when a change takes effect: "next tick", "next generation" or "reset"
     help: str  #: one sentence about its meaning
 
     @property
     def allowed(self) -> str:
-        """The values allowed, in words: "0 to 1", "a whole number, 1 to 4096", "true or false", "ring, none"."""
+        """The allowed values in words: "0 to 1", "a whole number, 1 to 4096", "true or false", "ring, none"."""
         if self.kind == "real":
             return f"{number_text(self.min)} to {number_text(self.max)}"
         if self.kind == "count":
@@ -51,13 +51,13 @@ class Description:
         return "true or false" if self.kind == "flag" else ", ".join(self.choices)
 
     def got(self, value: object) -> str:
-        """A refused value in words: as the server writes it if the type is right, otherwise as Python does."""
+        """Formats a refused value for an error message: as the server does if the type is right, otherwise as Python does."""
         kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
         right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
         return text_of(value) if right_kind else repr(value)
 
     def message(self, value: object) -> world_pb2.ParameterValue | None:
-        """The message to send for a value; None if the value is not allowed."""
+        """Converts a value to the message to send; returns None if the value is not allowed."""
         if self.kind == "choice":
             return world_pb2.ParameterValue(choice=value) if isinstance(value, str) and value in self.choices else None
         is_flag = isinstance(value, (bool, numpy.bool_))
@@ -80,17 +80,17 @@ class Parameter(Description):
     """A parameter of a world: its description and its value."""
 
     value: Value  #: the current value
-    pending: Value | None  #: the value from the next generation or reset on; None if it does not change
+    pending: Value | None  #: the value that takes effect at the next generation or reset; None if none is pending
 
 
 @dataclasses.dataclass(frozen=True)
 class Actor:
-    """The cause of an event or a command. Clients with the role viewer receive kind and user only."""
+    """The cause of an event or a command. Clients with the role viewer receive only `kind` and `user`."""
 
     kind: str  #: "client", "schedule", "goal" or "server"
-    user: str  #: the user of the client's token; "" without a token
+    user: str  #: the user to whom the client's token belongs; "" without a token
     client: str  #: the name of the client program
-    address: str  #: "127.0.0.1:51234"
+    address: str  #: the client's address: "127.0.0.1:51234"
 
     @classmethod
     def of(cls, message: world_pb2.Actor) -> Actor:
@@ -101,11 +101,11 @@ class Actor:
 
 @dataclasses.dataclass(frozen=True)
 class PlannedChange:
-    """A planned change of parameters. When it is due the server checks it again, and applies all of it or drops it."""
+    """A planned change of parameters. When it is due, the server checks it again and applies it completely or drops it."""
 
     id: int  #: 0 for a dry run
-    generation: int | None  #: due at the first tick of this generation; or None
-    tick: int | None  #: due after this tick of the run; or None
+    generation: int | None  #: the change is due at the first tick of this generation; None if `tick` is set
+    tick: int | None  #: the change is due after this tick, counted from the beginning of the run; None if `generation` is set
     values: Mapping[str, Value]  #: by parameter name
     by: Actor  #: the client that planned it
 
@@ -151,9 +151,9 @@ class Registry(Mapping[str, Description]):
         return len(self._descriptions)
 
     def assignments(self, values: Mapping[str, object], field_prefix: str) -> list[world_pb2.ParameterAssignment]:
-        """The messages to send for values by name.
+        """Converts a mapping of names to values into the messages to send.
 
-        Raises Error with every value that is not allowed, in the words of the server.
+        Raises Error with every value that is not allowed, in the same words as the server.
         """
         made, violations = [], []
         for name, value in values.items():
@@ -173,9 +173,10 @@ class Registry(Mapping[str, Description]):
     def planned(
         self, values: Mapping[str, object], field_prefix: str
     ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
-        """The messages to send for values, or schedules of values by generation, by name.
+        """Converts a mapping of names to values, or to schedules of values by generation, into the messages to send.
 
-        Returns those of generation 1 and those of later generations. Raises Error with every value that is not allowed.
+        Returns the values for generation 1 and the values for later generations. Raises Error with every value that is not
+        allowed.
         """
         first: dict[str, object] = {}
         later, violations = [], []
@@ -224,7 +225,9 @@ class Registry(Mapping[str, Description]):
 
 
 class Parameters(Mapping[str, Parameter]):
-    """The parameters of a world at one moment: values as attributes, `Parameter` objects by name.
+    """The parameters of a world at one moment.
+
+    The attributes are the values. Indexing with the name of a parameter returns a `Parameter` object.
 
     Examples
     --------
@@ -251,23 +254,23 @@ class Parameters(Mapping[str, Parameter]):
 
     @property
     def schedule(self) -> Mapping[int, Mapping[str, Value]]:
-        """The experiment's schedule: for each later generation the values that take effect at its first tick.
+        """The schedule of the experiment. It maps each later generation to the values that take effect at its first tick.
 
-        Only the result of get_parameters() contains it.
+        Only the result of get_parameters() contains the schedule.
         """
         return self._schedule
 
     @property
     def planned(self) -> tuple[PlannedChange, ...]:
-        """The planned changes that are not due yet, in order of ids.
+        """The planned changes that are not due yet, in the order of their ids.
 
-        Only the results of get_parameters(), and of set() with at_generation or at_tick, contain them.
+        Only the results of get_parameters(), and of set() with at_generation or at_tick, contain planned changes.
         """
         return self._planned
 
     @property
     def change(self) -> PlannedChange | None:
-        """The change planned by this call of World.set(); None without at_generation and at_tick."""
+        """The change that this call of World.set() planned; None without at_generation and at_tick."""
         return self._change
 
     @property
@@ -310,13 +313,13 @@ class Parameters(Mapping[str, Parameter]):
 
 
 def value_of(message: world_pb2.ParameterValue) -> Value:
-    """The Python value of a message."""
+    """Converts a message to a Python value."""
     value: Value = getattr(message, message.WhichOneof("kind") or "real")
     return value
 
 
 def text_of(value: object) -> str:
-    """A value as the server writes it."""
+    """Formats a value in the same way as the server."""
     if isinstance(value, (bool, numpy.bool_)):
         return "true" if value else "false"
     if isinstance(value, (float, numpy.floating)):
@@ -325,7 +328,7 @@ def text_of(value: object) -> str:
 
 
 def number_text(number: float) -> str:
-    """Formats a number with the fewest digits that read back exactly.
+    """Formats a number with as few digits as possible, so that parsing the text returns exactly the same number.
 
     >>> number_text(1.0), number_text(0.001), number_text(5e5)
     ('1', '0.001', '5e+05')

@@ -1,7 +1,7 @@
-"""Plans: the operations of a client that take several requests, without any I/O.
+"""Plans: operations of a client that may consist of several requests. This module does no I/O.
 
-A plan is a generator. It yields a request and receives the response, or it yields Until and is resumed once the condition
-holds; its return value is the result of the operation. Link.perform() (aio/link.py) carries it out.
+A plan is a generator. It yields a request and receives the response. Or it yields an Until, and continues when the condition
+is true. Its return value is the result of the operation. Link.perform() (aio/link.py) executes plans.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ M = TypeVar("M", bound=google.protobuf.message.Message)
 
 @dataclasses.dataclass(frozen=True)
 class Until:
-    """Wait until the condition holds: for at most the timeout of an answer, or as long as the server can be reached."""
+    """Waits until a condition is true: at most for the timeout of an answer, or for as long as the server can be reached."""
 
     condition: Callable[[], object]
     within_timeout: bool = False
@@ -65,29 +65,29 @@ def execute(message: c.Request) -> Plan[c.Response]:
 
 
 def request(kind: str, /, **fields: Any) -> Plan[c.Response]:
-    """Sends a request by its field in evod.v1.Request. Raises Error for values of a wrong type, or if the server refuses."""
+    """Sends a request. `kind` is its field in evod.v1.Request. Raises Error for a wrong type, or if the server refuses."""
     message = build(type(getattr(c.Request(), kind)), f"{kind}.", **fields)
     return (yield from execute(c.Request(**{kind: message})))
 
 
 def request_world(kind: str, /, **fields: Any) -> Plan[world_pb2.WorldInfo]:
-    """The same for requests that the server answers with the state of a world."""
+    """Sends a request that the server answers with the state of a world, and returns this state."""
     return (yield from request(kind, **fields)).world
 
 
 class LabPlans:
-    """The plans that need the core, the parameter registry or the speed of new worlds; one object for each connection."""
+    """Plans that need the core, the parameter registry or the speed of new worlds. Each connection has one LabPlans."""
 
     def __init__(self, core: Core) -> None:
         self.core = core
         self._registry: Registry | None = None
-        self._registry_instance = ""  # instance_id of the server that sent it
+        self._registry_instance = ""  # instance_id of the server that sent the registry
         self.speed_of_new_worlds: float | str | None = None  # None: real time
 
     # ---- the server -------------------------------------------------------------------------------------------------
 
     def registry(self) -> Plan[Registry]:
-        """The parameter registry, requested once for each server process."""
+        """Returns the parameter registry. Requests it once for each server process."""
         instance = self.core.welcome.instance_id if self.core.welcome else ""
         if self._registry is None or self._registry_instance != instance:
             description = (yield from request("describe")).description
@@ -95,7 +95,7 @@ class LabPlans:
         return self._registry
 
     def world_name(self, name: str | None) -> Plan[str]:
-        """Checks that the world exists. Without a name: the only world, or "default"."""
+        """Checks that a world exists and returns its name. Default: the only world, or "default" if there are several."""
         known = [info.name for info in (yield from worlds())]
         if name is None:
             name = known[0] if len(known) == 1 else "default"
@@ -106,7 +106,7 @@ class LabPlans:
     # ---- parameters -------------------------------------------------------------------------------------------------
 
     def parameters(self, world: str) -> Plan[Parameters]:
-        """All parameters of a world."""
+        """Returns all parameters of a world."""
         registry = yield from self.registry()
         return Parameters(registry, (yield from request("get_parameters", world=world)).parameters)
 
@@ -119,7 +119,7 @@ class LabPlans:
         at_generation: int | None = None,
         at_tick: int | None = None,
     ) -> Plan[Parameters]:
-        """Sets or plans values. Raises Error for values out of range before anything is sent."""
+        """Sets values now or plans the change. If a value is out of range, raises Error before a request is sent."""
         registry = yield from self.registry()
         if at_generation is not None or at_tick is not None:
             self._require_planned_changes()
@@ -138,7 +138,7 @@ class LabPlans:
         return Parameters(registry, (yield from request("get_parameters", world=world)).parameters, change)
 
     def cancel_change(self, world: str, change: int | PlannedChange) -> Plan[PlannedChange]:
-        """Cancels a planned change, given as such or by its id."""
+        """Cancels a planned change. `change` is the change or its id."""
         yield from self.registry()
         self._require_planned_changes()
         identity = change.id if isinstance(change, PlannedChange) else change
@@ -146,7 +146,7 @@ class LabPlans:
         return PlannedChange.of(response.planned_change)
 
     def _require_planned_changes(self) -> None:
-        """A server without the feature would ignore at_generation and change the parameters at once."""
+        """Raises Error if the server does not support planned changes, because it would apply them immediately."""
         welcome = self.core.welcome
         if welcome is not None and "planned_changes" not in welcome.features:
             raise Error(f"the server, evod {welcome.server_version}, does not support planned changes: update it", c.CODE_UNIMPLEMENTED)
@@ -182,14 +182,14 @@ class LabPlans:
     # ---- subscriptions ----------------------------------------------------------------------------------------------
 
     def subscribe_events(self, world: str | None) -> Plan[Subscription]:
-        """Subscribes to the events of a world, or of all."""
+        """Subscribes to the events of a world, or of all worlds."""
         request = c.Request(subscribe_events=c.SubscribeEvents(world=world))
         return (yield from self._subscribe(request))
 
     def subscribe_snapshots(
         self, world: str, island: int | None, rate_hz: float, view: c.View | None
     ) -> Plan[Subscription]:
-        """Subscribes to snapshots, with the best codec and compression that this machine can decode."""
+        """Subscribes to snapshots. Requests the best codec and compression that this client can decode."""
         snapshots = build(
             c.SubscribeSnapshots,
             "subscribe_snapshots.",
@@ -212,10 +212,11 @@ class LabPlans:
         return subscription
 
     def run(self, world: str, generations: int | None) -> Plan[GenerationStream]:
-        """Runs a world; subscribes first, so that no generation is missed."""
+        """Runs a world. Subscribes to its events before, so that no generation is missed."""
         stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
         try:
-            # A waiting world is at the end of a generation whose event was sent earlier: begin with the next one.
+            # A waiting world is at the end of a generation. The event for this generation was sent earlier, so the stream
+            # begins with the next generation.
             last = (yield from request("get_statistics", world=world)).statistics.last
             info = yield from request_world("run", world=world, generations=generations)
         except BaseException:
@@ -225,7 +226,7 @@ class LabPlans:
         return stream
 
     def wait(self, world: str) -> Plan[world_pb2.WorldInfo]:
-        """Waits until the world no longer runs."""
+        """Waits until the world is not running any more."""
         subscription = yield from self.subscribe_events(world)
         try:
             while True:
@@ -240,14 +241,14 @@ class LabPlans:
             self.core.unsubscribe(subscription)
 
     def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
-        """Runs some ticks and waits for the last."""
+        """Runs a number of ticks and waits for the last one."""
         ticks = build(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
         tick = (yield from world_info(world)).tick + ticks
         yield from request("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
     def snapshot(self, world: str, island: int) -> Plan[Snapshot]:
-        """The current state of an island: the first snapshot of a short subscription."""
+        """Returns the current state of an island. Subscribes to snapshots and ends the subscription after the first one."""
         stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
         try:
             return (yield from stream.next())
@@ -259,7 +260,7 @@ class LabPlans:
 
 
 class EventStream:
-    """Events as they arrive."""
+    """The events of a subscription, in the order in which they arrive."""
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
@@ -274,14 +275,14 @@ class EventStream:
 
 
 class SnapshotStream:
-    """Snapshots as they arrive. Taking one acknowledges the one before."""
+    """The snapshots of a subscription, in the order in which they arrive. next() acknowledges the snapshot returned before."""
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
-        self._taken: tuple[int, Snapshot] | None = None  # session number and snapshot
+        self._taken: tuple[int, Snapshot] | None = None  # the last returned snapshot, and the number of its session
 
     def next(self) -> Plan[Snapshot]:
-        """Acknowledges the snapshot taken before, and waits for the next one."""
+        """Acknowledges the snapshot returned before, and waits for the next one."""
         subscription = self._subscription
         if self._taken is not None:
             session, taken = self._taken
@@ -296,14 +297,14 @@ class SnapshotStream:
         return snapshot
 
     def set_view(self, view: c.View) -> Plan[None]:
-        """Changes the view, in this session and later ones."""
+        """Changes the view in this session and in later sessions."""
         subscription_id = yield from self._server_id()
         yield from request("set_view", subscription_id=subscription_id, view=view)
-        # Later sessions request the new view, but only once the server has accepted it.
+        # The server has accepted the new view, so later sessions request it too.
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
 
     def _server_id(self) -> Plan[int]:
-        """Waits for the id of the subscription in this session."""
+        """Waits until the server has accepted the subscription in this session, and returns its id."""
         subscription = self._subscription
         yield Until(lambda: subscription.server_id is not None or subscription.refused)
         if subscription.server_id is None:
@@ -312,7 +313,7 @@ class SnapshotStream:
 
     @property
     def rate_hz(self) -> float:
-        """The rate that the server granted."""
+        """The snapshots per second that the server granted."""
         return self._subscription.rate_hz
 
     def request_keyframe(self) -> Plan[None]:
@@ -326,27 +327,27 @@ class SnapshotStream:
 
 
 class GenerationStream:
-    """The generations of a run as they end, each once.
+    """The generations of a run. Each is returned once, when it has ended.
 
-    Events deliver them. Generations whose events were dropped, or missed while reconnecting, come from the history.
+    The data come from events. If an event was dropped, or missed during a reconnect, the data come from the history.
     """
 
     def __init__(self, core: Core, world: str, subscription: Subscription) -> None:
         self._core, self._world, self._subscription = core, world, subscription
         self.info = world_pb2.WorldInfo()  # the state of the world when the run began
         self._next = 0  # number of the next generation to return
-        self._goal: int | None = None  # the first generation beyond the run
-        self._ready: list[Generation] = []  # generations that next() returns before it takes another event
-        self._began = False  # the event caused by this Run has arrived; events before it belong to earlier commands
-        self._over = False  # the run has ended; only _ready is left
+        self._goal: int | None = None  # the first generation after the run; None: the run has no end
+        self._ready: list[Generation] = []  # generations that next() returns before it processes another event
+        self._began = False  # whether the event caused by this Run has arrived; earlier events belong to earlier commands
+        self._over = False  # whether the run has ended; next() then returns only the generations in _ready
 
     def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
-        """Call with the answer to Run, and the number of the first generation to return."""
+        """Call it with the server's answer to Run and the number of the first generation to return."""
         self.info, self._next = info, first
         self._goal = _goal_of(info)
 
     def next(self) -> Plan[Generation | None]:
-        """Waits for the next generation; None after the last."""
+        """Waits for the next generation and returns it; returns None after the last generation."""
         while True:
             if self._ready:
                 generation = self._ready.pop(0)
@@ -384,7 +385,7 @@ class GenerationStream:
             raise self._close_with_error(kind.removeprefix("world_"))
 
     def _catch_up(self) -> Plan[None]:
-        """After missed events: queries the state of the world and the generations that have ended."""
+        """Requests the state of the world and the ended generations, after events were missed."""
         try:
             info = yield from world_info(self._world)
         except Error as error:
@@ -403,7 +404,7 @@ class GenerationStream:
             self._goal = goal
 
     def _fill(self, last: int | None = None) -> Plan[None]:
-        """Queues the generations that have ended, up to `last` and to the goal."""
+        """Adds ended generations to _ready, up to `last`, but not beyond the goal."""
         first = max(self._next, self._ready[-1].number + 1 if self._ready else 0)
         if last is None or first <= last:
             ended = yield from history(self._world, first, last, None)
@@ -414,13 +415,13 @@ class GenerationStream:
         return Error(f"the world '{self._world}' was {how} while it ran", c.CODE_NOT_FOUND)
 
     def close(self) -> None:
-        """Ends the subscription; next() returns None from then on."""
+        """Ends the subscription. Afterwards next() returns None."""
         self._over = True
         self._core.unsubscribe(self._subscription)
 
 
 def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
-    """Waits for an event. Raises Error if the server refused the subscription in a later session."""
+    """Waits for an event. Raises Error if the server refused the subscription after a reconnect."""
     yield Until(lambda: subscription.has_event or subscription.refused)
     event = subscription.take_event()
     if event is None:
@@ -429,12 +430,12 @@ def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
 
 
 def _goal_of(info: world_pb2.WorldInfo) -> int | None:
-    """The first generation beyond the run; None if the world runs until it is paused."""
+    """Returns the first generation after the run; None if the world runs until it is paused."""
     return info.run_until_generation if info.HasField("run_until_generation") else None
 
 
 def close_replay(world: str) -> Plan[None]:
-    """Closes a replay; it is no error if it has already ended with its session."""
+    """Closes a replay. Does nothing if the replay has already ended with its session."""
     try:
         yield from request("close_replay", world=world)
     except Error as error:
@@ -446,18 +447,18 @@ def close_replay(world: str) -> Plan[None]:
 
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
-    """The state of all worlds."""
+    """Returns the state of all worlds."""
     known: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
     return known
 
 
 def world_info(world: str) -> Plan[world_pb2.WorldInfo]:
-    """The state of a world or replay: ListWorlds does not contain replays."""
+    """Returns the state of a world or replay. The request ListWorlds would not return replays."""
     return (yield from request("get_statistics", world=world)).statistics.world
 
 
 def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
-    """Generations that have ended, requested part by part."""
+    """Requests the ended generations in several parts and returns them."""
     rows: list[world_pb2.GenerationStatistics] = []
     while True:
         response = yield from request("get_history", world=world, first_generation=first, last_generation=last, island=island)
@@ -469,12 +470,12 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
 
 
 def population(world: str, island: int) -> Plan[Population]:
-    """The population of an island, requested part by part; all parts are of the same generation."""
+    """Requests the population of an island in several parts and returns it. All parts belong to the same generation."""
     parts: list[c.Population] = []
     first = 0
     while True:
         part = (yield from request("get_population", world=world, island=island, first_organism=first)).population
-        if parts and part.generation != parts[-1].generation:  # the next generation has begun: start again
+        if parts and part.generation != parts[-1].generation:  # the next generation has begun: request all parts again
             parts, first = [], 0
             continue
         parts.append(part)
@@ -486,7 +487,7 @@ def population(world: str, island: int) -> Plan[Population]:
 def export(
     world: str, table: str, text_format: str, generation: int | None, of: tuple[int, int, int] | None
 ) -> Plan[str]:
-    """A table as text, requested part by part."""
+    """Requests a table in several parts and returns it as text."""
     organism = None
     if of is not None:
         organism = build(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
@@ -510,7 +511,7 @@ def export(
 
 
 def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
-    """Builds a message; fields that are None stay unset. Raises Error with every field whose value has a wrong type."""
+    """Creates a message. Fields that are None stay unset. Raises Error with every field whose value has a wrong type."""
     try:
         whole: M = message(**fields)
         return whole
@@ -526,7 +527,7 @@ def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
 
 
 def speed_message(speed: float | str) -> world_pb2.Speed:
-    """A speed as sent: a factor of real time, or "max"."""
+    """Converts a speed to the message to send. The speed is a factor of real time, or "max"."""
     if speed == "max":
         return world_pb2.Speed(max=True)
     if isinstance(speed, str):
@@ -535,14 +536,14 @@ def speed_message(speed: float | str) -> world_pb2.Speed:
 
 
 def moment_message(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
-    """A moment of a run as sent."""
+    """Converts a moment of a run to the message to send."""
     return build(c.RunMoment, field_prefix, generation=generation, tick=tick)
 
 
 def view_message(
     region: tuple[float, float, float, float] | None, detail: str | None, bytes_per_s_max: int | None
 ) -> c.View | None:
-    """A view as sent; None if no argument is given: then snapshots are not tiled."""
+    """Converts a view to the message to send; returns None if no argument is given: snapshots then have no tiles."""
     if region is None and detail is None and bytes_per_s_max is None:
         return None
     part = None

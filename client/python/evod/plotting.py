@@ -1,6 +1,6 @@
-"""Plots of islands and runs. Every function draws into the matplotlib axes given, or into new ones, and returns them.
+"""Plots of islands and runs. Every function draws into the given matplotlib axes, or into new axes, and returns the axes.
 
-matplotlib is imported on first use: the package works without it.
+matplotlib is imported on first use, because the rest of the package works without it.
 """
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from evod.generations import ACCOUNT_PARTS, Generation, account_part
 Array = numpy.typing.NDArray[Any]
 
 _FOOD, _POISON, _WALL, _CRATE = "#2e8b57", "#b03060", "#555555", "#b8865b"
-_HEALTH_SHOWN = 150.0  # the end of the colour scale
+_HEALTH_SHOWN = 150.0  # the health at the end of the colour scale
 
 
 def pyplot() -> Any:
-    """The module matplotlib.pyplot. Raises Error if matplotlib is not installed."""
+    """Returns the module matplotlib.pyplot. Raises Error if matplotlib is not installed."""
     try:
         from matplotlib import pyplot as module
     except ImportError:
@@ -57,7 +57,7 @@ class _Boxes(_Items, Protocol):
 
 
 class Island(Protocol):
-    """The part of Snapshot that is plotted. evod.snapshots imports this module, so this module cannot import Snapshot."""
+    """The fields of Snapshot that are plotted. evod.snapshots imports this module, so this module cannot import Snapshot."""
 
     @property
     def world(self) -> str: ...
@@ -84,7 +84,7 @@ class Island(Protocol):
 
 
 class IslandPlot:
-    """A plot of an island, true to scale, that can be updated with later snapshots. An organism's colour is its health."""
+    """A plot of an island, true to scale, which later snapshots can update. The colour of an organism shows its health."""
 
     def __init__(self, snapshot: Island, ax: Any = None) -> None:
         width = 8.0
@@ -121,7 +121,7 @@ def plot_island(snapshot: Island, ax: Any = None) -> Any:
 
 
 def animate(snapshots: Sequence[Island], interval_ms: float) -> Any:
-    """Returns a matplotlib animation of the snapshots, which notebooks play."""
+    """Returns a matplotlib animation of the snapshots. Notebooks can play it."""
     if not snapshots:
         raise Error("there are no snapshots to animate")
     from matplotlib import animation
@@ -138,7 +138,7 @@ def animate(snapshots: Sequence[Island], interval_ms: float) -> Any:
             return str(self.to_jshtml())
 
     animated = Animation(figure, draw, frames=list(snapshots), interval=interval_ms, init_func=lambda: plot.artists)
-    pyplot().close(figure)  # otherwise notebooks also show its first frame as an image
+    pyplot().close(figure)  # otherwise notebooks also show the first frame as an image
     return animated
 
 
@@ -154,7 +154,7 @@ def _discs(ax: Any, **options: Any) -> Any:
 
 def _place(discs: Any, x: Array, y: Array, radius: Array) -> None:
     discs.set_offsets(numpy.stack((x, y), axis=1))
-    # EllipseCollection has no setter for sizes; these attributes are half of the widths and heights.
+    # EllipseCollection has no function to set sizes. These attributes contain half of the widths and heights.
     discs._widths, discs._heights, discs._angles = radius, radius, numpy.zeros(len(radius))
 
 
@@ -168,7 +168,7 @@ def _boxes(ax: Any, color: str) -> Any:
 
 
 def statistics_columns(generations: Sequence[Generation], gene_names: Sequence[str]) -> dict[str, Array]:
-    """The statistics as columns with the names of the table "generations", a row for each generation and island."""
+    """Converts statistics to columns with the names used in the table "generations", one row per generation and island."""
     rows = [island for g in generations for island in g.islands]
     columns = {
         name: numpy.array([getattr(row, name) for row in rows], float)
@@ -183,7 +183,7 @@ def statistics_columns(generations: Sequence[Generation], gene_names: Sequence[s
 
 
 def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
-    """Plots the best and the mean fitness over all islands, and a band of one standard deviation around the mean."""
+    """Plots the best and the mean fitness over all islands. A band around the mean shows one standard deviation."""
     ax = _axes(ax)
     generation, best = _by_generation(columns, "fitness_best", numpy.maximum)
     _, mean, deviation = _spread(columns, "fitness")
@@ -197,7 +197,7 @@ def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
 
 
 def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = None) -> Any:
-    """Plots the mean of every gene over all islands, and a band of one standard deviation around it."""
+    """Plots the mean of each gene over all islands. A band around the mean shows one standard deviation."""
     ax = _axes(ax)
     for gene in gene_names:
         generation, mean, deviation = _spread(columns, gene)
@@ -210,7 +210,7 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
 
 
 def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: str, ax: Any = None) -> Any:
-    """Plots what moved the mean of one gene in each generation: selection, transmission, migration, and their sum, the change."""
+    """Plots how selection, transmission and migration changed the mean of a gene in each generation, and the total change."""
     if gene not in gene_names:
         raise Error(f"gene: got {gene!r}, allowed {', '.join(gene_names)}")
     ax = _axes(ax)
@@ -229,9 +229,9 @@ def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: 
 
 
 def plot_lineage(lineage: Any, ax: Any = None) -> Any:
-    """Plots a table of RunFile.lineage(): a point for each organism, coloured by fitness, and a line to each parent.
+    """Plots a table from RunFile.lineage(). Each organism is a point, coloured by fitness, with lines to its parents.
 
-    Islands are placed side by side.
+    Islands are drawn side by side.
     """
     ax = _axes(ax, figsize=(8, 6))
     from matplotlib.collections import LineCollection
@@ -261,7 +261,7 @@ def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Ar
 
 
 def _spread(columns: Mapping[str, Any], name: str) -> tuple[Array, Array, Array]:
-    """Arrays of generation numbers, means and standard deviations, over the organisms of all islands."""
+    """Returns arrays of generation numbers, means and standard deviations. They combine the organisms of all islands."""
     count = numpy.asarray(columns["organism_count"], float)
     mean, deviation = (numpy.asarray(columns[f"{name}_{what}"], float) for what in ("mean", "deviation"))
     sums = {"count": count, "sum": count * mean, "square": count * (deviation**2 + mean**2)}

@@ -8,7 +8,7 @@ from evod.errors import Error
 
 
 def find_program(program: str | os.PathLike[str] | None) -> str:
-    """Path of the program given, or of the one that the environment variable EVOD names, or of evod on the path."""
+    """Returns `program`, or else the path in the environment variable EVOD, or else the path of the evod found in PATH."""
     name = os.fspath(program) if program is not None else os.environ.get("EVOD") or "evod"
     found = shutil.which(name)
     if found is None:

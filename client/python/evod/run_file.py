@@ -1,4 +1,4 @@
-"""Run files as pandas tables and numpy arrays, without a server (docs/RUN_FILE.md)."""
+"""Reads run files as pandas tables and numpy arrays, without a server (docs/RUN_FILE.md)."""
 from __future__ import annotations
 
 import json
@@ -25,21 +25,21 @@ _CAUSES = ("alive", "starved", "poisoned")
 
 
 def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> RunFile:
-    """Opens a run file, NAME.evod, for reading only. A server may be writing to it.
+    """Opens a run file, NAME.evod, for reading only. A server may write to it at the same time.
 
     Parameters
     ----------
     path
         The run file.
     program
-        The program evod, which `RunFile.lineage` runs. Without it, the one that `evod.local` would start.
+        Path of the program evod, which `RunFile.lineage` runs. By default the program that `evod.local` would start.
 
     Raises
     ------
     Error
-        There is no such file.
+        The file does not exist.
     DamagedData
-        The file is no run file, or is damaged.
+        The file is not a run file, or is damaged.
 
     Examples
     --------
@@ -55,15 +55,18 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
 
 
 class RunFile:
-    """A run file, made by `open_run`. Its tables have the columns of `evod export`; methods raise DamagedData for damage."""
+    """An open run file, returned by `open_run`. Its tables have the same columns as those of `evod export`.
+
+    All methods raise DamagedData if the file is damaged.
+    """
 
     def __init__(self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> None:
         self.path = pathlib.Path(path)
         self._program = program
         if not self.path.is_file():
             raise Error(f"there is no run file {self.path}")
-        # SQLite creates its shared memory file beside the run file. In a read-only folder it cannot, and no server can be
-        # writing: `immutable` makes SQLite read without it.
+        # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can write to
+        # a run file in such a folder, so the option `immutable` lets SQLite read without the shared memory file.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"
         if not os.access(self.path.resolve().parent, os.W_OK):
             address += "&immutable=1"
@@ -71,10 +74,10 @@ class RunFile:
         self._database.execute("PRAGMA trusted_schema = OFF")
         foreign: tuple[Any, ...] | None = None
         try:
-            # A view with the name of a table could run an endless query.
+            # A damaged or malicious file could contain a view in place of a table, with a query that never ends.
             foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"), None)
             if foreign:
-                raise DamagedData("")  # the handler below names it
+                raise DamagedData("")  # the handler below adds the name of the file
             self.about: Mapping[str, str] = {key: value for key, value in self._rows("SELECT key, value FROM run")}
             self.name, self.run_id = self.about["name"], self.about["run_id"]
             self.seed = int(self.about["seed"])
@@ -105,18 +108,18 @@ class RunFile:
 
     @property
     def first_generation(self) -> int:
-        """The first generation in the file: 1, or that at which the run was forked."""
+        """The first generation in the file: 1, or the generation at which the run was forked."""
         return int(self.about["first_generation"])
 
     @property
     def last_generation(self) -> int:
-        """The last generation that has begun; it may not have ended."""
+        """The last generation that has begun. It may not have ended yet."""
         ((last,),) = self._rows("SELECT max(generation) FROM generation")
         return int(last or 0)
 
     @property
     def retained_generations(self) -> list[int]:
-        """The generations whose organisms are in the file; the others were purged by the retention rule of the run."""
+        """The generations whose organisms are in the file. The retention rule of the run has purged all other generations."""
         return [row[0] for row in self._rows("SELECT DISTINCT generation FROM population ORDER BY generation")]
 
     def parameters_of(self, generation: int) -> dict[str, Any]:
@@ -135,11 +138,11 @@ class RunFile:
     # ---- tables ----------------------------------------------------------------------------------------------------
 
     def generations(self) -> Any:
-        """The statistics: a DataFrame with a row for each island and generation that has ended."""
+        """Returns the statistics of all ended generations as a DataFrame, with one row per generation and island."""
         accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
         if list(self._rows("SELECT 1 FROM sqlite_schema WHERE name = 'selection_account'")):
             columns, join = accounts, "LEFT JOIN selection_account USING (generation, island)"
-        else:  # a file of format 3 or older
+        else:  # the file has format 3 or older
             columns, join = [f"NULL AS {name}" for name in accounts], ""
         cursor = self._execute(
             f"SELECT statistics.*, {', '.join(columns)} FROM statistics {join} ORDER BY generation, island"
@@ -149,7 +152,7 @@ class RunFile:
         return table.astype({name: float for name in accounts})
 
     def organisms(self) -> Any:
-        """Origin, parents, genes, fitness and fate of each organism of the retained generations, as a DataFrame."""
+        """Returns all organisms of the retained generations as a DataFrame: origin, parents, genes, fitness and fate."""
         simulated_s = {
             (generation, island): seconds
             for generation, island, seconds in self._rows("SELECT generation, island, simulated_s FROM statistics")
@@ -184,7 +187,7 @@ class RunFile:
         return pandas().concat(parts, ignore_index=True)
 
     def population(self, generation: int | None = None) -> Any:
-        """The genes of a generation as a DataFrame; without a number, of the last that has begun."""
+        """Returns the genes of a generation as a DataFrame; by default, of the last generation that has begun."""
         parts = []
         for island, genes in enumerate(self.genes(generation)):
             columns = dict(zip(GENE_NAMES, genes.T))
@@ -192,12 +195,12 @@ class RunFile:
         return pandas().concat(parts, ignore_index=True)
 
     def genes(self, generation: int | None = None) -> list[numpy.typing.NDArray[numpy.float32]]:
-        """The same as arrays, which `Lab.create_world` takes as `population`.
+        """Returns the genes of a generation as arrays, for the argument `population` of `Lab.create_world`.
 
         Returns
         -------
         list of numpy.ndarray
-            For each island an array of shape (population_size, 6), columns in the order of `evod.GENE_NAMES`.
+            One array for each island, with shape (population_size, 6) and columns in the order of `evod.GENE_NAMES`.
 
         Examples
         --------
@@ -219,7 +222,7 @@ class RunFile:
         return islands
 
     def events(self) -> Any:
-        """The journal as a DataFrame: the commands that were applied, each request as JSON."""
+        """Returns the journal as a DataFrame: the applied commands, with each request as JSON."""
         rows = []
         for number, tick, client, data in self._rows("SELECT number, tick, client, request FROM journal ORDER BY number"):
             try:
@@ -235,14 +238,14 @@ class RunFile:
         return pandas().DataFrame(rows, columns=names)
 
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:
-        """The parents of every organism, across islands, as a DataFrame; newest first.
+        """Returns the parents of every organism on all islands as a DataFrame, the newest generation first.
 
-        Runs the program evod, which replays the run: the file does not contain migrants and purged generations.
+        Runs the program evod, which replays the run, because the file does not contain migrants and purged generations.
 
         Parameters
         ----------
         of
-            Only the ancestors of one organism, given as (generation, island, id).
+            An organism as (generation, island, id). If it is given, the table contains only the ancestors of this organism.
         """
         which = [] if of is None else ["--of", ":".join(map(str, of))]
         command = [find_program(self._program), "export", str(self.path), "--what", "lineage", *which]
@@ -258,15 +261,15 @@ class RunFile:
         return plotting.plot_fitness(self.generations(), ax)
 
     def plot_genes(self, ax: Any = None) -> Any:
-        """Plots mean and spread of each gene; returns the axes."""
+        """Plots the mean and the standard deviation of each gene; returns the axes."""
         return plotting.plot_genes(self.generations(), GENE_NAMES, ax)
 
     def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Plots what moved the mean of a gene in each generation: selection, transmission, migration, and their sum."""
+        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
         return plotting.plot_selection(self.generations(), GENE_NAMES, gene, ax)
 
     def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
-        """Plots the lineage; with `of` only the ancestors of one organism, given as (generation, island, id)."""
+        """Plots the table that `lineage` returns for the same argument `of`; returns the axes."""
         return plotting.plot_lineage(self.lineage(of), ax)
 
     # ---- private --------------------------------------------------------------------------------------------------
@@ -310,7 +313,7 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
 
 
 def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: bytes) -> dict[str, Any]:
-    """The columns of a population that are known when its generation begins."""
+    """Returns those columns of a population that are known when its generation begins."""
     chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)
     if parents:
         first, second = _array(parents, "<u4", 2 * count).reshape(count, 2).T.astype(float)

@@ -14,10 +14,10 @@ from evod.v1 import stream_pb2, world_pb2
 
 try:
     import zstandard
-except ImportError:  # then snapshots are requested uncompressed
+except ImportError:  # without zstandard, the client requests uncompressed snapshots
     zstandard = None  # type: ignore[assignment]
 
-Content = Mapping[str, Columns]  # by kind
+Content = Mapping[str, Columns]  # the columns for each kind of entity
 
 _SIZES: dict[str, tuple[str, ...]] = {
     "organisms": ("radius", "health"),
@@ -29,21 +29,21 @@ _SIZES: dict[str, tuple[str, ...]] = {
 _HAVE_IDS = frozenset(("organisms", "food", "poison"))
 _MOVE = frozenset(("organisms", "crates"))
 _COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
-_LENGTH_PX_MAX = 1e7  # of an island; evod's parameters allow less
+_LENGTH_PX_MAX = 1e7  # largest width or height of an island; the parameters of evod have lower limits
 _DENSITY_CELLS = (1, 2, 4, 8, 16)
-can_unpack = zstandard is not None  #: whether compressed snapshots can be decoded
+can_unpack = zstandard is not None  #: whether this client can decode compressed snapshots
 
 
 class SnapshotDecoder:
-    """Decodes the snapshots of one island of one subscription, in the order in which they arrive."""
+    """Decodes the snapshots for one subscription and one island, in the order in which they arrive."""
 
     def __init__(self) -> None:
         self._whole = _Deltas(_HAVE_IDS)
         self._tiles: dict[int, _Deltas] = {}
-        self._same: dict[str, Any] = {}  # the fields that deltas omit
+        self._same: dict[str, Any] = {}  # values of the fields that deltas omit
 
     def decode(self, message: stream_pb2.SnapshotFrame) -> Snapshot:
-        """Raises DamagedData. With CODEC_DELTA the next snapshot to decode is then a keyframe."""
+        """Decodes a snapshot. Raises DamagedData; with CODEC_DELTA, only a keyframe can be decoded after this error."""
         tiles: tuple[Tile, ...] = ()
         if message.codec != stream_pb2.CODEC_DELTA:
             content = _plain(message)
@@ -116,7 +116,7 @@ class SnapshotDecoder:
 
 
 class _Body:
-    """Reads a body from its beginning to its end."""
+    """Reads the fields of a body in order."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.offset = data, 0
@@ -137,7 +137,10 @@ class _Body:
             raise DamagedData("a snapshot's body has surplus bytes at its end")
 
     def count(self, bytes_each: int) -> int:
-        """A count of entities that take at least `bytes_each`. The bytes that are left limit it, and so the memory."""
+        """Reads a number of entities. Each takes at least `bytes_each` bytes.
+
+        Raises DamagedData if the rest of the body is too short for them, before memory is allocated for them.
+        """
         count = self.number("<u4")
         if count * bytes_each > len(self.data) - self.offset:
             raise DamagedData("a snapshot's body ends too early")
@@ -179,9 +182,10 @@ def _counts_of(message: Any) -> list[int]:
 
 
 def _body_of(message: Any, position_bytes: int, checked_before: bytes, bytes_max: int) -> _Body:
-    """The uncompressed body of a SnapshotFrame or a SnapshotTile, after its checksum was verified.
+    """Verifies the checksum of a SnapshotFrame or a SnapshotTile and returns its uncompressed body.
 
-    checked_before: the bytes that the checksum covers first. bytes_max: larger content raises DamagedData.
+    checked_before  the bytes before the body that the checksum also covers.
+    bytes_max       the largest allowed size of the uncompressed body; a larger one raises DamagedData.
     """
     data = message.body
     if message.compression == stream_pb2.COMPRESSION_ZSTD:
@@ -198,7 +202,7 @@ _of_thread = threading.local()
 
 
 def _unpacker() -> Any:
-    """The decompressor of this thread. Threads cannot share one, because decompressing releases the interpreter lock."""
+    """Returns this thread's decompressor. Threads cannot share one, because decompression releases the interpreter lock."""
     if zstandard is None:
         raise DamagedData("a snapshot is compressed, but the package zstandard is not installed")
     if not hasattr(_of_thread, "unpacker"):
@@ -218,7 +222,7 @@ def _unpack(data: bytes, bytes_max: int) -> bytes:
 
 
 def _plain(message: stream_pb2.SnapshotFrame) -> Content:
-    """The entities of CODEC_PLAIN, in 1/16 px as the other codecs have them."""
+    """Returns the entities in a snapshot with CODEC_PLAIN. Converts lengths to 1/16 px, the unit of the other codecs."""
     if message.codec != stream_pb2.CODEC_PLAIN:
         raise DamagedData(f"a snapshot's codec is {message.codec}, allowed: 2 and 3")
     content = {}
@@ -251,16 +255,16 @@ def _position_kind(position_bytes: int) -> str:
 
 
 class _Deltas:
-    """Decodes bodies of CODEC_DELTA: of one island of one subscription, or of one of its tiles."""
+    """Decodes bodies of CODEC_DELTA for one island, or for one tile of it, in one subscription."""
 
     def __init__(self, have_ids: frozenset[str]) -> None:
         self._have_ids = have_ids
-        self._sequence = 0  # of the base of the next delta; 0: there is none
-        self._ticks = 0  # duration of its displacements
+        self._sequence = 0  # sequence number of the baseline for the next delta; 0: there is no baseline
+        self._ticks = 0  # number of ticks over which the displacements in the baseline were measured
         self._content: Content = {}
 
     def decode(self, message: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
-        """message: a SnapshotFrame or a SnapshotTile."""
+        """Decodes a SnapshotFrame or a SnapshotTile and returns its entities."""
         base, self._sequence = self._sequence, 0
         keyframe = message.base_sequence == 0
         if not keyframe and message.base_sequence != base:
@@ -314,7 +318,7 @@ class _Deltas:
                 before = stayed["d" + field]
                 if ticks != max(self._ticks, 1):
                     before = (before.astype(numpy.int64) * ticks // max(self._ticks, 1)).astype(numpy.int32)
-                way = body.column(count) + before  # modulo 2^32, as all of it
+                way = body.column(count) + before  # all these numbers are modulo 2^32
                 stayed[field] = stayed[field] + way.view(numpy.uint32)
                 if ticks:
                     stayed["d" + field] = way
@@ -331,7 +335,7 @@ def _kind_of(field: str) -> type[numpy.generic]:
 
 
 def _merged(stayed: Mapping[str, Array], come: Mapping[str, Array], by_id: bool) -> Columns:
-    """Inserts the entities that have come by id; boxes have no ids and are appended."""
+    """Merges remaining and new entities. Sorts them by id, or appends the new ones if they have no ids, as boxes."""
     if not by_id or not len(stayed["x"]):
         return {field: numpy.concatenate((stayed[field], come[field])) for field in come}
     places = numpy.searchsorted(stayed["id"], come["id"])
@@ -371,7 +375,7 @@ def _density(body: _Body) -> Mapping[str, Array]:
 
 
 def _together(contents: Sequence[Content]) -> Content:
-    """The entities of several tiles, ids rising."""
+    """Returns the entities of several tiles, in ascending order of ids."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():
         fields = ("id", "x", "y", *sizes)

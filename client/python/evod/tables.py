@@ -1,4 +1,4 @@
-"""Tables of a run as pandas DataFrames."""
+"""Reads the tables of a run as pandas DataFrames."""
 from __future__ import annotations
 
 import io
@@ -12,7 +12,7 @@ GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radiu
 
 
 def pandas() -> Any:
-    """The module pandas. Raises Error if it is not installed."""
+    """Returns the module pandas. Raises Error if pandas is not installed."""
     try:
         import pandas as module
     except ImportError:
@@ -23,7 +23,7 @@ def pandas() -> Any:
 def read_csv(text: str) -> Any:
     """Reads a table that evod wrote as CSV.
 
-    Floats are read exactly; text columns stay text even if they look like numbers; genes are 32-bit floats.
+    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats.
     """
     kinds: dict[str, Any] = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
     kinds |= {name: numpy.float32 for name in GENE_NAMES}

@@ -1,4 +1,4 @@
-"""Connections to a server: bytes with or without TLS, keep-alive, reconnect backoff, and the causes of failures in words."""
+"""Connections to a server: TLS, TCP keepalive, reconnect backoff, and error messages for failed connections."""
 from __future__ import annotations
 
 import random
@@ -9,43 +9,43 @@ import time
 from evod.endpoint import Endpoint
 from evod.errors import DamagedData, NoConnection
 
-CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for the server's Welcome
+CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for receiving the Welcome
 READ_BYTES = 256 << 10
-_BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before the first new attempt; each failure doubles it
+_BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before reconnecting; each failed attempt doubles it
 
 
 class Backoff:
-    """Since when there has been no session, and when to connect again. Times are those of time.monotonic()."""
+    """Computes when to reconnect. Stores when the session was lost. Times are values of time.monotonic()."""
 
     def __init__(self) -> None:
-        self.down_since: float | None = time.monotonic()  # None: connected
+        self.down_since: float | None = time.monotonic()  # when the session was lost; None: connected
         self.retry_at = 0.0
         self._backoff_s = _BACKOFF_MIN_S
 
     def failed(self) -> None:
-        """The connection was lost, or an attempt to connect failed."""
+        """Call it when the connection was lost or an attempt to connect has failed."""
         now = time.monotonic()
         self.down_since = now if self.down_since is None else self.down_since
-        # The random factor keeps many clients of one server from reconnecting at the same instant.
+        # Jitter, so that the clients of a server do not all reconnect at the same moment.
         self.retry_at = now + self._backoff_s * random.uniform(0.5, 1.0)
         self._backoff_s = min(2 * self._backoff_s, _BACKOFF_MAX_S)
 
     def reset(self) -> None:
-        """The server has sent its Welcome."""
+        """Call it when the server has sent its Welcome."""
         self.down_since, self._backoff_s = None, _BACKOFF_MIN_S
 
 
 def enable_keepalive(connection: socket.socket) -> None:
-    """Lets the operating system detect a peer that vanished without closing: a cut cable, a suspended laptop."""
+    """Enables TCP keepalive, which detects a peer that disappeared without closing the connection: a suspended laptop."""
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     for option, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
-        if hasattr(socket, option):  # some systems lack them and use their own times
+        if hasattr(socket, option):  # systems without this option use their own default
             connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
 
 
 def connection_error(error: Exception, server: Endpoint) -> NoConnection | DamagedData:
-    """The error to raise to the caller for an exception of the socket, of TLS or of the decoder."""
+    """Converts an exception from the socket, from TLS or from the decoder to the error that the caller receives."""
     if isinstance(error, (NoConnection, DamagedData)):
         return error
     if isinstance(error, ConnectionRefusedError):
@@ -67,12 +67,12 @@ def connection_error(error: Exception, server: Endpoint) -> NoConnection | Damag
 
 
 def closed_by(server: Endpoint) -> NoConnection:
-    """The error for a connection that the server closed."""
+    """Returns the error for a connection that the server closed."""
     return NoConnection(f"the server at {server} closed the connection")
 
 
 class Transport:
-    """Translates between the protocol's bytes and those on the socket: through TLS, or unchanged. It has no socket itself."""
+    """Encrypts and decrypts the bytes of a connection if TLS is used; otherwise returns them unchanged. Has no socket."""
 
     def __init__(self, server: Endpoint, tls: ssl.SSLContext | None) -> None:
         self._tls: ssl.SSLObject | None = None
@@ -80,10 +80,13 @@ class Transport:
             self._received, self._to_send = ssl.MemoryBIO(), ssl.MemoryBIO()
             self._tls = tls.wrap_bio(self._received, self._to_send, server_hostname=server.host)
         self._handshake_done = False
-        self._queued = b""  # waits for the end of the handshake
+        self._queued = b""  # bytes to send after the TLS handshake
 
     def outgoing(self, data: bytes) -> bytes:
-        """The bytes to write to the socket so that the server receives `data`; empty while the TLS handshake waits."""
+        """Returns the bytes to write to the socket so that the server receives `data`.
+
+        The result is empty while the TLS handshake is waiting for bytes from the server. `data` is then sent later.
+        """
         if self._tls is None:
             return data
         self._queued += data
@@ -99,9 +102,9 @@ class Transport:
         return self._to_send.read()
 
     def incoming(self, data: bytes) -> bytes:
-        """The server's bytes out of those read from the socket. Call outgoing() afterwards: the handshake may need a reply.
+        """Decrypts bytes that were read from the socket. Call outgoing() afterwards, because the handshake may need a reply.
 
-        Raises ssl.SSLError if the handshake or the certificate is refused.
+        Raises ssl.SSLError if the handshake fails or a certificate is rejected.
         """
         if self._tls is None:
             return data

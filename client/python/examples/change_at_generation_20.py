@@ -1,4 +1,4 @@
-"""Changes a parameter in the middle of a run, and plots fitness and genes before and after.
+"""Changes a parameter in the middle of a run, and plots fitness and genes before and after the change.
 
     change_at_generation_20.py [--generations N] [--output FILE]
 """
@@ -16,7 +16,7 @@ options = parser.parse_args()
 with evod.local(seed=42) as lab:
     world = lab.world()
     world.set(selection="tournament")
-    world.run(generations=20).wait()  # then the world pauses
+    world.run(generations=20).wait()  # after generation 20 the world pauses
     world.set(poison_count=80)  # twice the default, from the next generation on
     for generation in world.run(generations=options.generations - 20):
         print(generation)

@@ -1,4 +1,4 @@
-"""Compares the methods of selection: for each the mean fitness of several runs, with a 95 % confidence band.
+"""Compares the selection methods: plots the mean fitness over several runs for each, with a 95 % confidence band.
 
     compare_selection.py [--generations N] [--seeds N] [--output FILE]
 """
@@ -15,7 +15,8 @@ parser.add_argument("--seeds", type=int, default=10)
 parser.add_argument("--output", default="compare_selection.png")
 options = parser.parse_args()
 
-# Half width of the 95 % confidence interval in standard errors: the quantile of Student's t, by its series expansion.
+# Half the width of the 95 % confidence interval in standard errors: a quantile of Student's t-distribution, computed from its
+# series expansion.
 z, runs_less_1 = 1.96, options.seeds - 1
 errors = z + (z**3 + z) / (4 * runs_less_1) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * runs_less_1**2)
 
@@ -26,7 +27,7 @@ with evod.local() as lab:
             world = lab.create_world("run", {"selection": method}, seed=seed, speed="max")
             runs.append([generation.mean for generation in world.run(options.generations)])
             world.delete()
-        fitness = numpy.array(runs)  # by seed and generation
+        fitness = numpy.array(runs)  # shape (seeds, generations)
         mean, band = fitness.mean(axis=0), errors * fitness.std(axis=0, ddof=1) / numpy.sqrt(options.seeds)
         print(f"{method}: {mean[-1]:.1f} ± {band[-1]:.1f}")
         number = numpy.arange(1, options.generations + 1)

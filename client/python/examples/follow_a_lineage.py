@@ -1,4 +1,4 @@
-"""Traces the fittest organism of a run back to the first generation: its ancestors, and the history of its genes.
+"""Traces the fittest organism of a run back to the first generation. Plots its ancestors and the history of its genes.
 
     follow_a_lineage.py [--generations N] [--output FILE]
 """
@@ -23,7 +23,7 @@ with tempfile.TemporaryDirectory() as folder:
         figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6))
         run.plot_lineage(fittest, left)
 
-# The line of first parents: each gave its child most of the genes.
+# Follows the first parent of each organism, because the child has most of its genes from this parent.
 organisms = organisms.set_index(["generation", "island", "organism"])
 line, name = [], fittest
 while True:

@@ -1,4 +1,4 @@
-"""Forks a run at a generation, and continues both with one difference: what would have happened without crossover?
+"""Forks a run at a generation and continues the fork without crossover, to compare it with the original run.
 
     fork.py [--generations N] [--output FILE]
 """
@@ -20,7 +20,7 @@ with tempfile.TemporaryDirectory() as folder, evod.local(seed=7, data=folder) as
     origin.set(selection="tournament")
     origin.run(options.generations).wait()
 
-    other = origin.fork("without_crossover", at_generation=half)  # its organisms, its seed, its parameters
+    other = origin.fork("without_crossover", at_generation=half)  # has the same organisms, seed and parameters
     other.set(crossover="none")
     other.set_speed("max")
     other.run(options.generations - half + 1).wait()

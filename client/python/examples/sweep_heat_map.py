@@ -1,4 +1,4 @@
-"""Sweeps over two parameters, and plots the mean fitness at the end as a heat map. The server runs several worlds at once.
+"""Sweeps two parameters and plots the final mean fitness as a heat map. The server runs several worlds at the same time.
 
     sweep_heat_map.py [--generations N] [--seeds N] [--steps N] [--output FILE]
 """
@@ -26,7 +26,7 @@ with evod.local() as lab:
             parameters = {"mutation_chance": chance, "mutation_step": size, "selection": "tournament"}
             worlds = [lab.create_world(f"seed-{seed}", parameters, seed=seed, speed="max")
                       for seed in range(1, options.seeds + 1)]
-            runs = [world.run(options.generations) for world in worlds]  # all worlds start
+            runs = [world.run(options.generations) for world in worlds]  # starts all worlds
             fitness[row, column] = numpy.mean([run.wait().mean for run in runs])
             for world in worlds:
                 world.delete()

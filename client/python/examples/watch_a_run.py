@@ -1,4 +1,4 @@
-"""Prints while a world runs how many organisms are alive, how far their food is, and the results of each generation.
+"""While a world runs, prints the number of living organisms, the distance to their food, and each generation's results.
 
     watch_a_run.py [HOST:PORT] [--generations N]      without an address, on a private server
 """

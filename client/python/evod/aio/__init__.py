@@ -1,4 +1,4 @@
-"""evod for asyncio: the classes and functions of evod, with coroutines in place of functions that wait for an answer.
+"""evod for asyncio: the same classes and functions as in evod. Functions that wait for an answer are coroutines here.
 
     async with evod.aio.connect("host:7744", token="…") as lab:
         world = await lab.world("default")
@@ -6,10 +6,11 @@
         async for g in world.run(generations=50):
             print(g.best, g.mean)
 
-Functions that open something, such as connect() and World.run(), work with `await`, `async with` and `async for`. The
-examples in the docstrings are for a notebook or `python3 -m asyncio`, where `await` is allowed outside of functions.
+The result of connect(), local() and similar functions works with `await` and `async with`; that of World.run() and other
+streams also with `async for`. The examples in the docstrings are for a notebook or `python3 -m asyncio`, where `await` is
+allowed outside of functions.
 
-Threads      all calls on the event loop that connect() or local() was awaited on.
+Threads      call everything on the event loop on which connect() or local() was awaited.
 """
 from evod.aio.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
 

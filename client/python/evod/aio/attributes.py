@@ -1,6 +1,6 @@
-"""What a World's parameters are as attributes: nothing here, as an attribute cannot be awaited."""
+"""The asynchronous counterpart of evod.attributes. It has no attributes, because an attribute cannot be awaited."""
 from __future__ import annotations
 
 
 class ParameterAttributes:
-    """The base class of World. It adds `parameters` to evod.World; here use World.get_parameters() and World.set()."""
+    """The empty base class of evod.aio.World. In place of evod.World.parameters use get_parameters() and set()."""

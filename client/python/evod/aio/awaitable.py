@@ -1,4 +1,4 @@
-"""Results that can be awaited, or opened by `async with`, or iterated by `async for`.
+"""Results that work with `await`, `async with` and `async for`.
 
 `await world.run()`, `async with world.run() as run` and `async for generation in world.run()` all work: World.run() is a
 coroutine function with the decorator `opens_stream`. generate_sync.py removes the decorators from the synchronous modules.
@@ -26,7 +26,7 @@ R = TypeVar("R", bound=_Stream[Any], covariant=True)
 
 
 class AwaitableContext(Generic[S]):
-    """Opens something with `await`; or with `async with`, which closes it at the end of the block."""
+    """A result that `await` opens. `async with` also opens it, and closes it at the end of the block."""
 
     def __init__(self, coroutine: Coroutine[Any, Any, S]) -> None:
         self._coroutine = coroutine
@@ -45,7 +45,7 @@ class AwaitableContext(Generic[S]):
 
 
 class AwaitableStream(AwaitableContext[R]):
-    """The same for a stream, which `async for` can also open, iterate and close."""
+    """A stream as a result: works like AwaitableContext; `async for` also opens, iterates and closes it."""
 
     async def __aiter__(self: AwaitableStream[_Stream[T]]) -> AsyncIterator[T]:
         stream = await self._coroutine
@@ -57,7 +57,7 @@ class AwaitableStream(AwaitableContext[R]):
 
 
 def opens(method: Callable[P, Coroutine[Any, Any, S]]) -> Callable[P, AwaitableContext[S]]:
-    """Lets callers use `async with` on what a coroutine function returns."""
+    """Decorator: lets callers use the result of a coroutine function with `async with`."""
 
     @functools.wraps(method)
     def open_later(*args: P.args, **kwargs: P.kwargs) -> AwaitableContext[S]:
@@ -67,7 +67,7 @@ def opens(method: Callable[P, Coroutine[Any, Any, S]]) -> Callable[P, AwaitableC
 
 
 def opens_stream(method: Callable[P, Coroutine[Any, Any, R]]) -> Callable[P, AwaitableStream[R]]:
-    """Lets callers use `async with` and `async for` on what a coroutine function returns."""
+    """Decorator: lets callers use the result of a coroutine function with `async with` and `async for`."""
 
     @functools.wraps(method)
     def open_later(*args: P.args, **kwargs: P.kwargs) -> AwaitableStream[R]:

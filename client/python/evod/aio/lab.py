@@ -1,6 +1,6 @@
 """Labs, worlds and streams for asyncio. evod.lab, the synchronous module, is generated from this file.
 
-Threads      all calls on the event loop that connect() or local() was awaited on.
+Threads      call everything on the event loop on which connect() or local() ran.
 """
 from __future__ import annotations
 
@@ -45,28 +45,30 @@ async def connect(
     server
         HOST, HOST:PORT or [IPV6]:PORT; the default port is 7744.
     token, token_file
-        The access token, or a file with it that only its owner may read. Without both, the environment variable EVOD_TOKEN.
+        The access token, or a file that contains it and that only its owner can read. If neither is given, the token is read
+        from the environment variable EVOD_TOKEN.
     tls
-        Use TLS, with a server whose certificate this system trusts.
+        Use TLS. The server must have a certificate that this system trusts.
     ca
-        Use TLS, and trust the certificates in this PEM file, such as the server's own evod.crt. Without it, the environment
-        variable EVOD_CA.
+        Use TLS, and trust the certificates in this PEM file, such as the server's own evod.crt. If it is not given, the file
+        named by the environment variable EVOD_CA is used.
     cert, key
-        Use TLS with this client certificate, for servers that require one; PEM files. The key may be in the same file.
+        Use TLS with this client certificate and its private key, for servers that require one. Both are PEM files; one file
+        may contain both.
     timeout_s
-        How long an answer may take, and how long the server may be unreachable before calls fail, in seconds. Calls that
-        make the server replay a run may take 20 times as long.
+        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time calls
+        fail. Calls for which the server replays a run may take 20 times as long.
     reconnect
-        Whether to connect again after the connection was lost.
+        Whether to reconnect after the connection was lost.
     client_name
         The name of this program in the server's log.
 
     Raises
     ------
     NoConnection
-        There is no server at that address, or it refuses this client.
+        No server answers at this address, or the server refuses this client.
     DamagedData
-        The program at that address is no evod server.
+        The program at this address is not an evod server.
 
     Examples
     --------
@@ -101,20 +103,21 @@ async def local(
     Parameters
     ----------
     seed
-        Seed of the first world, 0 to 2**64 - 1. Without it the server draws one.
+        Seed of the first world, 0 to 2**64 - 1. By default the server draws a random seed.
     experiment
-        Parameters of the first world: an experiment file, or a mapping of names to values. Without it, all defaults.
+        Parameters of the first world: an experiment file, or a mapping of names to values. By default all parameters have
+        their default values.
     data
-        Folder for the run files. Without it, a temporary folder that is deleted with the server.
+        Folder for the run files. By default a temporary folder, which is deleted when the server stops.
     speed
         Speed of every world, including those created later: simulated seconds per second, or "max" for as fast as the
         machine allows.
     threads
-        Number of threads that simulate. Without it, one for each processor.
+        Number of threads for the simulation. By default one for each processor.
     program
-        The program evod. Without it, the one that the environment variable EVOD names, or evod on the path.
+        Path of the program evod. By default the path in the environment variable EVOD, or else the evod found in PATH.
     timeout_s
-        As for `connect`.
+        The same as for `connect`.
 
     Raises
     ------
@@ -134,7 +137,7 @@ async def local(
     server = await blocking_call(local_server.start, seed, experiment, data, speed, threads, program)
     try:
         lab = await connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.local")
-        if data is not None:  # worlds found in the folder have the speed that they were stored with
+        if data is not None:  # worlds that were already in the folder have their stored speed
             for info in await lab.worlds():
                 world = await lab.world(info.name)
                 await world.set_speed(speed)
@@ -145,7 +148,7 @@ async def local(
 
 
 class _Closing:
-    """Closes itself at the end of an `async with` block."""
+    """Base class of objects that are closed at the end of an `async with` block."""
 
     async def close(self) -> None:
         raise NotImplementedError
@@ -158,7 +161,7 @@ class _Closing:
 
 
 class Lab(_Closing):
-    """A connection to a server and its worlds; made by `connect`."""
+    """A connection to a server and its worlds, returned by `connect`."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
@@ -168,17 +171,17 @@ class Lab(_Closing):
         return f"<evod at {self.address}>"
 
     async def close(self) -> None:
-        """Closes the connection; calls that wait for an answer fail with NoConnection."""
+        """Closes the connection. Calls that wait for an answer raise NoConnection."""
         await self._link.close()
 
     @property
     def address(self) -> str:
-        """The server's HOST:PORT."""
+        """The address of the server, as HOST:PORT."""
         return str(self._link.server)
 
     @property
     def welcome(self) -> session_pb2.Welcome:
-        """What the server reported about itself at the last connect: version, limits, durability, features."""
+        """The server's description of itself, received at the last connect: version, limits, durability, features."""
         return self._link.core.welcome or session_pb2.Welcome()
 
     @property
@@ -188,7 +191,7 @@ class Lab(_Closing):
 
     @property
     def damaged_snapshot_count(self) -> int:
-        """How many snapshots were dropped because they could not be decoded; a keyframe was requested after each."""
+        """The number of snapshots that were dropped because they could not be decoded."""
         return self._link.core.damaged_snapshot_count
 
     @property
@@ -202,7 +205,7 @@ class Lab(_Closing):
         Parameters
         ----------
         **request
-            One field of evod.v1.Request, by its name.
+            Exactly one field of evod.v1.Request, with its value.
 
         Raises
         ------
@@ -226,11 +229,11 @@ class Lab(_Closing):
     # ---- worlds ---------------------------------------------------------------------------------------------------
 
     async def worlds(self) -> Sequence[world_pb2.WorldInfo]:
-        """Returns the state of every world, in order of creation."""
+        """Returns the state of every world, in the order in which the worlds were created."""
         return await self._link.perform(plans.worlds())
 
     async def world(self, name: str | None = None) -> World:
-        """Returns the world of that name; without a name the only world, or "default" if there are several.
+        """Returns the world with this name. Without a name, returns the only world, or "default" if there are several.
 
         Raises
         ------
@@ -253,22 +256,23 @@ class Lab(_Closing):
         Parameters
         ----------
         name
-            1 to 64 letters, digits, "_" and "-", not yet in use.
+            The name of the new world: 1 to 64 letters, digits, "_" and "-". No other world may have this name.
         parameters
-            Values by name; the others get their defaults. A mapping in place of a value is a schedule: {1: 0.2, 30: 0.05}
-            sets each value at the first tick of its generation; before the first of them the default holds.
+            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping in
+            place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation. Before
+            the first generation in the schedule the parameter has its default value.
         seed
-            0 to 2**64 - 1. Without it the server draws one.
+            The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
         population
-            Genes of the first generation: for each island an array of shape (population_size, 6), columns in the order of
-            `evod.GENE_NAMES`. Without it they are drawn with the seed.
+            The genes of the first generation: one array for each island, with shape (population_size, 6) and columns in the
+            order of `evod.GENE_NAMES`. By default the server draws the genes with the seed.
         speed
-            As for `World.set_speed`. Without it real time, or the speed given to `local`.
+            The speed, as for `World.set_speed`. By default real time, or the speed given to `local`.
 
         Raises
         ------
         Error
-            Some values are not allowed: `violations` lists all of them, and nothing was created.
+            Some values are not allowed. `violations` lists all of them. No world was created.
 
         Examples
         --------
@@ -289,7 +293,7 @@ class Lab(_Closing):
         return await self._link.perform(self._plans.registry())
 
     async def describe(self) -> c.Description:
-        """Returns what the server supports: its messages, its parameters and its limits."""
+        """Returns the messages, parameters and limits of the server."""
         return (await self._request("describe")).description
 
     async def metrics(self) -> c.Metrics:
@@ -298,38 +302,38 @@ class Lab(_Closing):
 
     @opens_stream
     async def events(self) -> Events:
-        """Subscribes to the events of all worlds, from now on."""
+        """Subscribes to the events of all worlds that happen from now on."""
         subscription = await self._link.perform(self._plans.subscribe_events(None))
         return Events(self._link, plans.EventStream(self._link.core, subscription))
 
     async def shut_down(self) -> None:
-        """Stops the server. It still answers what it has received, and writes all runs to disk."""
+        """Stops the server. Before it stops, it answers all requests that it has received, and writes all runs to disk."""
         await self._request("shut_down")
 
 
 class LocalLab(Lab):
-    """A Lab with a private server; made by `local`. Closing it stops the server."""
+    """A Lab with a private server, returned by `local`. Closing it stops the server."""
 
     def __init__(self, link: Link, server: local_server.Server, speed: float | str) -> None:
         super().__init__(link)
         self._server = server
         self._plans.speed_of_new_worlds = speed
-        # Worlds and streams hold the link: once it is garbage collected no object can use the server any more.
+        # Worlds and streams hold references to the link. When it is garbage collected, no object can use the server any more.
         weakref.finalize(link, server.end)
 
     async def close(self) -> None:
-        """Closes the connection and stops the server; waits up to 30 s until it has written its runs."""
+        """Closes the connection and stops the server. Waits up to 30 s until the server has written its runs."""
         await super().close()
         await blocking_call(self._server.stop)
 
     @property
     def log(self) -> str:
-        """The last 1,000 lines that the server has printed."""
+        """The last 1,000 lines of the server's output."""
         return "\n".join(self._server.lines)
 
 
 class World(ParameterAttributes):
-    """One experiment on a server; made by `Lab.world` and `Lab.create_world`."""
+    """A world on a server, returned by `Lab.world` and `Lab.create_world`."""
 
     def __init__(self, lab: Lab, name: str) -> None:
         self._lab, self._name = lab, name
@@ -342,7 +346,7 @@ class World(ParameterAttributes):
 
     @property
     def lab(self) -> Lab:
-        """The connection that this world was made by."""
+        """The Lab that returned this world."""
         return self._lab
 
     def __repr__(self) -> str:
@@ -357,7 +361,7 @@ class World(ParameterAttributes):
     # ---- parameters -----------------------------------------------------------------------------------------------
 
     async def get_parameters(self) -> Parameters:
-        """Returns all parameters as they are now, with the revision, the schedule and the planned changes."""
+        """Returns the current values of all parameters, with the revision, the schedule and the planned changes."""
         return await self._link.perform(self._plans.parameters(self.name))
 
     async def set(
@@ -371,19 +375,19 @@ class World(ParameterAttributes):
         at_tick: int | None = None,
         **more: object,
     ) -> Parameters:
-        """Sets parameters, all of them or none: ``world.set(mutation_chance=0.1, selection="tournament")``.
+        """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets none.
 
         Parameters
         ----------
         values, **more
-            Values by name. Values out of range are refused here, before anything is sent.
+            The values, with the names of the parameters. Values out of range are refused before a request is sent.
         dry_run
-            Check the values and return what would hold, without changing anything.
+            Check the values and return the parameters as they would be after the change. Do not change anything.
         expected_revision
-            The `Parameters.revision` that the change is based on. The server refuses it if another client has changed
-            parameters since.
+            The `Parameters.revision` on which the change is based. The server refuses the change if another client has
+            changed parameters since that revision.
         at_generation
-            Plan the change for the first tick of this generation. The plan is in `Parameters.change` of the result.
+            Plan the change for the first tick of this generation. `Parameters.change` of the result is the planned change.
         at_tick
             Plan the change for the moment after this tick, counted from the beginning of the run.
 
@@ -402,16 +406,16 @@ class World(ParameterAttributes):
         return await self._link.perform(plan)
 
     async def planned_changes(self) -> tuple[PlannedChange, ...]:
-        """Returns the changes that wait for their generation or tick, in the order in which they were planned."""
+        """Returns the planned changes that are not due yet, in the order in which they were planned."""
         return (await self.get_parameters()).planned
 
     async def cancel(self, change: int | PlannedChange) -> PlannedChange:
-        """Cancels a planned change, given as such or by its id.
+        """Cancels a planned change. `change` is the change or its id.
 
         Raises
         ------
         Error
-            The change was already made, dropped or cancelled.
+            The server has already applied, dropped or cancelled the change.
         """
         return await self._link.perform(self._plans.cancel_change(self.name, change))
 
@@ -419,14 +423,14 @@ class World(ParameterAttributes):
 
     @opens_stream
     async def run(self, generations: int | None = None) -> Run:
-        """Runs the world, and returns its generations as they end.
+        """Starts the world and returns a `Run`, which yields each generation when it ends.
 
-        The world runs whether or not the result is iterated; `Run.wait` waits for the end.
+        The world runs even if the result is not iterated. `Run.wait` waits for the end of the run.
 
         Parameters
         ----------
         generations
-            How many more generations to run, from 1. Without it the world runs until it is paused.
+            The number of further generations to run, at least 1. By default the world runs until it is paused.
 
         Examples
         --------
@@ -440,11 +444,11 @@ class World(ParameterAttributes):
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
     async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
-        """Starts the world; it pauses after this tick, counted from the beginning of the run. Returns at once: see `wait`."""
+        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for it."""
         return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
-        """Runs this many ticks and returns after the last.
+        """Runs this number of ticks and returns after the last one.
 
         Examples
         --------
@@ -458,15 +462,15 @@ class World(ParameterAttributes):
         return await self._link.perform(self._plans.step(self.name, ticks))
 
     async def wait(self) -> world_pb2.WorldInfo:
-        """Waits until the world no longer runs, and returns its state."""
+        """Waits until the world is not running any more, and returns its state."""
         return await self._link.perform(self._plans.wait(self.name))
 
     async def pause(self) -> world_pb2.WorldInfo:
-        """Pauses the world; `resume` continues with the same goal."""
+        """Pauses the world. `resume` continues towards the same goal."""
         return await self._command("pause")
 
     async def resume(self) -> world_pb2.WorldInfo:
-        """Continues after `pause`, up to the goal of the last `run` or `run_until_tick`."""
+        """Continues after `pause`, until the goal of the last `run` or `run_until_tick` is reached."""
         return await self._command("resume")
 
     async def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
@@ -474,26 +478,26 @@ class World(ParameterAttributes):
         return await self._command("set_speed", speed=plans.speed_message(speed))
 
     async def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
-        """Starts a new run at generation 1, with the same seed or another one; the world waits for `run`."""
+        """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for `run`."""
         return await self._command("reset_world", seed=seed)
 
     async def release_lease(self) -> world_pb2.WorldInfo:
-        """Ends the lease of `run_until_tick` or `step`, so that the world runs on its own again."""
+        """Ends the lease that `run_until_tick` or `step` has taken, so that the world runs on its own again."""
         return await self._command("release_lease")
 
     async def renew_lease(self) -> None:
-        """Renews the lease of `run_until_tick` or `step` for its full duration."""
+        """Renews the lease that `run_until_tick` or `step` has taken, for its full duration."""
         await self._request("renew_lease")
 
     async def fork(self, name: str, at_generation: int | None = None) -> World:
-        """Creates a world that begins as this one was; this one is not changed.
+        """Creates a new world that begins with the state of this world at one moment. This world is not changed.
 
         Parameters
         ----------
         name
             The name of the new world, which waits for `run`.
         at_generation
-            Begin with the first tick of this generation. Without it, with the current state.
+            The new world begins at the first tick of this generation. By default it begins with the current state.
         """
         return World(self._lab, (await self._command("fork_world", name=name, at_generation=at_generation)).name)
 
@@ -508,7 +512,7 @@ class World(ParameterAttributes):
         return await self._link.perform(plans.world_info(self.name))
 
     async def snapshot(self, island: int = 0) -> Snapshot:
-        """Returns the state of one island, by its index, as it is now."""
+        """Returns the current state of the island with this index."""
         return await self._link.perform(self._plans.snapshot(self.name, island))
 
     @opens_stream
@@ -521,22 +525,23 @@ class World(ParameterAttributes):
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
     ) -> Snapshots:
-        """Subscribes to snapshots. A slow reader receives fewer of them, never stale ones.
+        """Subscribes to snapshots. A slow reader receives fewer snapshots, never stale ones.
 
         With `region`, `detail` or `bytes_per_s_max` each snapshot consists of tiles: see `Snapshot.tiles`.
 
         Parameters
         ----------
         rate_hz
-            The most snapshots of each island per second. The server may lower it: see `Snapshots.rate_hz`.
+            The largest number of snapshots per second for each island. The server may lower it: see `Snapshots.rate_hz`.
         island
-            Only this island, by its index. Without it, all islands in turn.
+            The index of the island to observe. By default snapshots of all islands arrive in turn.
         region
-            Only the tiles that overlap this rectangle: (left, top, width, height) in px.
+            A rectangle, as (left, top, width, height) in px. Snapshots contain only the tiles that overlap it.
         detail
-            The finest level of detail wanted: "full", "dots" or "density".
+            The highest level of detail: "full", "dots" or "density".
         bytes_per_s_max
-            The most bytes per second to send; the server lowers the detail to stay below it.
+            The largest number of bytes per second that the server sends. To stay below it, the server lowers the level of
+            detail.
 
         Examples
         --------
@@ -557,40 +562,40 @@ class World(ParameterAttributes):
 
     @opens_stream
     async def events(self) -> Events:
-        """Subscribes to the events of this world, from now on."""
+        """Subscribes to the events of this world that happen from now on."""
         subscription = await self._link.perform(self._plans.subscribe_events(self.name))
         return Events(self._link, plans.EventStream(self._link.core, subscription))
 
     async def statistics(self) -> c.Statistics:
-        """Returns the live statistics of each island, and those of the last generation that ended."""
+        """Returns the live statistics of each island, and the statistics of the last generation that has ended."""
         return (await self._request("get_statistics")).statistics
 
     async def history(
         self, first: int | None = None, last: int | None = None, *, island: int | None = None
     ) -> list[Generation]:
-        """Returns the generations that have ended, as far back as the server keeps them.
+        """Returns the ended generations whose statistics the server still stores.
 
         Parameters
         ----------
         first, last
-            The range of generations, both included; from 1. Without them, all.
+            The first and the last generation to return; the first generation of a run is 1. By default all generations.
         island
-            Only this island, by its index.
+            The index of an island. If it is given, the result contains only the statistics of this island.
         """
         return await self._link.perform(plans.history(self.name, first, last, island))
 
     async def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
-        """Returns the genes, position, health, parents and next choice of one organism, by its id.
+        """Returns the genes, position, health, parents and next choice of the organism with this id.
 
         Raises
         ------
         Error
-            NOT_FOUND: the current generation has no such organism.
+            NOT_FOUND: the current generation contains no organism with this id.
         """
         return (await self._request("get_organism", island=island, organism=organism)).organism
 
     async def population(self, island: int = 0) -> Population:
-        """Returns genes, parents and choices of all organisms of the current generation as arrays.
+        """Returns the genes, parents and choices of all organisms in the current generation as arrays.
 
         Examples
         --------
@@ -612,16 +617,16 @@ class World(ParameterAttributes):
         first_pick: int = 0,
         first_descendant: int = 0,
     ) -> c.Breeding:
-        """Returns how a generation was bred: its contenders, picks, pairs, crossover points and mutations.
+        """Returns a record of how a generation was bred: contenders, picks, pairs, crossover points and mutations.
 
         Parameters
         ----------
         island
             Index of the island.
         generation
-            The generation of the parents. Without it, the last one that has bred.
+            The generation of the parents. By default the last generation that was bred from.
         first_contender, first_pick, first_descendant
-            Index of the first row of each list to return, for populations that do not fit into one answer.
+            For each list, the index of the first row to return. Use them if a population does not fit into one answer.
         """
         response = await self._request(
             "get_breeding",
@@ -634,18 +639,19 @@ class World(ParameterAttributes):
         return response.breeding
 
     async def motion(self, island: int = 0) -> c.Motion:
-        """Returns the energy, momentum and overlaps of the bodies on an island."""
+        """Returns the total energy and momentum of the bodies on an island, and how much they overlap."""
         return (await self._request("get_motion", island=island)).motion
 
     @opens
     async def open_replay(self, generation: int | None = None, tick: int | None = None) -> Replay:
-        """Opens a replay of this world's stored run; the server must keep its runs.
+        """Opens a replay of this world's stored run. The server must record its runs.
 
         Parameters
         ----------
         generation, tick
-            Where the replay begins: a generation, a tick of that generation, or without a generation a tick of the run.
-            Without both, the beginning of the run.
+            The moment at which the replay begins. If both are given, the tick is counted from the beginning of the
+            generation. If only the tick is given, it is counted from the beginning of the run. If neither is given, the
+            replay begins at the beginning of the run.
         """
         at = plans.moment_message("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
         return Replay(self._lab, (await self._command("open_replay", at=at)).name)
@@ -667,9 +673,10 @@ class World(ParameterAttributes):
         format
             "csv" or "jsonl".
         generation
-            For "population": which generation. Without it, the last one that has begun.
+            For "population": the generation to export. By default the last generation that has begun.
         of
-            For "lineage": only the ancestors of one organism, given as (generation, island, id).
+            For "lineage": an organism as (generation, island, id). The table then contains only the ancestors of this
+            organism.
         """
         return await self._link.perform(plans.export(self.name, table, format, generation, of))
 
@@ -680,14 +687,14 @@ class World(ParameterAttributes):
     # ---- plots ----------------------------------------------------------------------------------------------------
 
     async def plot(self, island: int = 0, ax: Any = None) -> Any:
-        """Plots an island as it is now with matplotlib.
+        """Plots the current state of an island with matplotlib.
 
         Parameters
         ----------
         island
             Index of the island.
         ax
-            The axes to draw into. Without them, new ones.
+            The axes to draw into. By default new axes are created.
 
         Returns
         -------
@@ -705,29 +712,29 @@ class World(ParameterAttributes):
         return plotting.plot_island(await self.snapshot(island), ax)
 
     async def plot_fitness(self, ax: Any = None) -> Any:
-        """Plots the fitness of the generations that have ended; returns the axes."""
+        """Plots the fitness of all ended generations; returns the axes."""
         history, info = await self.history(), await self.info()
         return plotting.plot_fitness(plotting.statistics_columns(history, info.gene_names), ax)
 
     async def plot_genes(self, ax: Any = None) -> Any:
-        """Plots mean and spread of each gene in the generations that have ended; returns the axes."""
+        """Plots the mean and the standard deviation of each gene in all ended generations; returns the axes."""
         history, info = await self.history(), await self.info()
         return plotting.plot_genes(plotting.statistics_columns(history, info.gene_names), info.gene_names, ax)
 
     async def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Plots what moved the mean of a gene in each generation: selection, transmission, migration, and their sum."""
+        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
         history, info = await self.history(), await self.info()
         return plotting.plot_selection(plotting.statistics_columns(history, info.gene_names), info.gene_names, gene, ax)
 
     async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
-        """Records snapshots of an island and returns a matplotlib animation of them, which notebooks play.
+        """Records snapshots of an island and returns them as a matplotlib animation. Notebooks can play it.
 
         Parameters
         ----------
         count
-            The number of snapshots; recording ends sooner if the world does not run.
+            The number of snapshots. The recording ends earlier if the world does not run.
         rate_hz
-            Snapshots per second, of the recording and of the animation.
+            The number of snapshots per second, both in the recording and in the animation.
         island
             Index of the island.
         """
@@ -741,10 +748,13 @@ class World(ParameterAttributes):
 
 
 class Replay(World, _Closing):
-    """A world that shows the stored run of another; made by `World.open_replay`. It ends with close() or the connection."""
+    """A replay of another world's stored run, returned by `World.open_replay`.
+
+    It ends with close(), or when the connection ends.
+    """
 
     async def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
-        """Moves to a generation, a tick of that generation, or a tick of the run; without both to the last stored moment."""
+        """Moves the replay to a moment, given as in `World.open_replay`; by default to the last stored moment."""
         return await self._command("seek", to=plans.moment_message("seek.to.", generation, tick))
 
     async def close(self) -> None:
@@ -757,14 +767,14 @@ class _Stream(_Closing):
         self._link, self._stream = link, stream
 
     async def close(self) -> None:
-        """Ends the subscription; the server sends no more of it."""
+        """Ends the subscription."""
         await self._link.apply(self._stream.close)
 
 
 class Run(_Stream):
-    """The generations of a run as they end. Each is returned once, including those that end while reconnecting.
+    """The generations of a run, returned by `World.run`. Iterating it yields each generation when it ends.
 
-    Made by `World.run`; iterate it. Closing it does not stop the world.
+    Each generation is returned once, even if it ends during a reconnect. Closing a Run does not stop the world.
     """
 
     _stream: plans.GenerationStream
@@ -784,7 +794,7 @@ class Run(_Stream):
         return generation
 
     async def wait(self) -> Generation | None:
-        """Waits for the end of the run; returns the last generation, or None if all were already taken."""
+        """Waits for the end of the run and returns the last generation; None if it was already returned before."""
         last = None
         async for last in self:
             pass
@@ -792,9 +802,9 @@ class Run(_Stream):
 
 
 class Snapshots(_Stream):
-    """A subscription to snapshots; made by `World.snapshots`; iterate it.
+    """A subscription to snapshots, returned by `World.snapshots`. Iterating it yields the snapshots.
 
-    Taking a snapshot acknowledges the one before it, which lets the server send another.
+    Each step of the iteration acknowledges the previous snapshot, so that the server can send another one.
     """
 
     _stream: plans.SnapshotStream
@@ -807,7 +817,7 @@ class Snapshots(_Stream):
 
     @property
     def rate_hz(self) -> float:
-        """The most snapshots per second and island that the server sends: the requested rate, or its limit."""
+        """The largest number of snapshots per second for each island: the requested rate, or the server's lower limit."""
         return self._stream.rate_hz
 
     async def set_view(
@@ -816,19 +826,19 @@ class Snapshots(_Stream):
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
     ) -> None:
-        """Changes the view of a subscription that has one; the arguments are those of `World.snapshots`."""
+        """Changes the view. The subscription must have been created with one. The arguments are as for `World.snapshots`."""
         view = plans.view_message(region, detail, bytes_per_s_max) or c.View()
         await self._link.perform(self._stream.set_view(view))
 
     async def request_keyframe(self) -> None:
-        """Requests snapshots encoded without reference to earlier ones. They come at once, even if the world is paused."""
+        """Requests a keyframe of each island: a snapshot encoded without a baseline. Works even if the world is paused."""
         await self._link.perform(self._stream.request_keyframe())
 
 
 class Events(_Stream):
-    """A subscription to events; made by `World.events` and `Lab.events`; iterate it.
+    """A subscription to events, returned by `World.events` and `Lab.events`. Iterating it yields the events.
 
-    After a reconnect an `events_dropped` with a count of 0 comes first: the number of events missed is not known.
+    After a reconnect the first event is an `events_dropped` with the count 0, because the number of missed events is unknown.
     """
 
     _stream: plans.EventStream

@@ -1,6 +1,6 @@
-"""Carries out plans over a connection that one asyncio task keeps open.
+"""Executes plans over a connection that one asyncio task keeps open.
 
-Threads      all methods run on the event loop that open() ran on.
+Threads      all methods must be called on the event loop on which open() ran.
 """
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ P = ParamSpec("P")
 
 
 async def blocking_call(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-    """Calls a function that blocks, on a thread of its own, so that the event loop continues."""
+    """Calls a blocking function on a separate thread, so that the event loop continues to run."""
     return await asyncio.to_thread(function, *args, **kwargs)
 
 
 class Link:
-    """A connection to one server, which reconnects after a loss, and the Core that speaks the protocol over it.
+    """A connection to one server, and the Core that implements the protocol. Reconnects after the connection was lost.
 
-    timeout_s    how long an answer may take, and how long the server may be unreachable.
-    reconnect    False: the first loss fails everything that waits.
+    timeout_s    the longest time in seconds to wait for an answer, and for a server that cannot be reached.
+    reconnect    False: when the connection is lost, all waiting calls fail.
     """
 
     def __init__(
@@ -42,15 +42,16 @@ class Link:
         self._transport = transport.Transport(server, None)
         self._writer: asyncio.StreamWriter | None = None
         self._backoff = transport.Backoff()
-        self._waiters: set[asyncio.Future[None]] = set()  # woken after each change of the core
+        self._waiters: set[asyncio.Future[None]] = set()  # completed after each change of the core
         self._connection_task: asyncio.Task[None] | None = None
 
     # ---- plans ----------------------------------------------------------------------------------------------------
 
     async def perform(self, plan: Plan[T]) -> T:
-        """Carries out a plan and returns its result.
+        """Executes a plan and returns its result.
 
-        Raises what the plan raises; Timeout if an answer is overdue; NoConnection if the server stays unreachable.
+        Raises every exception that the plan raises. Raises Timeout if an answer does not arrive within the timeout, and
+        NoConnection if the server cannot be reached within it.
         """
         try:
             step = next(plan)
@@ -69,7 +70,7 @@ class Link:
             self._flush()
 
     async def apply(self, change: Callable[[], None]) -> None:
-        """Changes the core and sends what that produces; there is no answer to wait for."""
+        """Calls a function that changes the core, and sends the resulting bytes. Does not wait for an answer."""
         change()
         self._flush()
 
@@ -124,7 +125,7 @@ class Link:
     # ---- the connection -------------------------------------------------------------------------------------------
 
     async def open(self) -> None:
-        """Connects for the first time. Raises NoConnection, or DamagedData if the other end is no evod server."""
+        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is no evod server."""
         self._connection_task = asyncio.create_task(self._keep_connected())
         try:
             while not self.core.connected:
@@ -136,7 +137,7 @@ class Link:
             raise
 
     async def close(self) -> None:
-        """Closes the connection; everything that waits fails with NoConnection."""
+        """Closes the connection. All waiting calls raise NoConnection."""
         if self.core.failed is None:
             self.core.close()
         self._wake_waiters()
@@ -145,7 +146,7 @@ class Link:
             await asyncio.wait([self._connection_task])
 
     async def _keep_connected(self) -> None:
-        """Connects, reads until the connection is lost, and connects again, until the core has failed for good."""
+        """Connects, reads until the connection is lost, and reconnects, until the core has set `failed`."""
         while self.core.failed is None:
             try:
                 await self._serve_connection()
@@ -156,7 +157,7 @@ class Link:
                 self._backoff.failed()
                 self.core.lost(loss)
                 self._wake_waiters()
-            except Exception as error:  # a bug in this package: fail everything that waits, rather than hang
+            except Exception as error:  # a bug in this package: all waiting calls fail, so that they do not hang
                 self.core.failed = Error(f"the client has a fault: {error!r}")
                 self.core.lost(self.core.failed)
                 self._wake_waiters()
@@ -184,7 +185,7 @@ class Link:
                 self._wake_waiters()
         finally:
             self._writer = None
-            writer.transport.abort()  # close() would wait for a server that does not read
+            writer.transport.abort()  # close() would hang if the server does not read
             with contextlib.suppress(OSError):
                 await writer.wait_closed()
 
