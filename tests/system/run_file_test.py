@@ -478,7 +478,7 @@ class Export(Case):
             (path,): ["--what: got nothing", "--bundle FOLDER"],
             ("/nowhere.evod", "--what", "events"): ["/nowhere.evod: there is no such file"],
             (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No such"],
-            (path, "--what", "events", "--output", path): ["--output: got " + path, "another file than the run file"],
+            (path, "--what", "events", "--output", path): ["--output: got " + path, "a file other than the run file itself"],
             (path, "--what", "organisms", "--output", "/dev/full"): ["--output: cannot write /dev/full"],
         }.items():
             said = evod("export", *arguments, status=1)
