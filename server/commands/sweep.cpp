@@ -175,7 +175,7 @@ Result<std::size_t> make_runs(const std::vector<std::size_t>& runs, const Sweep&
                                      .on_run = [&](double work) { progress->run_done(work); }}};
     progress.emplace(runs.size(), runner.work_of(runs));
     const std::clock_t cpu = std::clock();
-    const auto made = runner.make(runs);
+    const auto made = runner.execute(runs);
     progress->clear();
     if (made && *made > 0) {
         const double seconds = progress->seconds(), busy_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
@@ -208,7 +208,7 @@ std::vector<std::size_t> run_numbers(const Sweep& sweep, std::optional<std::size
 Result<int> make_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
                               const std::string& out) {
     if (options.run_files) {
-        if (auto made = folder.make_run_file_folder(); !made) {
+        if (auto made = folder.create_run_file_folder(); !made) {
             return made.error();
         }
     }

@@ -29,15 +29,15 @@ Result<void> write_file(const fs::path& path, Write&& write) {
         }
     }
     if (!out.flush()) {
-        return refusal(RefusalCode::Unavailable, path.string() + " cannot be written, the disk may be full");
+        return refusal(RefusalCode::Unavailable, "cannot write " + path.string() + ": the disk may be full");
     }
     return {};
 }
 
 /// The text of an experiment file with all parameters and the seed.
 std::string experiment_text(const run_file::RunIdentity& identity) {
-    // The parameters of a fork are those of the generation with which it begins. So its schedule cannot begin in
-    // generation 1.
+    // A fork begins with the parameters of its first generation. They may differ from the values that the schedule has
+    // for generation 1, so the schedule is omitted.
     const std::string parameters =
         to_experiment_text(identity.parameters, parameters::Written::Everything,
                            identity.forked_from ? parameters::Schedule{} : identity.schedule);
@@ -57,7 +57,7 @@ Result<std::string> sha256_of(const fs::path& path) {
     unsigned char digest[EVP_MAX_MD_SIZE];
     unsigned int bytes = 0;
     if (!good || EVP_DigestFinal_ex(context.get(), digest, &bytes) != 1) {
-        return refusal(RefusalCode::Unavailable, path.string() + ": cannot be read to compute its checksum");
+        return refusal(RefusalCode::Unavailable, "cannot read " + path.string() + " to compute its checksum");
     }
     std::string text;
     for (unsigned int i = 0; i < bytes; ++i) {
@@ -103,15 +103,15 @@ Result<std::string> rerun_text(run_file::RunFile& file) {
         return std::string{"No generation has ended, so there are no numbers to compare.\n"};
     }
     if (!changes->empty()) {
-        return "Parameters were changed while it ran, " + std::to_string(changes->size()) +
+        return "Parameters were changed " + std::to_string(changes->size()) +
                (changes->size() == 1 ? " time" : " times") +
-               " (events.csv). `evod verify` makes the same changes at the same ticks.\n";
+               " during the run (events.csv). `evod verify` applies the same changes at the same ticks.\n";
     }
     return "    evod run experiment.json " +
            std::string{identity.first_population ? "--population population.csv " : ""} + "--generations " +
            std::to_string(generations) +
-           " --csv again.csv\n    cmp again.csv generations.csv\n\nThe first simulates the run from its parameters and "
-           "seed alone; the second prints nothing if all numbers are equal.\n";
+           " --csv again.csv\n    cmp again.csv generations.csv\n\nThe first command simulates the run from its "
+           "parameters and seed alone. The second prints nothing if all numbers are equal.\n";
 }
 
 Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file_name) {
@@ -124,21 +124,21 @@ Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file
     const std::uint64_t left_out = replay::generations_out_of_reach(file);
     return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
            to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
-           " |\n| made with | evod " + identity.evod_version + ", model version " + model +
+           " |\n| created by | evod " + identity.evod_version + ", model version " + model +
            (identity.build.empty() ? "" : ", built from " + identity.build) + " |\n| generations that have ended | " +
            std::to_string(file.generations().last_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
-           " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
+           " |\n| folder created by | evod " + EVOD_VERSION + ", model version " +
            std::to_string(simulation::model_version) + ", built from " + run_file::build_text() +
-           " |\n\nAny evod of model version " + model +
-           " gives the same bits, on any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
+           " |\n\nEvery evod with model version " + model +
+           " gives the same bits, with any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
            "    evod verify " + file_name +
-           "\n\nThe first finds changed files. The second simulates the run again and compares everything in the run "
-           "file: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
+           "\n\nThe first command finds changed files. The second simulates the run again and compares the result with "
+           "everything in the run file: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
            *rerun +
            (left_out == 0 ? ""
                           : "\norganisms.csv and lineage.csv lack " + std::to_string(left_out) +
-                                " generations: the run file no longer contains their organisms, and the evod that made "
-                                "this folder cannot simulate them again.\n");
+                                " generations: the run file no longer contains their organisms, and the evod that "
+                                "created this folder cannot simulate them again.\n");
 }
 
 Result<void> fill(const replay::RunSource& run, const fs::path& folder) {

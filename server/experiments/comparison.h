@@ -1,8 +1,8 @@
 // Comparison: runs several worlds with the same seeds and tests whether their rises in fitness differ.
 //
-// The rise of a run is the mean fitness of its organisms in the last generation minus that in the first one. A
-// replicate is a seed. With the same seed, all arms begin with the same organisms, unless an arm changes how organisms
-// are created. So the test pairs the runs by seed.
+// Each compared world is an arm; each seed is a replicate. The rise of a run is the mean fitness of its organisms in
+// the last generation minus the mean fitness in the first one. With the same seed, all arms begin with the same
+// organisms, unless an arm changes how organisms are created. So the test pairs the runs by seed.
 //
 // Threads      `jobs` threads share the runs; each thread does one run at a time (trials.h).
 // Determinism  the same arms, seed and counts give the same numbers to the last bit, for any value of `jobs`.

@@ -28,9 +28,8 @@ constexpr std::uint32_t default_generations = 60;
 
 struct ComparisonPlan {
     std::vector<Arm> arms; // the worlds to run; the first is compared with all others
-    std::vector<Control>
-        // The controls of the first arm, including those that need no run; empty: different experiments are compared.
-        controls;
+    // The controls of the first arm, including those that need no run; empty: different experiments are compared.
+    std::vector<Control> controls;
     base::Seed seed;
     std::uint32_t generations;
 };

@@ -69,7 +69,7 @@ constexpr std::string_view mutation_conditions[] = {"mutation_step", "rearrange_
 constexpr std::string_view poison_conditions[] = {"poison_count", "population_size", "scale_with_population"};
 
 struct NamesOfControl {
-    Names made_by;    // parameters that the control sets
+    Names sets;       // parameters that the control sets
     Names depends_on; // other parameters that determine whether the control can differ
 };
 NamesOfControl names_of(ControlKind kind) {
@@ -89,7 +89,7 @@ NamesOfControl names_of(ControlKind kind) {
 } // namespace
 
 parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind) {
-    for (const std::string_view name : names_of(kind).made_by) {
+    for (const std::string_view name : names_of(kind).sets) {
         world.remove(name);
     }
     return world;
@@ -97,8 +97,8 @@ parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind) {
 
 bool schedule_affects(const parameters::Schedule& world, ControlKind kind) {
     const auto is_scheduled = [&](std::string_view name) { return world.holds(name); };
-    const auto [made_by, depends_on] = names_of(kind);
-    return std::ranges::any_of(made_by, is_scheduled) || std::ranges::any_of(depends_on, is_scheduled);
+    const auto [sets, depends_on] = names_of(kind);
+    return std::ranges::any_of(sets, is_scheduled) || std::ranges::any_of(depends_on, is_scheduled);
 }
 
 Control control_of(const Parameters& world, ControlKind kind) {

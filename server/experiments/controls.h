@@ -39,8 +39,8 @@ parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind);
 bool schedule_affects(const parameters::Schedule& world, ControlKind kind);
 
 /// Makes generation_limit the only termination criterion of the world. Any other criterion would end the compared
-/// worlds after different numbers of generations. An extinct population breeds as always, by the fitness that it
-/// reached.
+/// worlds after different numbers of generations. An extinct population breeds like any other, according to the
+/// fitness that its organisms reached.
 parameters::Parameters of_fixed_length(parameters::Parameters world, std::uint32_t generations);
 
 /// Removes the termination criteria from the schedule.

@@ -52,7 +52,7 @@ std::vector<std::vector<ColumnValue>> read_list_cells(const JsonNode& list, Swee
 
 void read_list(const JsonNode& list, Sweep& sweep, SweepErrors& errors) {
     if (!list.is_array() || list.elements.empty() || !std::ranges::all_of(list.elements, &JsonNode::is_object)) {
-        return errors.add("list", list, "a list of objects of parameters, at least one");
+        return errors.add("list", list, "a list of at least one object with parameter values");
     }
     if (has_too_many_runs("list", list, list.elements.size(), sweep, errors)) {
         return;
@@ -82,7 +82,7 @@ void add_steps(Dimension& dimension) {
 
 void read_grid(const JsonMember& grid, Sweep& sweep, SweepErrors& errors) {
     if (!grid.value.is_object() || grid.value.members.empty()) {
-        return errors.add("grid", grid.value, "an object: the values of each parameter");
+        return errors.add("grid", grid.value, "an object with the values of each parameter");
     }
     std::vector<Dimension> dimensions;
     std::size_t cells = 1;
@@ -164,11 +164,11 @@ std::optional<Hypercube> read_hypercube(const JsonNode& node, SweepErrors& error
     }
     if (hypercube.samples == 0 || hypercube.parameters == nullptr) {
         errors.add(parameters::with_line("latin_hypercube", node.line), "samples and parameters",
-                   std::string{"nothing for "} + (hypercube.samples == 0 ? "samples" : "parameters"));
+                   std::string{"no "} + (hypercube.samples == 0 ? "samples" : "parameters"));
         return std::nullopt;
     }
     if (!hypercube.parameters->is_object() || hypercube.parameters->members.empty()) {
-        errors.add("latin_hypercube.parameters", *hypercube.parameters, "an object: the values of each parameter");
+        errors.add("latin_hypercube.parameters", *hypercube.parameters, "an object with the values of each parameter");
         return std::nullopt;
     }
     return hypercube;

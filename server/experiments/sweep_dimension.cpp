@@ -154,13 +154,12 @@ bool read_range(Dimension& dimension, const JsonNode& node, const std::string& f
     Range range{.whole = whole};
     if (const char* missing = read_range_members(dimension, range, node, field, steps, errors)) {
         errors.add(parameters::with_line(field, node.line),
-                   steps == Steps::Needed ? "from, to and steps" : "from and to",
-                   std::string{"nothing for "} + missing);
+                   steps == Steps::Needed ? "from, to and steps" : "from and to", std::string{"no "} + missing);
     }
     if (errors.violations.size() == errors_before && !(range.from < range.to)) {
-        errors.add(field, node, "a \"from\" that is less than \"to\"");
+        errors.add(field, node, "a \"from\" less than \"to\"");
     } else if (errors.violations.size() == errors_before && range.log && range.from <= 0) {
-        errors.add(field, node, "a \"from\" above 0 where the scale is log");
+        errors.add(field, node, "a \"from\" above 0 if the scale is log");
     }
     dimension.range = range;
     return errors.violations.size() == errors_before;

@@ -35,7 +35,7 @@ struct Range {
 
     /// The i-th of `steps` evenly spaced numbers, including both ends. For whole numbers, rounds to the nearest one.
     parameters::ParameterValue step(std::size_t i, std::size_t steps) const;
-    /// The number at the quantile u, 0 <= u < 1. On the given scale, each whole number has an equal share of u.
+    /// The number at the quantile u, 0 <= u < 1. A whole number n has the share of u that [n, n + 1) has of the scale.
     parameters::ParameterValue quantile(double u) const;
 
   private:
@@ -47,7 +47,7 @@ struct Dimension {
     const parameters::ParameterDescription* parameter = nullptr;
     std::vector<parameters::ParameterValue> values; // values of a list
     std::optional<Range> range;                     // set if the dimension is not a list
-    std::size_t steps = 0;                          // number of steps of the range, only in a grid
+    std::size_t steps = 0;                          // number of values of the range, only in a grid
 };
 
 /// Sets a parameter to a value, which it must allow.

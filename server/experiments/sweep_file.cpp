@@ -172,7 +172,7 @@ Sweep read_sweep(const JsonNode& document, const LoadExperiment& load, SweepErro
         read_design(*members.designs.front(), sweep, errors);
         if (members.generations &&
             std::ranges::any_of(sweep.swept, [](auto* p) { return p->name == "generation_limit"; })) {
-            errors.add("generations", "nothing, where generation_limit is swept", std::to_string(*members.generations));
+            errors.add("generations", "no value if generation_limit is swept", std::to_string(*members.generations));
         }
     }
     if (errors.violations.empty()) {
@@ -187,7 +187,7 @@ Sweep read_sweep(const JsonNode& document, const LoadExperiment& load, SweepErro
 base::Refusal refusal_of(std::vector<Violation> violations) {
     std::string message = "invalid sweep";
     if (const std::size_t count = violations.size(); count > violations_max) {
-        message += ": " + std::to_string(count) + " errors, of which the first are";
+        message += ": " + std::to_string(count) + " errors; the first " + std::to_string(violations_max) + " are";
         violations.resize(violations_max);
     }
     return {

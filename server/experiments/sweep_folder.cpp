@@ -80,7 +80,7 @@ std::string provenance_of(const Sweep& sweep) {
 /// there  text of the sweep.txt in the folder.
 base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
-                                    path + " contains the results of another sweep; name another folder with --out");
+                                    path + " contains the results of another sweep: name another folder with --out");
     for (const Fact& fact : facts_of(sweep)) {
         if (there.find("\n" + to_text(fact)) != std::string::npos) {
             continue;
@@ -94,7 +94,7 @@ base::Refusal other_sweep(const std::string& path, const std::string& there, con
                                       long_text ? "a changed text" : got.substr(0, got.find('\n'))});
     }
     if (refused.violations.empty()) {
-        refused.message = path + "/sweep.txt was changed; name another folder with --out";
+        refused.message = path + "/sweep.txt was changed: name another folder with --out";
     }
     return refused;
 }
@@ -104,14 +104,14 @@ std::string padded(std::size_t number, std::size_t count) {
     return std::string(std::to_string(count - 1).size() - text.size(), '0') + text;
 }
 
-Result<void> make_folder(const std::string& path) {
+Result<void> create_folder(const std::string& path) {
     std::error_code error;
     fs::create_directories(path, error);
     if (!error && fs::is_directory(path, error)) {
         return {};
     }
-    return refusal(RefusalCode::Unavailable,
-                   path + " cannot be made: " + (error ? error.message() : "a file of that name exists"));
+    return refusal(RefusalCode::Unavailable, "cannot create the folder " + path + ": " +
+                                                 (error ? error.message() : "a file with this name exists"));
 }
 
 /// The last line of a file; nullopt if the file is missing or does not end with a newline.
@@ -198,9 +198,10 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
     if (!fs::exists(of_sweep, error)) {
         if (!result.empty()) {
             return refusal(RefusalCode::FailedPrecondition,
-                           result + " exists without the sweep.txt of its sweep; name another folder with --out");
+                           result +
+                               " exists, but the sweep.txt of its sweep is missing: name another folder with --out");
         }
-        if (auto made = make_folder(path); !made) {
+        if (auto made = create_folder(path); !made) {
             return made.error();
         }
         AtomicFile file{of_sweep};
@@ -216,7 +217,7 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
     if (*there != provenance) {
         return other_sweep(path, *there, sweep);
     }
-    if (auto made = make_folder(path + "/parts"); !made) {
+    if (auto made = create_folder(path + "/parts"); !made) {
         return made.error();
     }
     return SweepFolder{path, sweep};
@@ -227,8 +228,8 @@ std::string SweepFolder::name_of(std::size_t run) const {
            padded(run % sweep_->replicates, sweep_->replicates);
 }
 
-Result<void> SweepFolder::make_run_file_folder() const {
-    return make_folder(path_ + "/run-files");
+Result<void> SweepFolder::create_run_file_folder() const {
+    return create_folder(path_ + "/run-files");
 }
 
 std::optional<RunEnd> SweepFolder::end_of(std::size_t run, Wanted wanted) const {
@@ -244,7 +245,7 @@ Result<void> SweepFolder::add_part(std::size_t run, AtomicFile& table, Gathered&
     const std::string path = part_of(run);
     const auto damaged = [&] {
         return refusal(RefusalCode::DataLoss,
-                       path + " was changed; delete it, and the same command makes that run again");
+                       path + " was changed: delete it, and enter the same command again to repeat this run");
     };
     const auto line = last_line(path);
     if (!line) {

@@ -49,7 +49,7 @@ class SweepFolder {
     std::string run_file_of(std::size_t run) const { return path_ + "/run-files/" + name_of(run) + ".evod"; }
     std::string table() const { return path_ + "/runs.csv"; }
     /// Creates the folder for run files, if it does not exist.
-    base::Result<void> make_run_file_folder() const;
+    base::Result<void> create_run_file_folder() const;
 
     enum class Wanted { Rows, RowsAndRunFile };
     /// How a run ended; nullopt if one of the requested files is missing or incomplete.

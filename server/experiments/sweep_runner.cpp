@@ -66,17 +66,17 @@ void SweepRunner::sort_by_work(std::vector<std::size_t>& runs) const {
     std::ranges::stable_sort(runs, std::ranges::greater{}, [&](std::size_t run) { return work[cell_of(run)]; });
 }
 
-Result<std::size_t> SweepRunner::make(std::vector<std::size_t> runs) {
+Result<std::size_t> SweepRunner::execute(std::vector<std::size_t> runs) {
     sort_by_work(runs);
-    std::atomic<std::size_t> made = 0;
+    std::atomic<std::size_t> finished = 0;
     std::mutex mutex; // guards first_error
     std::optional<Refusal> first_error;
     for_each_trial(
         runs.size(), options_.jobs,
         [&](std::size_t index) {
-            const auto done = make(runs[index]);
+            const auto done = execute(runs[index]);
             if (done) {
-                made += *done;
+                finished += *done;
                 return;
             }
             const std::scoped_lock lock{mutex};
@@ -89,11 +89,11 @@ Result<std::size_t> SweepRunner::make(std::vector<std::size_t> runs) {
     if (first_error) {
         return *first_error;
     }
-    return made.load();
+    return finished.load();
 }
 
 /// Executes one run from beginning to end. Returns false if the run was stopped.
-Result<bool> SweepRunner::make(std::size_t run) const {
+Result<bool> SweepRunner::execute(std::size_t run) const {
     const std::size_t cell = cell_of(run), replicate = run % sweep_.replicates;
     const Parameters parameters = sweep_.parameters_of(cell);
     const auto expected = work_of_run(parameters);

@@ -42,9 +42,9 @@ class SweepRunner {
         : sweep_{sweep}, folder_{folder}, options_{std::move(options)} {}
 
     /// Executes these runs; the runs with the most work begin first. Returns the number of finished runs, which is
-    /// smaller than `runs` if stopped() returned true. After the first error, no further run begins. A stopped run
+    /// less than runs.size() if stopped() returned true. After the first error, no further run begins. A stopped run
     /// leaves no files.
-    base::Result<std::size_t> make(std::vector<std::size_t> runs);
+    base::Result<std::size_t> execute(std::vector<std::size_t> runs);
 
     /// The total work of these runs; nullopt if the work of any run is unknown.
     std::optional<double> work_of(const std::vector<std::size_t>& runs) const;
@@ -53,7 +53,7 @@ class SweepRunner {
     std::size_t cell_of(std::size_t run) const { return run / sweep_.replicates; }
     bool is_stopped() const { return failed_ || options_.stopped(); }
     void sort_by_work(std::vector<std::size_t>& runs) const;
-    base::Result<bool> make(std::size_t run) const;
+    base::Result<bool> execute(std::size_t run) const;
 
     const Sweep& sweep_;
     const SweepFolder& folder_;

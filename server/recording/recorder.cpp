@@ -97,8 +97,8 @@ std::optional<base::Refusal> Recorder::refusal() const {
         return std::nullopt;
     }
     return base::Refusal{.code = base::RefusalCode::Unavailable,
-                         .message = "no command is accepted while it cannot be recorded: " + *why +
-                                    "; send it again once the disk can be written",
+                         .message = "the server accepts no commands because it cannot record them: " + *why +
+                                    "; send the command again when the disk can be written",
                          .violations = {}};
 }
 
@@ -112,9 +112,9 @@ std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world
         std::error_code error; // if the file cannot be examined, its creation reports the reason
         if (std::filesystem::exists(taken, error)) {
             return base::refusal(base::RefusalCode::AlreadyExists,
-                                 "the run would be kept in " + taken +
-                                     ", which is there already and belongs to no world of this "
-                                     "server: move it away, or choose another name");
+                                 "the run would be stored in " + taken +
+                                     ", which exists already and belongs to no world of this "
+                                     "server: move that file, or choose another name");
         }
     }
     return std::nullopt;

@@ -90,7 +90,9 @@ class RunRecorder {
     void journal(CommandRecord command);
     /// Calls `done` on the storage thread once all records passed so far are on the disk.
     void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
-    /// Whether a checkpoint is due right after the last followed tick. spent: time for the simulation of that tick.
+    /// Whether a checkpoint is due right after the last followed tick.
+    ///
+    /// spent  time that the simulation took since the previous call.
     bool checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent);
     /// Creates a checkpoint. The caller must then pass the time that the simulation waited for it to checkpoint_took().
     void make_checkpoint(const simulation::World& world, base::Executor& executor);
@@ -114,10 +116,10 @@ class RunRecorder {
     RunNews news_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
-    // Time spent on simulation since the last stored beginning of a generation or checkpoint; since the last
-    // checkpoint.
-    std::chrono::nanoseconds since_beginning_{0}, since_checkpoint_{0};
-    std::chrono::nanoseconds copying_took_{0};
+    // Time spent on simulation since the last stored beginning of a generation or checkpoint.
+    std::chrono::nanoseconds since_beginning_{0};
+    std::chrono::nanoseconds since_checkpoint_{0}; // time spent on simulation since the last checkpoint
+    std::chrono::nanoseconds copying_took_{0};     // time that the simulation waited for the last checkpoint
     std::shared_ptr<StorageThread::CheckpointWriting> writing_ = std::make_shared<StorageThread::CheckpointWriting>();
 };
 

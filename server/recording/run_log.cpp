@@ -19,17 +19,17 @@ using base::Result;
 /// other_file  whether another file has the name now.
 Refusal name_lost(const std::string& path, bool other_file) {
     return {.code = base::RefusalCode::NotFound,
-            .message = path +
-                       (other_file ? " is another file than the one that is written" : " has been moved or deleted") +
-                       ": move it back; otherwise what is written from now on is lost when the server stops, and you "
-                       "have to put a copy there before the next start",
+            .message =
+                path + (other_file ? " is not the file that the server writes" : " has been moved or deleted") +
+                ": move the original file back; otherwise everything written from now on is lost when the server "
+                "stops, and you must restore a copy before the next start",
             .violations = {}};
 }
 
 Refusal exists_already(const std::string& path) {
     return {.code = base::RefusalCode::AlreadyExists,
             .message =
-                path + " is there already, and holds another run: move it away, then the server writes what waits",
+                path + " exists already and contains another run: move it away, and the server writes the waiting data",
             .violations = {}};
 }
 
@@ -155,7 +155,7 @@ Result<void> RunLog::shrink() {
         return fail(shrunk.error());
     }
     if (!large_reported && file->is_large()) {
-        log::warn("{} is larger than its limit: the generations that are always retained take more", path);
+        log::warn("{} is larger than --file-bytes-max: the data that is always retained exceeds this limit", path);
         large_reported = true;
     }
     return {};

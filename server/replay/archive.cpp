@@ -34,12 +34,12 @@ Result<bool> is_over(run_file::RunFile& file) {
 }
 
 /// Extends the reason why a file prevents the start by the actions that the operator can take.
-Refusal with_ways_out(Refusal why, const std::string& folder) {
-    const std::string move = "move it, and its -wal if there is one, out of " + folder;
+Refusal with_remedies(Refusal why, const std::string& folder) {
+    const std::string move = "move it (and its -wal file, if it exists) out of " + folder;
     if (why.code == RefusalCode::DataLoss) {
-        why.message += "; put a copy back, or " + move + " to start without its world";
+        why.message += "; restore a copy of the file, or " + move + " to start without its world";
     } else if (why.code == RefusalCode::FailedPrecondition) {
-        why.message += "; start the evod that made it, or " + move + " to start without its world";
+        why.message += "; start the version of evod that wrote it, or " + move + " to start without its world";
     } else if (why.code == RefusalCode::InvalidArgument) {
         why.message += "; " + move;
     }
@@ -92,7 +92,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
     auto files = folder->files();
     for (const std::string& file : files ? files->replaced : std::vector<std::string>{}) {
         if (auto finished = finish_replacing(*folder, file); !finished) {
-            return with_ways_out(finished.error(), path);
+            return with_remedies(finished.error(), path);
         }
     }
     if (files && !files->replaced.empty()) {
@@ -102,7 +102,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
         return files.error();
     }
     for (const std::string& file : files->strange) {
-        log::warn("{} is ignored: a run file is called NAME.evod, where NAME is a name of a world", file);
+        log::warn("{} is ignored: the name of a run file is NAME.evod, where NAME is a valid world name", file);
     }
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
@@ -110,17 +110,17 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
     for (const std::string& file : files->of_worlds) {
         const auto brought = archive->recover_world(file, options, executor);
         if (!brought) {
-            return with_ways_out(brought.error(), path);
+            return with_remedies(brought.error(), path);
         }
         if (!brought->empty()) {
             ended.push_back(*brought);
         }
     }
-    archive->remember(ended);
+    archive->read_ended_answers(ended);
     return archive;
 }
 
-void Archive::remember(const std::vector<std::string>& paths) {
+void Archive::read_ended_answers(const std::vector<std::string>& paths) {
     struct Ended {
         std::filesystem::file_time_type when;
         std::string path;
@@ -193,7 +193,7 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
     const auto name = std::filesystem::path{path}.stem().string();
     log::info({.world = name}, "world \"{}\" continues from generation {}, tick {} of {}{}", name,
               recovered->world.moment().generation, recovered->world.moment().tick, path,
-              was_closed ? "" : ", which no server has closed");
+              was_closed ? "" : "; the previous server did not close this file");
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
     recording::RunRecorder& run = recorder_->resume(name, *std::move(file), contents, generations_ended);

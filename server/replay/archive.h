@@ -16,8 +16,9 @@ namespace evod::replay {
 
 class Archive {
   public:
-    /// Answers of ended runs with which the reply cache begins. The newest runs come first, with up to this number of
-    /// answers each. After `answers_of_ended_bytes_max` in total, each older run contributes only its last answer.
+    /// When the server starts, the reply cache gets the last answers of ended runs: up to this number of each run,
+    /// beginning with the newest run. After `answers_of_ended_bytes_max` in total, each older run contributes only its
+    /// last answer.
     static constexpr std::uint32_t answers_kept_of_ended = 1000;
     static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
 
@@ -52,8 +53,8 @@ class Archive {
 
   private:
     Archive(run_file::DataFolder folder, const run_file::RunFile::Options& options);
-    /// Reads the answers of ended runs. Their place is before the answers of recovered worlds.
-    void remember(const std::vector<std::string>& paths);
+    /// Reads the answers of ended runs and inserts them before the answers of recovered worlds.
+    void read_ended_answers(const std::vector<std::string>& paths);
     /// Recovers one world. Returns an empty text if the world continues. If its run has ended, returns the new path of
     /// the file.
     base::Result<std::string> recover_world(const std::string& path, const run_file::RunFile::Options& options,

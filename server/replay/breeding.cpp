@@ -18,7 +18,7 @@ using base::Result;
 Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
     const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
     return {.code = RefusalCode::NotFound,
-            .message = std::string{"no such "} + field + " has bred in this run: allowed " + there_are,
+            .message = std::string{"no such "} + field + " has bred in this run: allowed: " + there_are,
             .violations = {{field, there_are, std::to_string(got)}},
             .reason = base::Reason::MomentNotFound};
 }
@@ -28,7 +28,7 @@ Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreedin
     const std::uint64_t first = file.identity().first_generation, last = file.generations().last();
     if (last <= first) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "no generation of this run has bred yet: the run is in its first one",
+                       .message = "no generation of this run has bred yet: the run is in its first generation",
                        .violations = {},
                        .reason = base::Reason::NotBredYet};
     }
@@ -129,7 +129,7 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         }
     }
     if (!are_stored(bred.record.descendants, children->begun.born[bred.island])) {
-        return damaged(" has bred other descendants than the stored ones");
+        return damaged(" bred descendants that differ from the stored ones");
     }
     return bred;
 }

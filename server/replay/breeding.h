@@ -13,7 +13,7 @@
 namespace evod::replay {
 
 struct WantedBreeding {
-    std::optional<std::uint64_t> generation; // generation of the parents; nullopt: the last one before `seen_from`
+    std::optional<std::uint64_t> generation; // of the parents; nullopt: the last generation before `seen_from`
     std::uint64_t seen_from = 0;             // the generation that a viewer shows now
     std::uint32_t island = 0;
     evolution::WantedRows rows;
@@ -27,9 +27,9 @@ struct Bred {
 };
 
 /// file  must have a pinned snapshot.
-/// stop  cancels the work, which is then refused with UNAVAILABLE.
+/// stop  cancels the work; the result is then a refusal with UNAVAILABLE.
 ///
-/// Refused for the same reasons as in GenerationReader. Also refused if the generation or the island does not exist, if
+/// Refused for the same reasons as GenerationReader::read(). Also refused if the generation or the island does not exist, if
 /// no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored descendants
 /// differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,

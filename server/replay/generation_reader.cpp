@@ -64,8 +64,8 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
     }
     whole.ended = run_file::end_of(world);
     if (const auto mismatch = compare(*statistics, whole.ended->statistics)) {
-        return damaged(generation, "simulated again has other statistics than the stored ones: " + mismatch->part +
-                                       ": stored " + mismatch->stored + ", simulated again " + mismatch->simulated);
+        return damaged(generation, "has other statistics when it is simulated again: " + mismatch->part + ": stored " +
+                                       mismatch->stored + ", simulated again " + mismatch->simulated);
     }
     return whole;
 }

@@ -19,7 +19,7 @@ struct WholeGeneration {
     std::optional<run_file::GenerationEnded> ended; // nullopt if the generation has not ended
 };
 
-/// Whether a generation that has begun can be read, because it is retained or this program can simulate it again.
+/// Whether a generation that has begun can be read: it is retained, or this program can simulate it again.
 inline bool is_in_reach(run_file::RunFile& file, std::uint64_t generation) {
     return !file.other_model() || file.retention().at_or_before(generation) == generation;
 }

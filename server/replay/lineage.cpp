@@ -154,7 +154,7 @@ class BackwardReader {
 } // namespace
 
 Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                             OfFamilies report) {
+                             ReportFamilies report) {
     GenerationReader reader{file, executor, stop};
     const std::uint64_t last = file.generations().last();
     std::optional<Births> births;
@@ -212,7 +212,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
 }
 
 Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor,
-                                       const std::stop_token& stop, OfFamilies report) {
+                                       const std::stop_token& stop, ReportFamilies report) {
     BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;

@@ -1,8 +1,8 @@
 // Lineage: the parents of organisms, including parents from other islands.
 //
-// The file stores each parent as a place on the island of the child, in the previous generation. If a migrant had taken
-// over this place, it was a copy of an organism of another island, and lineage reports that organism. The migrants are
-// recomputed from the fitness of the previous generation.
+// The file stores each parent as an organism id on the island of the child, in the previous generation. If a migrant had
+// replaced the organism with this id, the parent was a copy of an organism of another island. Then lineage reports that
+// other organism. The migrants are recomputed from the fitness of the previous generation.
 #pragma once
 
 #include "server/base/executor.h"
@@ -28,22 +28,23 @@ struct Family {
     bool initial = false;                      // the organisms have no parents
     std::uint32_t elite_count = 0, survivor_count = 0;
     std::vector<double> fitness; // empty if the generation has not ended
-    // For each organism: the number of its children in the next generation, and the number of places in which it
-    // survived itself. Empty if the next generation has not begun or is unknown.
+    // For each organism: the number of its children in the next generation, and the number of survivors there that are
+    // copies of it. Empty if the next generation has not begun or is unknown.
     std::vector<std::uint32_t> child_count, kept_count;
 };
 
-/// families  one per island. The function returns whether to continue.
-using OfFamilies = base::FunctionRef<bool(std::uint64_t generation, const std::vector<Family>& families)>;
+/// Receives the families of one generation, one per island. Returns whether to continue.
+using ReportFamilies = base::FunctionRef<bool(std::uint64_t generation, const std::vector<Family>& families)>;
 
 // For a run of another model, migrants and generations that are not retained are unknown.
 
 /// Calls `report` in ascending order for every generation that has begun and can be read.
 base::Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                                   OfFamilies report);
+                                   ReportFamilies report);
 /// Calls `report` in descending order, from this generation to the first one of the file, or until a generation cannot
-/// be read. Refused for the same reasons as in GenerationReader.
+/// be read. Refused for the same reasons as GenerationReader::read().
 base::Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation,
-                                             base::Executor& executor, const std::stop_token& stop, OfFamilies report);
+                                             base::Executor& executor, const std::stop_token& stop,
+                                             ReportFamilies report);
 
 } // namespace evod::replay

@@ -63,8 +63,8 @@ Found compare_part(const std::string& part, const T& stored, const T& simulated)
     return Mismatch{part, text_of(stored), text_of(simulated)};
 }
 
-/// of_island  the island as text, such as " on island 3".
-/// name       the value of one organism, such as "the fitness of organism".
+/// name       name of the value, to which the index of the element is appended: "the fitness of organism".
+/// of_island  the island as text: " on island 3".
 template <class T>
 Found compare_each(const std::string& name, const std::string& of_island, std::span<const T> stored,
                    std::span<const T> simulated) {
@@ -77,7 +77,7 @@ Found compare_each(const std::string& name, const std::string& of_island, std::s
     }
     return compare_part(name + " " + std::to_string(one - stored.begin()) + of_island, *one, *other);
 }
-/// name       the value of all organisms, such as "the fitness".
+/// name  name of the value: "the fitness".
 template <class T>
 Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
                         std::span<const T> simulated) {
@@ -145,14 +145,15 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
             compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents)) {
         return found;
     }
-    if (auto found = compare_part("the number of the elite" + of_island, stored.elite_count, simulated.elite_count)) {
+    if (auto found =
+            compare_part("the number of elite organisms" + of_island, stored.elite_count, simulated.elite_count)) {
         return found;
     }
     if (auto found =
             compare_part("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count)) {
         return found;
     }
-    if (auto found = compare_part("the number of genes put onto their bounds" + of_island, stored.clamped_count,
+    if (auto found = compare_part("the number of genes clamped to their bounds" + of_island, stored.clamped_count,
                                   simulated.clamped_count)) {
         return found;
     }
@@ -204,24 +205,25 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
             compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks)) {
         return found;
     }
-    if (auto found = compare_organisms<std::uint32_t>("the food", of_island, one.food_eaten, other.food_eaten)) {
+    if (auto found = compare_organisms<std::uint32_t>("the food eaten", of_island, one.food_eaten, other.food_eaten)) {
         return found;
     }
-    if (auto found = compare_organisms<std::uint32_t>("the poison", of_island, one.poison_eaten, other.poison_eaten)) {
+    if (auto found =
+            compare_organisms<std::uint32_t>("the poison eaten", of_island, one.poison_eaten, other.poison_eaten)) {
         return found;
     }
-    if (auto found = compare_organisms<IslandState::Organism>("the place, velocity and health", of_island,
+    if (auto found = compare_organisms<IslandState::Organism>("the position, velocity and health", of_island,
                                                               stored.organisms, simulated.organisms)) {
         return found;
     }
-    if (auto found = compare_each<IslandState::Crate>("the place and velocity of crate", of_island, stored.crates,
+    if (auto found = compare_each<IslandState::Crate>("the position and velocity of crate", of_island, stored.crates,
                                                       simulated.crates)) {
         return found;
     }
-    if (auto found = compare_each<Items::Item>("the place of food", of_island, stored.food, simulated.food)) {
+    if (auto found = compare_each<Items::Item>("the position of food", of_island, stored.food, simulated.food)) {
         return found;
     }
-    if (auto found = compare_each<Items::Item>("the place of poison", of_island, stored.poison, simulated.poison)) {
+    if (auto found = compare_each<Items::Item>("the position of poison", of_island, stored.poison, simulated.poison)) {
         return found;
     }
     if (stored.counts == simulated.counts) {
@@ -266,7 +268,7 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
         }
     }
     const evolution::Progress &one = stored.progress, &other = simulated.progress;
-    if (auto found = compare_part("the progress: generations over", one.generations, other.generations)) {
+    if (auto found = compare_part("the progress: completed generations", one.generations, other.generations)) {
         return found;
     }
     if (auto found = compare_part("the progress: generations without improvement", one.stagnant, other.stagnant)) {
@@ -275,11 +277,12 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
     if (auto found = compare_part("the progress: the best fitness so far", one.best_fitness, other.best_fitness)) {
         return found;
     }
-    if (auto found = compare_part("the progress: the best fitness of the generation before", one.last_best_fitness,
+    if (auto found = compare_part("the progress: the best fitness of the previous generation", one.last_best_fitness,
                                   other.last_best_fitness)) {
         return found;
     }
-    return compare_part("the progress: whether all had died out", one.last_died_out, other.last_died_out);
+    return compare_part("the progress: whether the previous generation died out", one.last_died_out,
+                        other.last_died_out);
 }
 
 Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {

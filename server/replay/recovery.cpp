@@ -47,8 +47,8 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     for (const run_file::HashRecord& hash : *hashes) {
         rerun->advance_to(hash.tick, executor);
         if (rerun->world().moment().tick != hash.tick || rerun->world().hash() != hash.hash) {
-            return not_recovered(file, "simulated again, tick " + std::to_string(hash.tick) +
-                                           " has another state hash than the stored one");
+            return not_recovered(file, "the stored state hash of tick " + std::to_string(hash.tick) +
+                                           " differs from that of a new simulation");
         }
     }
     rerun->advance_to(last_tick, executor);

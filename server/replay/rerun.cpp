@@ -20,9 +20,9 @@ Refusal damaged(const run_file::RunFile& file, const std::string& what) {
     return damaged(file.path(), what);
 }
 
-Refusal not_to_be_had(const std::string& path, const ParameterChange& change) {
-    return damaged(path,
-                   "entry " + std::to_string(change.entry) + " of its journal has parameters that no world can have");
+Refusal impossible_change(const std::string& path, const ParameterChange& change) {
+    return damaged(path, "entry " + std::to_string(change.entry) +
+                             " of its journal is a change that no server could have accepted");
 }
 
 /// The command in a serialized request; nullopt if this program does not recognise it as a command.
@@ -52,11 +52,11 @@ Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
     for (const run_file::JournalEntry& entry : journal) {
         auto command = command_of(entry.origin.request);
         if (!command) {
-            return damaged(path, "entry " + std::to_string(entry.number) + " of its journal is no command");
+            return damaged(path, "entry " + std::to_string(entry.number) + " of its journal is not a command");
         }
         if (entry.tick < tick) {
             return damaged(path, "entry " + std::to_string(entry.number) +
-                                     " of its journal is from an earlier tick than the one before");
+                                     " of its journal has an earlier tick than the previous entry");
         }
         tick = entry.tick;
         if (auto* change = std::get_if<simulation::SetParameters>(&*command)) {
@@ -243,7 +243,7 @@ Result<void> ComingChanges::plan_again(const std::string& path, std::span<const 
             break;
         }
         if (change.cancels && !world.cancel(*change.cancels)) {
-            return not_to_be_had(path, change);
+            return impossible_change(path, change);
         }
         if (!change.at) {
             continue;
@@ -251,7 +251,7 @@ Result<void> ComingChanges::plan_again(const std::string& path, std::span<const 
         if (std::ranges::any_of(change.assignments,
                                 [](const auto& assignment) { return fault_of(assignment).has_value(); }) ||
             (change.at->tick && *change.at->tick <= change.tick)) {
-            return not_to_be_had(path, change);
+            return impossible_change(path, change);
         }
         (void)world.add_planned({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
     }
@@ -266,7 +266,7 @@ Result<void> ComingChanges::extend(const std::string& path, std::span<const Para
         }
         for (const parameters::Assignment& assignment : change.assignments) {
             if (fault_of(assignment)) {
-                return not_to_be_had(path, change);
+                return impossible_change(path, change);
             }
         }
         last_entry_ = change.entry;
@@ -276,7 +276,7 @@ Result<void> ComingChanges::extend(const std::string& path, std::span<const Para
     return {};
 }
 
-bool ComingChanges::make(const ParameterChange& change, simulation::World& world) {
+bool ComingChanges::apply(const ParameterChange& change, simulation::World& world) {
     if (change.cancels) {
         return world.cancel(*change.cancels).has_value();
     }
@@ -299,15 +299,15 @@ void ComingChanges::make_due(simulation::World& world, std::uint64_t last) {
         return change.tick <= world.moment().tick && change.entry <= last;
     };
     for (; !fault_ && next_ < changes_.size() && is_due(changes_[next_]); ++next_) {
-        if (!make(changes_[next_], world)) {
-            fault_ = not_to_be_had(path_, changes_[next_]);
+        if (!apply(changes_[next_], world)) {
+            fault_ = impossible_change(path_, changes_[next_]);
         }
     }
 }
 
 void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
     world_.advance_tick(executor);
-    make_changes(last);
+    apply_changes(last);
 }
 
 void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {

@@ -55,12 +55,12 @@ class ComingChanges {
     void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
     /// Number of the last journal entry that was added.
     std::uint64_t last_entry() const { return last_entry_; }
-    /// Set if the parameters of that moment did not allow a change to be accepted; this means that the file is damaged.
+    /// Set if a change cannot have been accepted with the parameters of its moment; the file is then damaged.
     const std::optional<base::Refusal>& fault() const { return fault_; }
 
   private:
-    /// Applies one change as Laboratory did. Returns false if Laboratory cannot have accepted the change.
-    static bool make(const ParameterChange& change, simulation::World& world);
+    /// Applies one change, as Laboratory applied it. Returns false if Laboratory cannot have accepted the change.
+    static bool apply(const ParameterChange& change, simulation::World& world);
 
     std::uint64_t last_entry_; // number of the last journal entry that was added
     std::string path_;         // path of the file
@@ -122,13 +122,13 @@ class Rerun {
     /// over.
     void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
     /// Applies the remaining changes after the last tick, up to journal entry `last`.
-    void make_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.make_due(world_, last); }
+    void apply_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.make_due(world_, last); }
     /// Simulates up to and including this tick, or up to the end of the run.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
     Rerun(simulation::World world, ComingChanges changes) : world_{std::move(world)}, changes_{std::move(changes)} {
-        make_changes();
+        apply_changes();
     }
     /// Reads the parameter changes of a run. Refused if this program cannot simulate the run.
     static base::Result<std::vector<ParameterChange>> changes_of(run_file::RunFile& file);

@@ -49,11 +49,12 @@ const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, s
     return organism < survivors ? "survivor" : "child";
 }
 
-/// ended  the outcome of the same island; nullopt before the end of the generation.
+/// The results of one island in a generation that has ended.
 struct EndedIsland {
     const run_file::IslandOutcome& outcome;
     const simulation::GenerationStatistics& statistics;
 };
+/// ended  results of the organism's island; nullopt before the end of the generation.
 void write_organism(Table& table, const evolution::NextGeneration& born, std::size_t organism, double tick_s,
                     const std::optional<EndedIsland>& ended) {
     if (born.parents.empty()) {
@@ -91,7 +92,7 @@ std::optional<Refusal> out_of_reach(run_file::RunFile& file, const char* field, 
     }
     Refusal refused = *file.other_model();
     refused.violations.push_back({field,
-                                  "a retained generation, the nearest are " +
+                                  "a retained generation; the nearest are " +
                                       std::to_string(file.retention().at_or_before(generation)) + " and " +
                                       std::to_string(file.retention().at_or_after(generation)),
                                   std::to_string(generation)});

@@ -27,7 +27,7 @@ std::string range_text(std::uint64_t first, std::uint64_t last) {
 
 Refusal no_such(const char* field, const std::string& there_are, std::uint64_t got) {
     return {.code = RefusalCode::NotFound,
-            .message = std::string{"the run has no such "} + field + ": there are " + there_are,
+            .message = std::string{"the run has no such "} + field + ": allowed: " + there_are,
             .violations = {{field, there_are, std::to_string(got)}},
             .reason = base::Reason::MomentNotFound};
 }
@@ -99,7 +99,7 @@ Result<std::unique_ptr<run_file::RunFile>> StoredRun::open() const {
     }
     return refused.value_or(
         Refusal{.code = RefusalCode::NotFound,
-                .message = paths_.front() + " is the file of another run now: close this replay and open it again",
+                .message = paths_.front() + " now contains another run: close this replay and open a new one",
                 .violations = {}});
 }
 

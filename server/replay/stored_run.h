@@ -1,8 +1,7 @@
-// Stored run: the file of a run, for replays: which moments it contains, and from which stored state each can be
-// simulated.
+// Stored run: finds a moment in the file of a run, and the stored state from which the moment can be simulated.
 //
-// The file is opened again for each use. It is also found if it has been renamed because the run ended. So the run may
-// be continued, reset or purged between two uses.
+// The file is opened again for each use, also if it has been renamed because the run ended. So the run may be
+// continued, reset or purged between two uses.
 //
 // Threads      no threads of its own. Each thread uses its own copy of this object.
 #pragma once

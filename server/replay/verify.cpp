@@ -62,7 +62,7 @@ class StretchCheck {
             check_beginning_of_run();
         }
         if (!done_.difference && !can_be_simulated(first)) {
-            differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
+            differ(agrees_, {"the chromosomes", "outside their bounds", "within their bounds"});
         }
         if (done_.difference) {
             return done_;
@@ -161,7 +161,7 @@ class StretchCheck {
                 if (!check_checkpoint(world, *checkpoint++)) {
                     return;
                 }
-                rerun.make_changes();
+                rerun.apply_changes();
             } else {
                 rerun.advance_tick(executor_);
             }

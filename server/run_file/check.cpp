@@ -25,7 +25,7 @@ Result<void> check_purged_generation(RunFile& file, std::uint64_t generation) {
         return statistics.error();
     }
     if (statistics->size() != (*opening)->parameters.active.island_count) {
-        return file.damaged("the statistics of generation " + std::to_string(generation));
+        return file.damaged("a row of the statistics of generation " + std::to_string(generation));
     }
     return {};
 }
@@ -132,7 +132,7 @@ Result<void> check_end_mark(RunFile& file) {
     const EndMark found = file.contents();
     if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
                   (*mark)->hashes != found.hashes || (*mark)->journal_entries != found.journal_entries)) {
-        return file.damaged("the number of rows before its end mark");
+        return file.damaged("a row before its end mark");
     }
     return file.database().unless_failed();
 }

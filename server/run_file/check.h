@@ -19,8 +19,8 @@ base::Result<void> check(RunFile& file);
 /// Checks that the file contains as many rows as its end mark states. Succeeds if there is no end mark.
 base::Result<void> check_end_mark(RunFile& file);
 
-/// Lets SQLite check a table and its indices for damage. For table "1", SQLite checks the whole file up to the first
-/// fault.
+/// Lets SQLite check a table and its indices for damage. With "1" as `table`, SQLite checks the whole file and stops at
+/// the first fault.
 base::Result<void> check_tree(RunDatabase& database, const std::string& table);
 
 } // namespace evod::run_file

@@ -224,7 +224,7 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
-        return refusal("its size is not that of a state of this world");
+        return refusal("its size differs from that of a state of this world");
     }
     std::string columns(bytes, '\0');
     const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
@@ -240,7 +240,7 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
     }
     const bool over = bytes.front() == 1;
     if (bytes.size() != bytes_of(shapes, over)) {
-        return refusal("its size is not that of a state of this world");
+        return refusal("its size differs from that of a state of this world");
     }
     Columns columns{bytes.substr(1)};
     state.islands.assign(shapes.size(), {});

@@ -71,7 +71,7 @@ class Checkpoints {
     };
     base::Result<std::vector<StoredCheckpoint>> read_where(const std::string& condition,
                                                            const std::vector<std::int64_t>& values);
-    /// Appends all parts of a state except the last part, which is in the row of the checkpoint.
+    /// Appends the parts of a state to `state`. The last part is in the row of the checkpoint and is not read here.
     base::Result<void> read_parts(std::uint64_t tick, std::string& state, std::vector<std::int64_t>& checksums);
     bool write_next(const StoredCheckpoint& checkpoint, Unfinished& unfinished);
     std::string orphans_condition() const;

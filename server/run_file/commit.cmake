@@ -1,5 +1,5 @@
-# Writes OUTPUT, a header that defines the commit of the folder SOURCE, or an empty text if the commit is unknown. Every build
-# runs this script, so that the header is never outdated. A header whose contents would not change is not written.
+# Writes the header OUTPUT, which defines EVOD_COMMIT as the commit of the folder SOURCE, or as an empty text if the commit is
+# unknown. Every build runs this script. It leaves the header untouched if its contents would not change.
 cmake_minimum_required(VERSION 3.25)
 set(commit "")
 find_package(Git QUIET)

@@ -111,7 +111,7 @@ base::Result<void> rename_run_file(const std::string& from, const std::string& t
         for (const Companion& companion : companions) {
             fs::remove(to + companion.suffix, ignored);
         }
-        return refusal(base::RefusalCode::Unavailable, from + " cannot be renamed to " + to + ": " + error.message());
+        return refusal(base::RefusalCode::Unavailable, "cannot rename " + from + " to " + to + ": " + error.message());
     }
     for (const Companion& companion : companions) {
         if (companion.exists && !companion.linked) {
@@ -127,7 +127,7 @@ base::Result<void> remove_run_file(const std::string& path) {
     std::error_code error, ignored;
     fs::remove(path, error);
     if (error) {
-        return refusal(base::RefusalCode::Unavailable, path + " cannot be removed: " + error.message());
+        return refusal(base::RefusalCode::Unavailable, "cannot delete " + path + ": " + error.message());
     }
     for (const char* suffix : {"-wal", "-shm", "-journal"}) {
         fs::remove(path + suffix, ignored);
@@ -147,9 +147,10 @@ base::Result<void> expect_file_with_one_name(const std::string& path) {
                                                          " to start without its world");
     }
     if (S_ISLNK(status.st_mode)) {
-        return refusal(RefusalCode::FailedPrecondition,
-                       path + " is a link, and another server may write to its target: replace it with a copy, or name "
-                              "the folder of the file itself with --data");
+        return refusal(
+            RefusalCode::FailedPrecondition,
+            path + " is a symbolic link, and another server may write to its target: replace the link with a copy "
+                   "of the target, or name the folder of the target with --data");
     }
     if (!S_ISREG(status.st_mode)) {
         return refusal(RefusalCode::InvalidArgument,
@@ -157,8 +158,8 @@ base::Result<void> expect_file_with_one_name(const std::string& path) {
     }
     if (status.st_nlink > 1) {
         return refusal(RefusalCode::FailedPrecondition,
-                       path + " has another name, a hard link, under which another server may write to it: remove "
-                              "that name, or replace this one with a copy");
+                       path + " has a second name, a hard link, under which another server may write to it: delete "
+                              "one of the two names, or replace this file with a copy");
     }
     return {};
 }

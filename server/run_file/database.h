@@ -74,7 +74,8 @@ class Statement {
     void bind(int parameter, std::span<const std::byte> bytes);
     void bind_null(int parameter);
 
-    /// Moves to the next row. Returns false if there is none, or after an error; then the statement may be run again.
+    /// Moves to the next row. Returns false if there is none, or after an error. The next call then starts the statement
+    /// again.
     bool row();
     /// Runs a statement that returns no rows.
     void done();

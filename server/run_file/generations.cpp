@@ -11,7 +11,7 @@ namespace {
 using base::Result;
 
 std::string accounts_text(std::uint64_t generation) {
-    return "the selection accounts of generation " + std::to_string(generation);
+    return "a row of the selection accounts of generation " + std::to_string(generation);
 }
 
 std::vector<std::int64_t> value_of(std::uint64_t generation) {
@@ -104,7 +104,9 @@ Result<std::vector<evolution::NextGeneration>> Generations::born_in(const simula
 Result<simulation::Founders> Generations::founders_of(const GenerationBegun& begun) {
     simulation::Founders islands;
     const std::uint64_t generation = begun.opening.moment.generation;
-    const auto bad = [&] { return database_.damaged("the founders of generation " + std::to_string(generation)); };
+    const auto bad = [&] {
+        return database_.damaged("a row of the founders of generation " + std::to_string(generation));
+    };
     TableReader<FoundersTable> rows{database_.database, of_generation, value_of(generation)};
     bool known = true;
     FoundersTable::Row row{};

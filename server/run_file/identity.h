@@ -1,4 +1,4 @@
-// Identity: the tables `run` and `first_population` of a run file. They store what the run began with.
+// Identity: the tables `run` and `first_population` of a run file. They store the initial state and settings of the run.
 #pragma once
 
 #include "server/run_file/records.h"

@@ -20,7 +20,7 @@ namespace evod::run_file {
 
 class Retention {
   public:
-    /// identity, keep_every  values of this file. They are kept as references, so they may be filled in later.
+    /// identity, keep_every  values of this file. This object stores references, so they may be set later.
     Retention(RunDatabase& database, const RunIdentity& identity, const std::uint64_t& keep_every)
         : database_{database}, identity_{identity}, keep_every_{keep_every} {}
 
@@ -30,13 +30,13 @@ class Retention {
     /// A new file retains every keep_every-th generation. The value never changes during the life of a file.
     std::uint64_t keep_every() const { return keep_every_; }
     bool is_retained(std::uint64_t generation);
-    /// The last retained generation at or before this one. Returns this one if the run has not begun it.
+    /// The last retained generation up to `generation`. Returns `generation` if the run has not begun it.
     std::uint64_t at_or_before(std::uint64_t generation);
-    /// The first retained generation at or after this one. The run must have begun this one.
+    /// The first retained generation from `generation` on. The run must have begun `generation`.
     std::uint64_t at_or_after(std::uint64_t generation);
     /// Whether the state hash after this tick is retained. The tick must be a multiple of ticks_per_hash.
     bool is_hash_retained(std::uint64_t tick) const;
-    /// The first tick after this one with a retained state hash.
+    /// The first tick after `tick` with a retained state hash.
     std::uint64_t next_hash_after(std::uint64_t tick) const;
 
     /// Whether the rows of the file occupy more than this number of bytes. Returns false during a purge.
@@ -52,7 +52,7 @@ class Retention {
     base::Result<void> purge_step();
 
   private:
-    /// Progress of a purge: it is complete up to this generation and, for state hashes, up to this tick.
+    /// Progress of a purge: generations are purged up to `generation`, state hashes up to `tick`.
     struct Purge {
         std::uint64_t generation = 0, tick = 0;
     };

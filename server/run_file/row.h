@@ -45,7 +45,7 @@ class RowWriter {
     /// columns  names of the columns, without `checksum`.
     RowWriter(Database& database, const std::string& table, const std::vector<std::string>& columns);
 
-    // Call these for the columns of a row, in order, then finish().
+    // For each row: call one of these functions for each column, in order, then finish().
     RowWriter& integer(std::int64_t value);
     RowWriter& integer(std::optional<std::int64_t> value);
     RowWriter& real(double value);
@@ -73,7 +73,7 @@ class RowReader {
     /// Moves to the next row. Returns false if there is none, or if the database has failed.
     bool next();
 
-    // Call these for the columns of a row, in order, then sound().
+    // For each row: call one of these functions for each column, in order, then sound().
     std::int64_t integer();
     std::optional<std::int64_t> optional_integer();
     double real();

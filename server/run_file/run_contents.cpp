@@ -16,9 +16,9 @@ std::optional<Refusal> RunContents::other_model() const {
         return std::nullopt;
     }
     return refusal(RefusalCode::FailedPrecondition,
-                   path() + " was made with evod " + identity().evod_version + ", which followed version " +
-                       std::to_string(identity().model_version) + " of the model; this evod " + EVOD_VERSION +
-                       " follows version " + std::to_string(simulation::model_version) +
+                   path() + " was created by evod " + identity().evod_version + " with model version " +
+                       std::to_string(identity().model_version) + "; this evod " + EVOD_VERSION +
+                       " has model version " + std::to_string(simulation::model_version) +
                        ", so it can read the file (`evod export`) but not simulate the run again");
 }
 

@@ -6,7 +6,7 @@ using base::RefusalCode;
 
 base::Refusal RunDatabase::failure() const {
     if (database.damaged()) {
-        return refusal(RefusalCode::DataLoss, path + " is damaged, or no run file: " + database.error());
+        return refusal(RefusalCode::DataLoss, path + " is damaged or is not a run file: " + database.error());
     }
     return refusal(RefusalCode::Unavailable, path + ": " + database.error());
 }
@@ -15,7 +15,7 @@ base::Refusal RunDatabase::damaged(const std::string& what) const {
     if (database.failed()) {
         return failure();
     }
-    return refusal(RefusalCode::DataLoss, path + " is damaged: " + what + " is not as it was written");
+    return refusal(RefusalCode::DataLoss, path + " is damaged: " + what + " is missing or was changed");
 }
 
 std::string row_text(const std::string& table, std::uint64_t key) {

@@ -15,7 +15,7 @@ namespace evod::run_file {
 struct RunDatabase {
     const std::string path;
     Database database;
-    bool has_end_mark = false; // whether there may be an end mark; the first transaction deletes it
+    bool has_end_mark = false; // the file may contain an end mark; the first transaction deletes it
 
     RunDatabase(std::string file, Database::Mode mode, const char* vfs)
         : path{std::move(file)}, database{path, mode, vfs} {}
@@ -41,7 +41,7 @@ struct RunDatabase {
 
     /// The error of the database, with the path of the file: DATA_LOSS if SQLite found damage, otherwise UNAVAILABLE.
     base::Refusal failure() const;
-    /// A DATA_LOSS refusal with the message that `what` differs from what was written.
+    /// A DATA_LOSS refusal whose message says that `what` is missing or was changed.
     base::Refusal damaged(const std::string& what) const;
     /// Returns the value, or failure() if the database has failed.
     template <class T>

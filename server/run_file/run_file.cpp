@@ -21,7 +21,7 @@ using base::RefusalCode;
 using base::Result;
 
 Refusal exists_already(const std::string& path) {
-    return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    return refusal(RefusalCode::AlreadyExists, path + " exists already");
 }
 
 /// SQLite treats a file of one byte or less as an empty database, and deletes the log beside it.

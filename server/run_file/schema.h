@@ -14,7 +14,7 @@ constexpr std::int64_t format_version = 4;
 void create_schema(RunDatabase& database);
 
 /// Refuses the database unless it is a run file of this format, contains the tables of this format, and contains no
-/// trigger, view or other index. Reads only SQLite's own tables, because a view or trigger in an untrusted file could
+/// other table or index and no trigger or view. Reads only SQLite's own tables, because a view or trigger in an untrusted file could
 /// run code.
 base::Result<void> check_schema(RunDatabase& database);
 

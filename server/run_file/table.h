@@ -171,7 +171,7 @@ class PutColumns {
     RowWriter& writer_;
 };
 
-/// Reads the columns of a row. well_formed is false if the size of a BLOB does not fit its member.
+/// Reads the columns of a row. well_formed is false if the size of a BLOB is invalid for the type of its member.
 class GetColumns {
   public:
     explicit GetColumns(RowReader& reader) : reader_{reader} {}

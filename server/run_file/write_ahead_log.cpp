@@ -197,8 +197,8 @@ Result<void> check_log(const std::string& path_of_run_file, LogIndex index) {
             const std::string at = std::to_string(*damage);
             return refusal(RefusalCode::DataLoss,
                            path + " is damaged at byte " + at +
-                               ": what was committed from there on had been on the disk, and would be lost; to accept "
-                               "that loss, cut it off there: truncate -s " +
+                               ": evod would lose all data after this byte, although it was on the disk; to accept "
+                               "the loss, truncate the file: truncate -s " +
                                at + " " + path);
         }
     }

@@ -127,7 +127,7 @@ class FullDisk(unittest.TestCase):
         self.assertIn("full", server.output())
         refused = control.call(10, **set_parameter("food_health", 5))
         self.assertEqual(refused.status.code, UNAVAILABLE)
-        self.assertIn("no command is accepted while it cannot be recorded", refused.status.message)
+        self.assertIn("the server accepts no commands because it cannot record them", refused.status.message)
         self.assertIn("full", refused.status.message)
         return asking
 

@@ -74,7 +74,7 @@ TEST(SweepFolder, WithResultsOfAnUnknownSweepIsRefused) {
     const Sweep sweep = two_cells();
     const auto opened = SweepFolder::open(folder.path(), sweep);
     ASSERT_FALSE(opened);
-    EXPECT_THAT(opened.error().message, HasSubstr("/runs.csv exists without the sweep.txt"));
+    EXPECT_THAT(opened.error().message, HasSubstr("/runs.csv exists, but the sweep.txt"));
     EXPECT_EQ(text_of(folder.path() + "/runs.csv"), "mine");
     EXPECT_FALSE(SweepFolder::open(folder.path() + "/runs.csv", sweep)); // a file
 }
@@ -101,7 +101,7 @@ TEST(SweepFolder, ARunIsFinishedWhenItsPartIsComplete) {
         EXPECT_EQ(folder->end_of(3, Wanted::Rows)->rows, 1u);
     }
     EXPECT_FALSE(folder->end_of(3, Wanted::RowsAndRunFile));
-    ASSERT_TRUE(folder->make_run_file_folder());
+    ASSERT_TRUE(folder->create_run_file_folder());
     write(folder->run_file_of(3), "");
     EXPECT_TRUE(folder->end_of(3, Wanted::RowsAndRunFile));
 }

@@ -23,7 +23,7 @@ Sweep small_sweep() {
 std::string table_of(const Sweep& sweep, const std::string& path, std::size_t jobs) {
     const auto folder = SweepFolder::open(path, sweep);
     SweepRunner runner{sweep, *folder, {.jobs = jobs}};
-    const auto made = runner.make({0, 1, 2, 3});
+    const auto made = runner.execute({0, 1, 2, 3});
     EXPECT_TRUE(made && *made == 4);
     EXPECT_TRUE(folder->gather());
     std::ifstream table{folder->table()};
@@ -51,7 +51,7 @@ TEST(SweepRunner, ReportsAllOfTheExpectedWork) {
                                 ++runs;
                             }}};
     const std::vector<std::size_t> all{0, 1, 2, 3};
-    ASSERT_TRUE(runner.make(all));
+    ASSERT_TRUE(runner.execute(all));
     EXPECT_EQ(runs, 4u);
     EXPECT_DOUBLE_EQ(work, *runner.work_of(all));
     EXPECT_DOUBLE_EQ(work, 4 * 3 * 4 / sweep.parameters.tick_s); // runs, generations, organisms
@@ -64,7 +64,7 @@ TEST(SweepRunner, AStoppedRunLeavesNoFile) {
     std::atomic<bool> stopped = false;
     SweepRunner runner{
         sweep, *folder, {.stopped = [&] { return stopped.load(); }, .on_generation = [&](double) { stopped = true; }}};
-    const auto made = runner.make({0, 1, 2, 3});
+    const auto made = runner.execute({0, 1, 2, 3});
     ASSERT_TRUE(made);
     EXPECT_EQ(*made, 0u);
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path() + "/sweep/parts"));
@@ -76,7 +76,7 @@ TEST(SweepRunner, AnErrorEndsTheSweep) {
     const auto folder = SweepFolder::open(temporary.path() + "/sweep", sweep);
     std::filesystem::remove_all(temporary.path() + "/sweep/parts");
     SweepRunner runner{sweep, *folder, {.jobs = 2}};
-    EXPECT_FALSE(runner.make({0, 1, 2, 3}));
+    EXPECT_FALSE(runner.execute({0, 1, 2, 3}));
 }
 
 TEST(SweepRunner, TheWorkOfARunWithoutALimitIsUnknown) {

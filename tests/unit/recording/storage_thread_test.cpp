@@ -102,9 +102,8 @@ TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
                                    command();
                                    std::this_thread::sleep_for(10ms);
                                }));
-        EXPECT_THAT(*thread.trouble(),
-                    testing::HasSubstr(path + (another ? " is another file than the one that is written"
-                                                       : " has been moved or deleted")));
+        EXPECT_THAT(*thread.trouble(), testing::HasSubstr(path + (another ? " is not the file that the server writes"
+                                                                          : " has been moved or deleted")));
         const int at_trouble = written;
         command();
         std::this_thread::sleep_for(20ms);

@@ -196,13 +196,13 @@ TEST_F(CheckpointTest, ACheckpointOfAnotherWorldIsReported) {
     expect_reported(other, "its state hash differs", "the state hash");
     other = sound;
     other.state.islands[1].food[3].x += 1;
-    expect_reported(other, "its state hash differs", "the checkpoint: the place of food 3 on island 1");
+    expect_reported(other, "its state hash differs", "the checkpoint: the position of food 3 on island 1");
     other = sound;
     other.state.islands[0].food[3].x = -1;
-    expect_reported(other, "position of an item", "the checkpoint: the place of food 3 on island 0");
+    expect_reported(other, "position of an item", "the checkpoint: the position of food 3 on island 0");
     other = sound;
     other.state.islands[0].crates.resize(1);
-    expect_reported(other, "its size is not", "the checkpoint");
+    expect_reported(other, "its size differs", "the checkpoint");
     other = sound;
     other.state.parameters.active.damping = 0.5;
     expect_reported(other, "parameters", "the checkpoint: the parameter damping, in effect");

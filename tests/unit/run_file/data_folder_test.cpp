@@ -105,7 +105,7 @@ TEST_F(ArchiveTest, ADamagedFileIsNamedAndPreventsTheStart) {
     ASSERT_FALSE(archive);
     EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
     EXPECT_THAT(archive.error().message, HasSubstr("w.evod is damaged"));
-    EXPECT_THAT(archive.error().message, HasSubstr("put a copy back, or move it"));
+    EXPECT_THAT(archive.error().message, HasSubstr("restore a copy of the file, or move it"));
     EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
 }
 
@@ -119,19 +119,19 @@ TEST_F(ArchiveTest, AForeignFileIsRefusedWithARemedy) {
         EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
     };
     std::ofstream{path} << std::string(5000, 'x');
-    expect_refused(" is damaged, or no run file: ", "move it");
+    expect_refused(" is damaged or is not a run file: ", "move it");
     std::filesystem::remove(path);
     Database{path, Database::Mode::Create}.run("CREATE TABLE songs (title TEXT)");
     expect_refused(" is not a run file of evod; ", "move it");
     std::filesystem::remove(path);
     record(10);
     Database{path, Database::Mode::Write}.run("PRAGMA user_version = 9");
-    expect_refused(" was written by a newer evod", "start the evod that made it, or move it");
+    expect_refused(" was written by a newer evod", "start the version of evod that wrote it, or move it");
     std::filesystem::remove(path);
     ASSERT_TRUE(RunFile::create(
         path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
         {}));
-    expect_refused(" was made with evod 0.0.1", "`evod export`");
+    expect_refused(" was created by evod 0.0.1", "`evod export`");
 }
 
 TEST_F(ArchiveTest, AFolderInPlaceOfARunFileIsRefusedWithARemedy) {
@@ -144,10 +144,10 @@ TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderBoth) {
     record(60);
     const std::string path = folder.path() + "/w.evod", elsewhere = folder.path() + "/elsewhere.of";
     fs::create_hard_link(path, elsewhere);
-    EXPECT_THAT(open().error().message, HasSubstr(path + " has another name, a hard link"));
+    EXPECT_THAT(open().error().message, HasSubstr(path + " has a second name, a hard link"));
     fs::remove(path);
     fs::create_symlink(elsewhere, path);
-    EXPECT_THAT(open().error().message, HasSubstr(path + " is a link"));
+    EXPECT_THAT(open().error().message, HasSubstr(path + " is a symbolic link"));
     EXPECT_TRUE(RunFile::open_read_only(path)) << "it may be read";
     fs::remove(path);
     fs::rename(elsewhere, path);
@@ -201,7 +201,7 @@ TEST_F(ArchiveTest, ATakenNameLeavesNoPartOfANewWorld) {
         StorageThread thread{{}, std::chrono::hours{1}};
         const RecordedRun run{*data, thread};
         ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
-        EXPECT_THAT(*thread.trouble(), HasSubstr(path + " is there already"));
+        EXPECT_THAT(*thread.trouble(), HasSubstr(path + " exists already"));
     }
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
 }

@@ -705,10 +705,10 @@ TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
     const std::string taken = data->file_of("taken");
     std::ofstream{taken} << "another program's";
     apply(create("taken"));
-    EXPECT_THAT(said, testing::HasSubstr("the run would be kept in " + taken + ", which is there already"));
+    EXPECT_THAT(said, testing::HasSubstr("the run would be stored in " + taken + ", which exists already"));
     std::ofstream{run_file::DataFolder::next_file_of(data->file_of("next"))} << "another program's";
     apply(create("next"));
-    EXPECT_THAT(said, testing::HasSubstr("next.evod-next, which is there already"));
+    EXPECT_THAT(said, testing::HasSubstr("next.evod-next, which exists already"));
     EXPECT_TRUE(kept.laboratory().entries().empty());
     apply(create("w"));
     EXPECT_EQ(said, "");
