@@ -14,8 +14,8 @@ constexpr std::int64_t format_version = 4;
 void create_schema(RunDatabase& database);
 
 /// Refuses the database unless it is a run file of this format, contains the tables of this format, and contains no
-/// other table or index and no trigger or view. Reads only SQLite's own tables, because a view or trigger in an untrusted file could
-/// run code.
+/// other table or index and no trigger or view. Reads only SQLite's own tables, because a view or trigger in an
+/// untrusted file could run code.
 base::Result<void> check_schema(RunDatabase& database);
 
 /// Whether the database has no tables and no application id. SQLite creates such a file before its first transaction.
