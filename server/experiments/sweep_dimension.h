@@ -35,7 +35,7 @@ struct Range {
 
     /// The i-th of `steps` evenly spaced numbers, including both ends. For whole numbers, rounds to the nearest one.
     parameters::ParameterValue step(std::size_t i, std::size_t steps) const;
-    /// The number at the quantile u, 0 <= u < 1. A whole number n has the share of u that [n, n + 1) has of the scale.
+    /// The number at the quantile u, 0 <= u < 1. For whole numbers, maps u to [from, to + 1) and rounds down.
     parameters::ParameterValue quantile(double u) const;
 
   private:

@@ -188,7 +188,8 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
 Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep) {
     const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
     std::error_code error;
-    // Another task may create both files at the same time, sweep.txt first; so this one is checked first.
+    // Another task may be creating these files, sweep.txt before its results. So this function looks for results before
+    // it looks for sweep.txt; otherwise a new result could seem to lack its sweep.txt.
     std::string result;
     for (const char* name : {"/runs.csv", "/parts", "/run-files"}) {
         if (fs::exists(path + name, error)) {

@@ -27,8 +27,8 @@ struct SweepRunnerOptions {
     std::size_t jobs = 1; // >= 1
     bool run_files = false;
     std::function<simulation::RunId()> draw_run_id = {};  // for run files
-    std::function<bool()> stopped = [] { return false; }; // called in every tick
-    // Gets the expected work of the generation that ended.
+    std::function<bool()> stopped = [] { return false; }; // whether to stop; called in every tick
+    /// Called at the end of each generation, with its expected work.
     std::function<void(double work)> on_generation = [](double) {};
     /// Called at the end of a run, with the expected work that was not needed because it ended before its
     /// generation_limit.

@@ -25,7 +25,7 @@ run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run
 }
 
 std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
-    // Passes them in one batch, so that a file contains either all records of a tick or none.
+    // Passes the records in one batch, so that a file contains either all records of a tick or none.
     std::vector<StorageThread::Record> records;
     const std::uint64_t begun = news_.generations_begun();
     news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
@@ -147,8 +147,8 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     run.news_.seen(entry.world.moment().tick); // the file of the origin contains the state hash of that tick
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
-    // Within a generation, its beginning is not sufficient, because the journal since then is in the file of the
-    // origin.
+    // Within a generation, the fork needs a checkpoint: its file lacks the commands since the beginning of the
+    // generation.
     if (entry.world.moment().generation_tick > 0) {
         first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
     }

@@ -90,7 +90,7 @@ Result<bool> RunLog::open() {
     // The file to create may already exist: an earlier commit succeeded although it was reported as failed.
     Result<std::unique_ptr<run_file::RunFile>> opened = run_file::RunFile::open(name_now, options);
     const bool is_new = to_create && !opened;
-    if (is_new) { // all first records in one transaction, so that a reader sees all of them or none
+    if (is_new) { // one transaction for all first records, so that a reader sees all of them or none
         opened = run_file::RunFile::begin_new(name_now, creation->identity, options);
     } else if (to_create && (*opened)->identity().run_id != creation->identity.run_id) {
         opened = exists_already(name_now);

@@ -26,7 +26,7 @@
 
 namespace evod::recording {
 
-/// Number of a run while its file is open here.
+/// Identifies a run as long as the storage thread writes it.
 using RunNumber = std::uint64_t;
 
 /// Detects that a file was moved or deleted while it is open. Data written to it afterwards would be lost.
@@ -34,7 +34,7 @@ class FileNameWatch {
   public:
     static constexpr std::chrono::seconds interval{1}; // time between two checks
 
-    /// Makes the next check accept any file that has the name then.
+    /// Makes the next check accept the file that has the name at that time.
     void forget() { known_.reset(); }
     bool is_lost() const { return known_ && known_->lost; }
     /// Checks at most once per interval. Returns a reason if the name belongs to another file, or to no file.
@@ -92,7 +92,7 @@ struct RunLog {
     base::Result<void> shrink();
     /// Gives a new file its final name. The file that it replaces must already have another name.
     base::Result<void> take_name();
-    /// Renames a closed file to the name of an ended run, if it is to get one.
+    /// Renames a closed file to closing->renamed, unless that is empty.
     base::Result<void> rename_ended();
     /// Does one small step of background work: deletes rows, or writes a part of a checkpoint. A completed checkpoint
     /// is added to `written`.

@@ -32,7 +32,7 @@ struct WaitingRecord {
     std::size_t bytes = 0;
     std::chrono::steady_clock::time_point handed_over = {}; // time of the hand-over, only for a record with `done`
     std::chrono::nanoseconds took{0};                       // time for compressing and writing a checkpoint
-    bool being_compressed = false;                          // `record` is an empty Checkpoint during that time
+    bool being_compressed = false; // a job compresses the checkpoint; `record` is an empty Checkpoint
 };
 
 /// The approximate memory that a record takes. Returns 0 for checkpoints, which have a limit of their own.
@@ -42,8 +42,9 @@ std::size_t bytes_of(const Record& record);
 struct Closing {
     std::vector<WaitingRecord> last; // the last of these records is the end mark
     std::string renamed;             // the new path of the file; empty: the file keeps its name
-    bool replaced = false;           // wait until the run that replaces this one allows closing
-    bool marked = false, finished = false;
+    bool replaced = false;           // true: wait until the run that replaces this one is committed
+    bool marked = false;             // the end mark is committed
+    bool finished = false;           // the file is closed and, if requested, renamed
 };
 
 } // namespace evod::recording

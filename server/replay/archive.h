@@ -36,8 +36,8 @@ class Archive {
     std::vector<std::string> world_names() const;
     /// Moves the recovered worlds out. To be called once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
-    /// Moves the applied commands and their answers out. Those of ended runs come first; within a run, the oldest comes
-    /// first. To be called once.
+    /// Moves the applied commands and their answers out, ended runs first; within a run, in the order of application.
+    /// To be called once.
     std::vector<run_file::JournalEntry> take_answers() { return std::move(answers_); }
 
     /// nullptr after close().

@@ -29,9 +29,9 @@ struct Bred {
 /// file  must have a pinned snapshot.
 /// stop  cancels the work; the result is then a refusal with UNAVAILABLE.
 ///
-/// Refused for the same reasons as GenerationReader::read(). Also refused if the generation or the island does not exist, if
-/// no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored descendants
-/// differ.
+/// Refused for the same reasons as GenerationReader::read(). Also refused if the generation or the island does not
+/// exist, if no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored
+/// descendants differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
                                const std::stop_token& stop);
 

@@ -1,8 +1,8 @@
 // Lineage: the parents of organisms, including parents from other islands.
 //
-// The file stores each parent as an organism id on the island of the child, in the previous generation. If a migrant had
-// replaced the organism with this id, the parent was a copy of an organism of another island. Then lineage reports that
-// other organism. The migrants are recomputed from the fitness of the previous generation.
+// The file stores each parent as an organism id on the island of the child, in the previous generation. If a migrant
+// had replaced the organism with this id, the parent was a copy of an organism of another island. Then lineage reports
+// that other organism. The migrants are recomputed from the fitness of the previous generation.
 #pragma once
 
 #include "server/base/executor.h"

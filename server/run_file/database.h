@@ -25,7 +25,7 @@ class Database {
         Read,
         ReadAtRest, // opens a file that no program writes to; needs no lock and no write access to the folder
     };
-    /// vfs  the name of an SQLite VFS (its interface to the disk); nullptr is the default one.
+    /// vfs  name of an SQLite VFS (SQLite's interface to the operating system); nullptr: the default VFS.
     Database(const std::string& path, Mode mode, const char* vfs = nullptr);
     Database(const Database&) = delete; // SQLite stores the address of this object
     Database& operator=(const Database&) = delete;
@@ -74,8 +74,8 @@ class Statement {
     void bind(int parameter, std::span<const std::byte> bytes);
     void bind_null(int parameter);
 
-    /// Moves to the next row. Returns false if there is none, or after an error. The next call then starts the statement
-    /// again.
+    /// Moves to the next row. Returns false if there is none, or after an error. The next call then starts the
+    /// statement again.
     bool row();
     /// Runs a statement that returns no rows.
     void done();

@@ -1,4 +1,5 @@
-// Identity: the tables `run` and `first_population` of a run file. They store the initial state and settings of the run.
+// Identity: the tables `run` and `first_population` of a run file. They store the initial state and settings of the
+// run.
 #pragma once
 
 #include "server/run_file/records.h"
