@@ -161,7 +161,7 @@ void StorageThread::set_trouble(const std::string& why) {
         }
     }
     if (before.empty() && !why.empty()) {
-        log::error("{}; commands are refused until it can be written again", why);
+        log::error("{}; commands are refused until the file can be written again", why);
     } else if (!before.empty() && why.empty()) {
         log::info("run files can be written again");
     }

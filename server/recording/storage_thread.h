@@ -105,7 +105,7 @@ class StorageThread {
     /// Size of the data that waits to be written, without checkpoints.
     std::size_t waiting_bytes() const { return waiting_bytes_.load(std::memory_order_relaxed); }
     bool has_room() const { return waiting_bytes() < waiting_bytes_max; }
-    /// The time since which the oldest waiting record has waited; nullopt if none waits.
+    /// The time at which the oldest waiting record was added; nullopt if none waits.
     std::optional<std::chrono::steady_clock::time_point> waiting_since() const;
     /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const;
@@ -146,7 +146,8 @@ class StorageThread {
     std::condition_variable changed_;
     HandedOver handed_over_;
     std::vector<std::function<void(Worker&)>> results_; // results of finished jobs
-    // The time of the oldest record in handed_over_; of the oldest record that was taken but not written yet.
+    // handed_over_since_: when the oldest record in handed_over_ was added. taken_since_: when the oldest record was
+    // added that the thread has taken but not yet written.
     std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
     RunNumber last_number_ = 0;
     bool urgent_ = false, stopping_ = false;

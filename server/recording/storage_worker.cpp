@@ -41,8 +41,8 @@ void StorageThread::Worker::work() {
             }
             thread_.set_trouble({});
         }
-        // When the server stops, tries failed records again as long as other records can still be written. Then they
-        // are lost.
+        // When the server stops, retries failed records as long as any record can still be written. After that, the
+        // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
         if (stopping && !more && !is_awaiting() && !(failed_ && advanced)) {
             if (failed_) {
@@ -332,7 +332,7 @@ void StorageThread::Worker::report_written(std::vector<WaitingRecord>& records) 
     for (const WaitingRecord& record : std::exchange(records, {})) {
         bytes += record.bytes;
         if (record.done) {
-            if (record.record) { // only batches with a command have both
+            if (record.record) { // only a batch with a command has a record and a `done`
                 thread_.times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
             }
             record.done();
@@ -379,21 +379,21 @@ void StorageThread::Worker::report_lost() {
         }
         thread_.lost_ = true;
         const std::string world = std::filesystem::path{run.path}.stem().string();
-        const std::string lost = fmt::format("{} bytes could not be written: the ends of {} generations, {} commands, "
-                                             "and its last tick",
-                                             bytes, generations, commands);
+        const std::string lost =
+            fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
+                        "and the last tick",
+                        bytes, generations, commands);
         if (run.name.is_lost()) {
             log::error({.world = world},
-                       "world \"{}\": {}. Its file, {}, has been moved or deleted: put it back, or a copy", world, lost,
-                       run.path);
+                       "world \"{}\": {}. Its file, {}, has been moved or deleted: move it back, or restore a copy",
+                       world, lost, run.path);
         } else if (run.creation) {
-            log::error({.world = world},
-                       "world \"{}\": {}. {} was not created, and no client received an answer that it was", world,
-                       lost, run.path);
+            log::error({.world = world}, "world \"{}\": {}. {} was not created, and no client received a success reply",
+                       world, lost, run.path);
         } else {
             log::error({.world = world},
-                       "world \"{}\": {}. {} contains every acknowledged command, and the next server continues the "
-                       "world from there once there is room",
+                       "world \"{}\": {}. {} contains every acknowledged command: when the disk can be written again, "
+                       "restart the server to continue the world from that point",
                        world, lost, run.path);
         }
     }

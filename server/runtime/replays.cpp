@@ -30,7 +30,7 @@ Refusal superseded() {
 }
 
 Refusal owner_gone() {
-    return refusal(RefusalCode::NotFound, "the session that asked for it has ended");
+    return refusal(RefusalCode::NotFound, "the session that sent the request has ended");
 }
 
 Refusal closed_since() {
@@ -123,7 +123,7 @@ Result<replay::StoredRun> Replays::replay_of(const std::string& world) const {
     }
     if (!recorder_) {
         return refusal(RefusalCode::FailedPrecondition,
-                       "this server keeps no runs, so it cannot replay them: start it without --keep-nothing",
+                       "this server stores no runs, so it cannot replay them: start it without --keep-nothing",
                        base::Reason::RunsNotKept);
     }
     return replay::StoredRun{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
@@ -163,7 +163,7 @@ void Replays::stop_waiting() {
 void Replays::read_and_seek(const replay::StoredRun& run, const std::optional<replay::WantedMoment>& to,
                             replay::RecordedUntil known, std::uint64_t owner, SeekDone done, const Begun& begun) {
     if (pending_.size() + seeks_.size() >= seeks_max) {
-        return done(refusal(RefusalCode::ResourceExhausted, "too many seeks are under way: try again",
+        return done(refusal(RefusalCode::ResourceExhausted, "too many seeks are in progress: try again later",
                             base::Reason::ReplaysMax));
     }
     const std::uint64_t number = ++last_seek_;
@@ -252,8 +252,9 @@ void Replays::advance_seeks(const std::function<bool()>& stop) {
         if (there.generation == running.to.generation && there.tick == running.to.tick) {
             running.done(SeekResult{std::move(running.rerun), std::move(running.there)});
         } else {
-            running.done(refusal(RefusalCode::DataLoss,
-                                 "simulated again, the run does not reach the moment that its file contains"));
+            running.done(
+                refusal(RefusalCode::DataLoss,
+                        "the run file contains this moment, but a new simulation of the run does not reach it"));
         }
     }
 }
@@ -335,9 +336,8 @@ void Replays::seek(const Seek& request, const ReplayReply& reply) {
         return reply(
             laboratory_,
             Refusal{.code = RefusalCode::FailedPrecondition,
-                    .message =
-                        "this world lives and cannot be taken to another moment: open its "
-                        "run, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
+                    .message = "this world is live and cannot be moved to another moment: open a replay of its run, as "
+                               "evoview and evoctl stats --at-generation do, or serve its run file with evod replay",
                     .violations = {},
                     .reason = base::Reason::WorldIsLive});
     }
@@ -394,7 +394,7 @@ Result<std::string> Replays::close(const CloseReplay& request) {
     const auto shown = replays_.find(request.world);
     if (shown == replays_.end() || shown->second.owner == 0) {
         return Refusal{.code = RefusalCode::NotFound,
-                       .message = "there is no such shown at the past",
+                       .message = "there is no such replay",
                        .violations = {{"world", "one that was opened with OpenReplay", request.world}},
                        .reason = base::Reason::WorldNotFound};
     }

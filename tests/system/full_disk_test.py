@@ -123,7 +123,7 @@ class FullDisk(unittest.TestCase):
         self.fill()
         asking = self.client(server, "waits")
         asking.ask(1, run=c.Run())
-        until(lambda: "commands are refused until it can be written again" in server.output(), "trouble")
+        until(lambda: "commands are refused until the file can be written again" in server.output(), "trouble")
         self.assertIn("full", server.output())
         refused = control.call(10, **set_parameter("food_health", 5))
         self.assertEqual(refused.status.code, UNAVAILABLE)
@@ -186,8 +186,8 @@ class FullDisk(unittest.TestCase):
         before = control.world()
         self.fill_and_ask_for_what_cannot_be_written(server, control)
         server.end(status=4)
-        self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the ends of \d+ generations, '
-                                          f"1 commands, and its last tick. {self.data}/default.evod contains every acknowledged command")
+        self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the results of \d+ generations, '
+                                          f"1 commands, and the last tick. {self.data}/default.evod contains every acknowledged command")
         self.make_room()
         server = self.serve()
         now = self.client(server, "control").world()
@@ -212,7 +212,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual((now.tick, now.state_hash, now.state), (before.tick, before.state_hash, before.state))
         asking = self.client(server, "waits")
         asking.ask(1, run=c.Run())
-        until(lambda: "commands are refused until it can be written again" in server.output(), "trouble")
+        until(lambda: "commands are refused until the file can be written again" in server.output(), "trouble")
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
         until(lambda: control.world().tick > 1000, "ticks")

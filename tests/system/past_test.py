@@ -202,7 +202,7 @@ class OpenReplay(Case):
     def test_a_server_without_recording_refuses(self):
         viewer = self.client(self.server("--keep-nothing"))
         refused = viewer.call(c.CODE_FAILED_PRECONDITION, open_replay=c.OpenReplay())
-        self.assertIn("keeps no runs", refused.status.message)
+        self.assertIn("stores no runs", refused.status.message)
 
 
 class Fork(Case):

@@ -89,7 +89,7 @@ class ResourceLimits(unittest.TestCase):
             resource.RLIMIT_FSIZE, (bytes_max, resource.RLIM_INFINITY)))
         with Client(server, "k") as client:
             self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
-            until(lambda: "commands are refused until it can be written again" in server.output(), "trouble")
+            until(lambda: "commands are refused until the file can be written again" in server.output(), "trouble")
             self.assertEqual(client.call(2, **set_parameter("food_health", 7)).status.code, UNAVAILABLE)
             self.assertIn(client.world().storage.state, (w.STORAGE_STATE_FAILING, w.STORAGE_STATE_STALLED))
             resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))

@@ -131,10 +131,10 @@ TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
     }
     fail_operation(0, Failure::Gone);
     const std::string said = testing::internal::GetCapturedStdout();
-    EXPECT_THAT(said,
-                testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
-                                       "commands, and its last tick. " +
-                                       data.file_of("w") + " contains every acknowledged command"));
+    EXPECT_THAT(
+        said, testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the results of 0 generations, 2 "
+                                     "commands, and the last tick. " +
+                                     data.file_of("w") + " contains every acknowledged command"));
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal().read()->size(), 1u);
 }
 
