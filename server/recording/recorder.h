@@ -130,8 +130,8 @@ class Recorder {
 
     /// The reason why no command can be accepted now; nullopt if commands can be accepted.
     std::optional<base::Refusal> refusal() const;
-    /// The reason why no world with this name can be created: a file that belongs to no world of this server has the
-    /// path of its run file. Returns nullopt if the world can be created or already exists.
+    /// The reason why no world with this name can be created: its run file would have the path of a file that belongs
+    /// to no world of this server. Returns nullopt if the world can be created or already exists.
     std::optional<base::Refusal> refusal_of_place(const std::string& world) const;
     /// Whether worlds may be simulated, because the storage thread has room for their records.
     bool has_room() const { return thread_.has_room(); }
@@ -171,7 +171,7 @@ class Recorder {
     run_file::DataFolder& folder_;
     StorageThread& thread_;
     std::map<std::string, RunRecorder, std::less<>> runs_; // by name of the world
-    /// Number of ended runs of a world whose files may still have to be renamed.
+    /// The number of a world's ended runs whose files may not have been renamed yet.
     using Leaving = std::atomic<std::size_t>;
     std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by name of the world
 };

@@ -1,8 +1,8 @@
 // Run log: the records that wait to be written to the file of one run, and the file itself while it is open.
 //
-// New files    a run is created as `NAME.evod-next` and gets its final name when its first records are committed. So a
-//              file `NAME.evod` without contents is damaged, never incomplete. If the run replaces an older one, the
-//              old file first gets its end mark and its new name. At every moment exactly one of the two files is the
+// New files    a run is created as `NAME.evod-next` and gets its final name when its first records are committed. So
+//              an empty file `NAME.evod` is damaged, not incomplete. If the run replaces an older one, the old file
+//              first gets its end mark and its new name. At every moment exactly one of the two files is the
 //              world's run. After a crash, replay::Archive decides which one.
 // Checkpoints  a checkpoint waits in a queue of its own. A job compresses it; then the storage thread writes it part by
 //              part.
