@@ -16,8 +16,8 @@ namespace {
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
-/// The greatest health that meals can reach. Above it, rounding of a float loses a whole meal, which gives at most
-/// 10,000.
+/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
+/// so large a float.
 constexpr float health_reachable = 0x1p38f;
 
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
@@ -30,7 +30,7 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
 }
 
 ItemRules item_rules(const parameters::Parameters& p) {
-    // Slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
+    // The quotient is slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,
@@ -486,7 +486,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         }
     }
     if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
-        return wrong("number of the dead");
+        return wrong("number of dead organisms");
     }
     if (!std::ranges::all_of(state.crates, can_move)) {
         return wrong("position or speed of a crate");

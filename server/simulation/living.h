@@ -20,7 +20,7 @@ struct Living {
     base::Column<float> health;                     // −infinity for void bodies
     base::Column<float> loss_per_tick;              // health that a tick of life costs
     base::Column<float> normal_speed, impulse;      // gene units
-    base::Column<float> food_radius, poison_radius; // px; how far it perceives
+    base::Column<float> food_radius, poison_radius; // px; how far the organism perceives
 
     void clear();
     /// Like resize() and put() of physics::Circles.
@@ -46,7 +46,7 @@ base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& l
 
 /// What happened to each organism that was born, by id.
 struct Fate {
-    std::vector<std::uint32_t> lived_ticks; // until death; 0 for the living
+    std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for living organisms
     std::vector<CauseOfDeath> cause;
     std::vector<std::uint32_t> food_eaten, poison_eaten;
 

@@ -11,7 +11,7 @@ namespace evod::simulation {
 
 /// The views of organisms on the items of one kind (perception.h).
 struct ViewColumns {
-    float* others;       // px
+    float* others;       // every item except the nearest is at least this far away, px
     std::int32_t *x, *y; // position of the nearest item
     const float* radius; // px; how far organisms perceive
     float item_radius;   // px
@@ -68,7 +68,8 @@ struct OrganismKernels {
     /// does, and some that do not.
     void (*follow)(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
                    FoundIndices& at_poison);
-    /// Returns the sum of base::hash_of() over the living organisms. `dying` receives those whose health is at most 0.
+    /// Returns the sum of base::hash_of() over the organisms that are not void. Finds, among them, the organisms whose
+    /// health is at most 0.
     HashWords (*hash)(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                       FoundIndices& dying);
 };

@@ -50,7 +50,7 @@ class Perception {
 
   private:
     struct View {
-        base::Column<float> others; // no other item is nearer than this, px; < 0: stale, a search is needed
+        base::Column<float> others; // every item except the nearest is at least this far away, px; < 0: stale
         base::Column<physics::Coordinate> x,
             y;                       // position of the nearest item; void_position if there is none within the search
                                      // radius

@@ -55,8 +55,8 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 
 /// Uniform random places for circles, one after another, clear of walls, `boxes` and each other.
 ///
-/// radius_px  shape (count). The caller has checked that there is room: together at most 0.4 of the area (parameters.h,
-///            validate).
+/// radius_px  shape (count). The caller has checked that bodies and boxes cover at most 0.4 of the area (validate() in
+///            parameters.h).
 /// returns    shape (count).
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,

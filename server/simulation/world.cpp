@@ -302,7 +302,7 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
     }
     evolution::migrate(migrants, populations);
     if (!founders_.empty()) {
-        std::vector<std::uint32_t> of_migrants; // all emigrants are copied before any arrives
+        std::vector<std::uint32_t> of_migrants; // all founders are copied before any is overwritten
         of_migrants.reserve(migrants.size());
         for (const evolution::Migrant& migrant : migrants) {
             of_migrants.push_back(founders_[migrant.from][migrant.organism]);
@@ -438,7 +438,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     EVOD_ASSERT(moment_.generation_tick == 0);
     const auto wrong = [](const char* what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = std::string{"impossible state in this generation: "} + what,
+                             .message = std::string{"impossible state for this generation: wrong "} + what,
                              .violations = {}};
     };
     const Moment& moment = state.moment;
