@@ -1,4 +1,4 @@
-// The next generation of one island: chooses survivors and parents, and makes the genes of all organisms.
+// The next generation of one island: chooses survivors and parents, and computes the genes of all organisms.
 //
 //   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, bit flip → bounds
 //
