@@ -73,7 +73,7 @@ namespace {
 
 base::Refusal refused(std::vector<base::Violation> violations) {
     return {.code = base::RefusalCode::InvalidArgument,
-            .message = "invalid parameter values until the world is reset",
+            .message = "invalid parameter values: they do not fit together until all of them have taken effect",
             .violations = std::move(violations)};
 }
 
@@ -101,7 +101,7 @@ base::Result<Parameters> request_at_generation(const ParameterSet& set, std::spa
     }
     if (auto violations = validate(breeding_with(set.active, *requested), field_prefix); !violations.empty()) {
         for (base::Violation& violation : violations) {
-            violation.allowed += ", with the values that breeding still uses then";
+            violation.allowed += ", because the generation is bred with the previous values of breeding parameters";
         }
         return refused(std::move(violations));
     }
