@@ -11,8 +11,8 @@
 namespace evod::evolution {
 namespace {
 
-// The number of contestants that are drawn, and whose fitness is prefetched, before the first is compared. Their
-// fitness is scattered over memory.
+// Contestants are drawn in groups of about this size. The fitness of a whole group is prefetched before the first
+// comparison, because it is scattered over memory.
 constexpr std::size_t contestants_at_once = 128;
 constexpr std::size_t contestants_per_piece = 4096;
 
@@ -183,7 +183,7 @@ Method choose_method(std::uint32_t population, const Tournament& tournament) {
     return size < 4 * winners ? Method::Held : Method::SkipRanks;
 }
 
-/// The rules of the tournaments for a number of picks.
+/// The rules of the tournaments of one selection.
 struct Rules {
     std::uint32_t population, size, winners;
     bool replacement;

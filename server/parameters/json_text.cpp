@@ -137,7 +137,7 @@ std::string JsonNode::quoted() const {
     if (text.size() <= bytes_max) {
         return std::string{text};
     }
-    return is_array() ? "a list" : is_object() ? "an object" : "a long text";
+    return is_array() ? "a list" : is_object() ? "an object" : "a long string";
 }
 
 base::Result<JsonNode> parse_json(std::string_view text) {

@@ -115,7 +115,7 @@ struct ParameterDescription {
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
-/// Every parameter, those of the model first, in the order of the lists.
+/// All parameters: first those of the model, then those of the genetic algorithm, in the order of their lists.
 std::span<const ParameterDescription> parameter_registry();
 
 /// The parameters whose values differ, in the order of the registry.
@@ -142,14 +142,14 @@ std::optional<base::Violation> fault_of(const Assignment& assignment, std::strin
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix = "");
 
-/// Parses a value from text ("0.05", "true", "tournament"), as in `--set` and on consoles.
+/// Parses a value from text: "0.05", "true", "tournament".
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text);
 
 /// Checks whether the parameters fit together; each must be within its range. Violations are, for example, a minimum
 /// above its maximum, or organisms that do not fit on the island.
 std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
 
-/// The island that the parameters describe, after scaling with the population if scale_with_population is on.
+/// The size and the number of items of each island; scaled with the population if scale_with_population is on.
 struct IslandPlan {
     double width_px, height_px;
     std::uint32_t food_count, poison_count;
@@ -163,7 +163,7 @@ struct ParameterSet {
     std::uint64_t revision = 1; // increases with every accepted change
 };
 
-/// The set after a change. Values that take effect at once become active; the others are only requested.
+/// The set after a change. Values that take effect at once become active; other values are only requested.
 ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
 
 /// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.

@@ -85,7 +85,8 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     if (!requested) {
         return requested;
     }
-    // A reset may never come, so the other parameters must be valid without those that wait for one.
+    // The world may never be reset, so the values must also be valid while the parameters that wait for a reset keep
+    // their old values.
     const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
     if (auto violations = validate(next, field_prefix); !violations.empty()) {
         return refused(std::move(violations));

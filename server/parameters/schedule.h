@@ -40,8 +40,8 @@ class Schedule {
     void add(std::uint64_t generation, const Assignment& assignment);
     /// Removes all values of a parameter.
     void remove(std::string_view name);
-    /// Sets the values of generation 1, for every scheduled parameter, to those of the parameters that a run begins
-    /// with.
+    /// Sets the value of generation 1 of every scheduled parameter to its value in `parameters`, with which a run
+    /// begins.
     void begin_with(const Parameters& parameters);
 
     friend bool operator==(const Schedule&, const Schedule&) = default;

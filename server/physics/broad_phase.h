@@ -34,12 +34,12 @@ constexpr std::size_t block_count(std::size_t circles) {
     return (circles + circles_per_block - 1) / circles_per_block;
 }
 /// Whether a loop over so many circles is long enough to be divided among several threads.
-constexpr bool worth_cutting(std::size_t circles) {
+constexpr bool worth_dividing(std::size_t circles) {
     return circles >= 4096;
 }
-/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth cutting.
+/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth dividing.
 constexpr std::size_t blocks_per_piece(std::size_t circles) {
-    return worth_cutting(circles) ? 1 : block_count(circles) + 1;
+    return worth_dividing(circles) ? 1 : block_count(circles) + 1;
 }
 constexpr base::Range circles_of_block(std::size_t circles, std::size_t block) {
     return {block * circles_per_block, std::min((block + 1) * circles_per_block, circles)};

@@ -41,10 +41,10 @@ struct ParametersChanged {
 struct ChangeDropped {
     std::uint64_t planned = 0;
     std::string by;                 // as in ParametersChanged
-    std::vector<std::string> names; // names of the parameters to be assigned
+    std::vector<std::string> names; // names of the parameters that the change would have set
     std::vector<base::Violation> violations;
 };
-struct GoalReached {}; // the requested generations or ticks are over: the world waits, or is paused
+struct GoalReached {}; // the requested generations or ticks have been simulated: the world now waits or is paused
 
 using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, ParametersChanged,
                                ChangeDropped, GoalReached>;

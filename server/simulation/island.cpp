@@ -189,7 +189,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
 /// Processes food and poison, in parallel if that is faster.
 template <class OfFood, class OfPoison>
 void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
-    executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
+    executor.parallel_for(2, physics::worth_dividing(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
         if (kinds.begin == 0) {
             of_food();
         }
@@ -264,12 +264,12 @@ void Island::move(std::size_t block) {
 base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                              base::Executor& executor) {
     // Organisms are processed in blocks, in parallel. The grids of items are then changed sequentially.
-    constexpr std::size_t events_worth_cutting = 128;
+    constexpr std::size_t events_worth_dividing = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
     for (const Block& block : blocks_) {
         events += block.dying.size();
     }
-    executor.parallel_for(blocks_.size(), events < events_worth_cutting ? blocks_.size() : 8, [&](base::Range blocks) {
+    executor.parallel_for(blocks_.size(), events < events_worth_dividing ? blocks_.size() : 8, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             feed_and_remove_dead_in_block(parameters, tick, block);
         }

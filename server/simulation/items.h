@@ -130,7 +130,7 @@ class Items {
     /// Changes since forget_changes(), in order: items that disappeared or reappeared.
     struct Change {
         physics::Coordinate x, y;
-        bool came;
+        bool came; // true: the item reappeared; false: it disappeared
     };
     const std::vector<Change>& changes() const { return changes_; }
     void forget_changes() { changes_.clear(); }

@@ -7,7 +7,7 @@
 namespace evod::simulation {
 namespace {
 
-using namespace evod::base; // lanes
+using namespace evod::base; // the vector types of lanes.h
 using physics::void_position;
 
 constexpr float px = physics::px_per_unit, units = physics::units_per_px;

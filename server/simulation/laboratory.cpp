@@ -69,7 +69,7 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
     std::vector<base::Violation> violations;
     const parameters::PlannedMoment& at = *command.at;
     const Moment& now = world.moment();
-    if (!world.is_to_come(at)) {
+    if (!world.is_in_future(at)) {
         violations.push_back({at.generation ? "set_parameters.at_generation" : "set_parameters.at_tick",
                               "at least " + std::to_string(1 + (at.generation ? now.generation : now.tick)),
                               std::to_string(at.generation ? *at.generation : *at.tick)});

@@ -14,8 +14,8 @@ namespace evod::simulation {
 
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
 
-/// Index i of every column is the organism with body i; its id is the body's id. Columns are as long as those of the
-/// bodies, void bodies included.
+/// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
+/// of physics::Circles, void bodies included.
 struct Living {
     base::Column<float> health;                     // −infinity for void bodies
     base::Column<float> loss_per_tick;              // health that a tick of life costs

@@ -1,8 +1,8 @@
 // Placement: uniform random places on an island that do not overlap obstacles or bodies already placed.
 //
-// Determinism  a place depends on the given stream and on the bodies already there. Organisms are placed in order of
-//              id. Each gets the first of its attempts that is clear of the bodies placed before it, whatever the
-//              number of threads.
+// Determinism  a place depends only on the given stream and on the bodies placed before. Organisms are placed in order
+//              of id. Each organism gets the first of its random places that is clear of the bodies placed before, for
+//              any number of threads.
 #pragma once
 
 #include "server/base/executor.h"

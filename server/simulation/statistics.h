@@ -1,4 +1,4 @@
-// Statistics: the results of a generation on an island, and the present state of an island.
+// Statistics: the results of a generation on an island, and the current state of an island.
 //
 // Determinism  organisms are summed in order of id, in blocks of fixed size; the sums of the blocks are added in order.
 #pragma once
@@ -45,8 +45,8 @@ struct GenerationStatistics {
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number except those of the account, in the order of columns in files. In files,
-/// the columns of the account come after these.
+/// Calls visit(name, value) for every number except those of `account`, in the order of the columns in files. In files,
+/// the columns of `account` follow.
 ///
 /// Statistics  GenerationStatistics, or const GenerationStatistics.
 template <class Statistics, class Visit>

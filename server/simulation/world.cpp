@@ -174,7 +174,7 @@ std::uint64_t World::alive_count() const {
 }
 
 std::uint64_t World::plan(parameters::PlannedChange change) {
-    EVOD_ASSERT(is_to_come(change.at));
+    EVOD_ASSERT(is_in_future(change.at));
     return add_planned(std::move(change));
 }
 
@@ -194,12 +194,12 @@ std::optional<parameters::PlannedChange> World::cancel(std::uint64_t id) {
     return cancelled;
 }
 
-bool World::is_to_come(const parameters::PlannedMoment& moment) const {
+bool World::is_in_future(const parameters::PlannedMoment& moment) const {
     return moment.generation ? *moment.generation > moment_.generation : *moment.tick > moment_.tick;
 }
 
 void World::drop_due_changes() {
-    std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_to_come(change.at); });
+    std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_in_future(change.at); });
 }
 
 void World::apply_planned_for(std::uint64_t generation) {

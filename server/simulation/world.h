@@ -132,11 +132,11 @@ class World {
     /// The planned changes, in order of id.
     const std::vector<parameters::PlannedChange>& planned() const { return planned_; }
     /// Adds a planned change under a new id and returns the id. The moment of the change must be in the future
-    /// (is_to_come()). At that moment, changes are applied in order of id, after the values of the schedule.
+    /// (is_in_future()). At that moment, changes are applied in order of id, after the values of the schedule.
     std::uint64_t plan(parameters::PlannedChange change);
     /// Cancels a planned change and returns it; nullopt if there is none with that id.
     std::optional<parameters::PlannedChange> cancel(std::uint64_t id);
-    bool is_to_come(const parameters::PlannedMoment& moment) const;
+    bool is_in_future(const parameters::PlannedMoment& moment) const;
     /// For replays: restore the planned changes in a world that starts in the middle of a run. The caller passes every
     /// change that the run planned before that moment to add_planned(), in order, so that each gets its original id. It
     /// then calls drop_due_changes(), which removes the changes whose moment is not in the future: the run has already
