@@ -131,7 +131,8 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
 }
 
-/// Like draw_different_winning_ranks(), in a time that does not depend on how many ranks are skipped.
+/// Draws from the same distribution as draw_different_winning_ranks(). The time does not depend on how many ranks are
+/// skipped.
 void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                      base::RandomStream& random) {
     std::uint32_t rank = 0;
@@ -157,10 +158,10 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
 /// How the winners are found. Each method is the fastest in its case.
 enum class Method {
     Held,            // contestants are drawn and compared
-    OrderStatistics, // with replacement
-    WheelOfRanks,    // without replacement, one winner
-    WalkDownRanks,   // without replacement, several winners, a large part of the population
-    SkipRanks,       // without replacement, several winners, a small part of the population
+    OrderStatistics, // ranks are drawn; for tournaments with replacement
+    WheelOfRanks,    // a rank is drawn; without replacement, one winner
+    WalkDownRanks,   // ranks are drawn; without replacement, several winners, a large part of the population
+    SkipRanks,       // ranks are drawn; without replacement, several winners, a small part of the population
 };
 
 // Walking over this many ranks per winner costs as much as one skip.

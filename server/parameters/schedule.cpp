@@ -32,10 +32,9 @@ void Schedule::add(std::uint64_t generation, const Assignment& assignment) {
         added.value = static_cast<double>(*whole);
     }
     auto& there = changes_[generation];
-    const auto place = std::ranges::find_if(
-        there, [&](const Assignment& other) { return find_parameter(other.name) > description; }); // both point into
-                                                                                                   // the registry,
-                                                                                                   // which is an array
+    // Both pointers point into the registry, which is an array, so assignments are sorted in its order.
+    const auto place =
+        std::ranges::find_if(there, [&](const Assignment& other) { return find_parameter(other.name) > description; });
     there.insert(place, std::move(added));
 }
 

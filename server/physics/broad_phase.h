@@ -62,7 +62,7 @@ class Strips {
     /// reach_px  the greatest distance at which neighbours will be requested; also the minimum height of a strip.
     void sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor);
 
-    /// Indices of the circles.
+    /// The indices of the circles, in sorted order.
     std::span<const std::uint32_t> order() const { return order_; }
     /// Must be called after the circles have been reordered by order(). order() is then 0, 1, 2, ….
     void follow_reordering();
@@ -128,7 +128,7 @@ class Strips {
 class NearPairs {
   public:
     struct Pair {
-        std::uint32_t a, b; // indices
+        std::uint32_t a, b; // indices of the two bodies
     };
 
     /// Whether pairs that are not listed might touch, so that the list must be renewed. True before the first list.

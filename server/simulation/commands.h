@@ -24,7 +24,7 @@ struct RunId {
 
 /// 32 lower-case hexadecimal digits.
 std::string to_text(const RunId& id);
-/// The same 128 bits as 16 bytes, most significant first.
+/// The id as 16 bytes, most significant first.
 std::string to_bytes(const RunId& id);
 
 /// Simulated seconds per second, 0.001 to 10,000; nullopt: as fast as possible.

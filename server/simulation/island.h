@@ -83,12 +83,10 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
-    const Living& living() const { return living_; } // columns by body index
-    const physics::Circles& bodies() const {
-        return bodies_;
-    }                                                      // circles of the living organisms, in any order; void bodies
-                                                           // for the dead
-    const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
+    const Living& living() const { return living_; } // indexed by body
+    /// The circles of the living organisms, in any order; void bodies for dead organisms.
+    const physics::Circles& bodies() const { return bodies_; }
+    const physics::Boxes& boxes() const { return boxes_; } // first the crates, then the obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
     const Items& poison() const { return poison_; }

@@ -22,7 +22,7 @@ const ItemsKernels& items_kernels() {
 namespace {
 
 constexpr std::uint32_t items_per_block = 4096;
-constexpr std::size_t prefetched_ahead = 8; // items
+constexpr std::size_t prefetched_ahead = 8; // number of items
 
 constexpr ItemBucket empty_bucket() {
     ItemBucket bucket{};

@@ -135,7 +135,7 @@ class Items {
     const std::vector<Change>& changes() const { return changes_; }
     void forget_changes() { changes_.clear(); }
 
-    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent
+    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent items
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
     const base::Column<Item>& all() const { return all_; } // all items, by id

@@ -23,10 +23,10 @@ struct Living {
     base::Column<float> food_radius, poison_radius; // px; how far the organism perceives
 
     void clear();
-    /// Like resize() and put() of physics::Circles.
+    /// resize() and put() work like those of physics::Circles.
     void resize(std::size_t size);
     void put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& parameters);
-    /// Like reorder() of physics::Circles.
+    /// Works like physics::Circles::reorder().
     void reorder(const physics::Reordering& reordering);
 };
 

@@ -51,9 +51,8 @@ class Perception {
   private:
     struct View {
         base::Column<float> others; // every item except the nearest is at least this far away, px; < 0: stale
-        base::Column<physics::Coordinate> x,
-            y;                       // position of the nearest item; void_position if there is none within the search
-                                     // radius
+        // Position of the nearest item; void_position if there is none within the search radius.
+        base::Column<physics::Coordinate> x, y;
         float search_radius_max = 0; // px
     };
 

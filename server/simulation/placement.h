@@ -18,10 +18,10 @@ namespace evod::simulation {
 /// Stores boxes in a grid, and tests whether a place is clear of them. The cost does not depend on the number of boxes.
 class BoxGrid {
   public:
-    /// No boxes.
+    /// Creates a grid without boxes.
     BoxGrid() = default;
     BoxGrid(const physics::Area& area, std::size_t expected_count) : grid_{area, expected_count} {}
-    /// The boxes at their present positions.
+    /// Creates a grid with these boxes at their present positions.
     BoxGrid(const physics::Area& area, const physics::Boxes& boxes);
 
     void add(Place place, float half_width_px, float half_height_px);

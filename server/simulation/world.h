@@ -36,7 +36,7 @@ namespace evod::simulation {
 
 /// The state of a world at the beginning of a generation, before its first tick.
 struct Opening {
-    Moment moment; // generation_tick 0
+    Moment moment; // its generation_tick is 0
     parameters::ParameterSet parameters;
     evolution::Progress progress; // progress of the run over the previous generations
 };
