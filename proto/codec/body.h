@@ -58,7 +58,7 @@ class BodyWriter {
     Seams seams_;
 };
 
-/// Reads a body. After the first error, all further numbers are 0 and all further columns are empty.
+/// Reads a body. After the first error, all numbers that it returns are 0 and all columns are empty.
 class BodyReader {
   public:
     explicit BodyReader(std::string_view body) : rest_{body} {}

@@ -186,10 +186,10 @@ Column indices(std::size_t count) {
     return all;
 }
 
-/// Whether a large number of entities that cannot move has mostly been replaced. Sending all of them again then needs
-/// about the same number of bytes and far less time. The function samples the first entities, because positions do not
-/// depend on ids.
-bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
+/// Whether most of a large number of immovable entities have been replaced. Sending all of them again then needs about
+/// the same number of bytes and far less time. A sample of the first entities suffices, because positions do not depend
+/// on ids.
+bool mostly_replaced(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     constexpr std::size_t many = 2048, sampled = 256, stayed_max = sampled / 4;
     if (kind.displacements || base.id.size() < many) {
         return false;
@@ -310,7 +310,7 @@ void merge(BodyReader& reader, Section& stayed, Section& come) {
         const Column &a = stayed.entities.id, &b = come.entities.id;
         for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
             if (i < a.size() && j < b.size() && a[i] == b[j]) {
-                reader.refuse("adds id " + std::to_string(a[i]) + ", which its base has");
+                reader.refuse("adds id " + std::to_string(a[i]) + ", which its base already has");
                 return;
             }
             const bool first = j == b.size() || (i < a.size() && a[i] < b[j]);
@@ -519,7 +519,7 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
     const Prediction predicted{ticks, base.ticks};
     for (const Kind& kind : kinds) {
         const EntitiesView &from = base.snapshot.*kind.seen, &to = next.*kind.seen;
-        const Pairing pairing = mostly_others(kind, from, to, next.of_tile)
+        const Pairing pairing = mostly_replaced(kind, from, to, next.of_tile)
                                     ? Pairing{.gone = indices(from.x.size()), .come = indices(to.x.size())}
                                     : pair(kind, from, to, next.of_tile);
         write_parts(writer, kind, to, next.position_bytes, pairing, nullptr);

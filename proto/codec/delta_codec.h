@@ -3,11 +3,11 @@
 //
 // Encoder and decoder both keep the Baseline of the last snapshot: its entities in whole numbers, and their
 // displacements since the snapshot before it. The prediction for the next snapshot continues these displacements. The
-// body contains the residuals, which usually need no or one byte each. A keyframe contains the complete baseline. All
+// body contains the residuals, which usually need zero or one byte each. A keyframe contains the complete baseline. All
 // viewers therefore have the same baseline, whether they received keyframes or deltas.
 //
 // The input of the encoder must be valid. The decoder checks everything. The received bytes, and the counts checked
-// against them, bound its memory. After damage it waits for a keyframe.
+// against them, bound its memory. After damage the decoder waits for a keyframe.
 //
 // Threads      a QuantisedSnapshot and a Baseline do not change after their creation, so threads may share them.
 // Determinism  all arithmetic uses integers: equal snapshots give equal bytes on every machine.
@@ -35,10 +35,10 @@ struct Baseline {
     };
     std::shared_ptr<const QuantisedSnapshot> snapshot;
     Displacements organisms, crates; // movement since the previous snapshot; 0 for new entities
-    std::uint16_t ticks = 0;         // number of ticks in which that movement happened
+    std::uint16_t ticks = 0;         // number of ticks since the previous snapshot
 };
 
-/// Views of the structs above, or of the part of longer columns that belongs to one tile.
+/// Non-owning views of a QuantisedSnapshot and a Baseline, or of the parts of their columns that belong to one tile.
 struct EntitiesView {
     std::span<const std::uint32_t> id, x, y, width, height;
 };
@@ -66,7 +66,7 @@ Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 /// Whether `next` can be a delta against `base`. All boxes must be the same, except for the positions of crates.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
-/// Returns the baseline that lies `ticks` after `base`. Encoder and decoder both compute it.
+/// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.
 ///
 /// next  follows(next, base) must be true.
 Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks);
@@ -86,14 +86,14 @@ void advance_baseline(const BaselineView& base, const QuantisedView& next, std::
 /// seams  receives the seams of the body; may be nullptr.
 std::string encode_keyframe(const BaselineView& baseline, Seams* seams = nullptr);
 
-/// Encodes the body of a delta. `next` is `ticks` after `base`, and follows(next, base) must be true.
+/// Encodes the body of a delta. `next` is `ticks` ticks after `base`, and follows(next, base) must be true.
 ///
 /// to     receives the displacements as from advance_baseline(); may be nullptr.
 /// seams  receives the seams of the body; may be nullptr.
 std::string encode_delta(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
                          const AdvancedColumns* to = nullptr, Seams* seams = nullptr);
 
-/// The properties of a body that other fields of its message state.
+/// The properties of a body that are stated in other fields of its message.
 struct BodyShape {
     Counts counts{};
     std::uint32_t position_bytes = 2;

@@ -20,7 +20,7 @@ std::optional<Damage> damage_of_prefix(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < std::min<std::size_t>(2, bytes.size()); ++i) {
         if (bytes[i] != prefix[i]) {
             return Damage{
-                "a frame must begin with 'EV': this is not the protocol of evod, or the stream is out of step"};
+                "a frame must begin with 'EV': the stream is not in the protocol of evod, or bytes were lost"};
         }
     }
     if (bytes.size() > 2 && bytes[2] != prefix[2]) {

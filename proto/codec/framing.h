@@ -7,9 +7,9 @@
 //   byte 3      channel: 1 control (ClientMessage, ServerMessage), 2 stream (SnapshotFrame)
 //   byte 4..7   length of the body in bytes, unsigned, least significant byte first
 //
-// The reader checks the two letters, the version and the channel of every header. If the stream is out of step, it
-// detects this at the next frame. It cannot resynchronise, so the connection must end. It compares the length with the
-// limit of the channel before it allocates memory for the body.
+// The reader checks the two letters, the version and the channel of every header. It therefore notices at the next
+// header if it has lost the frame boundaries. It cannot resynchronise, so the connection must end. The reader compares
+// the length with the limit of the channel before it allocates memory for the body.
 //
 // Owner        each end of a connection has its own FrameReader.
 // Threads      none; nothing here is shared.

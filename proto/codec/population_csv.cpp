@@ -73,7 +73,7 @@ Result<std::vector<std::vector<float>>> read_population(std::istream& in) {
         return Damage{std::string{"cannot be read: "} + std::strerror(errno)};
     }
     if (islands.empty()) {
-        return Damage{"holds no organism"};
+        return Damage{"contains no organism"};
     }
     return islands;
 }

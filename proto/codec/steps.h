@@ -15,8 +15,8 @@ inline std::uint32_t position_bytes_of(double width_px, double height_px) {
     return std::max(width_px, height_px) * steps_per_px <= 65535.0 ? 2 : 4;
 }
 
-/// Converts fixed point to steps. The result is rounded to the nearest step, half a step upward, and limited to the
-/// range.
+/// Converts fixed-point positions to steps. The result is rounded to the nearest step, halves upward, and limited to
+/// the range of position_bytes.
 class PositionInSteps {
   public:
     /// fraction_bits  4 to 30; the unit of positions is 2^-fraction_bits px.

@@ -293,7 +293,7 @@ Result<DecodedDensity> decode_density(std::string_view body, const Counts& count
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const Column cells = reader.column(std::size_t{density.cells_per_side} * density.cells_per_side);
         if (!reader.damage() && std::accumulate(cells.begin(), cells.end(), std::uint64_t{0}) != counts[p]) {
-            reader.refuse("counts entities that differ from the counts of the tile");
+            reader.refuse("has cells whose numbers of entities do not add up to the counts of the tile");
         }
         parts[p]->assign(cells.begin(), cells.end());
     }

@@ -87,7 +87,7 @@ class SnapshotTiles {
 
   private:
     struct Part {
-        std::vector<std::uint32_t> order; // indices of entities, grouped by tile and rising within each tile
+        std::vector<std::uint32_t> order; // indices of entities, grouped by tile, in rising order within each tile
         std::vector<std::uint32_t> begin; // for each tile its first position in `order`, then the end of the last tile
         // The columns of the snapshot in the order of `order`. Only the parts of gathered tiles are filled. nullptr:
         // not allocated yet, or the kind does not have the column.

@@ -1,5 +1,5 @@
-// Commutative operations on memory to which several pieces of a parallel loop write. The final value does not depend on
-// the order of the writes. The returned values depend on it, so no result may use them.
+// Commutative writes to memory that several pieces of a parallel loop share. The final value does not depend on the
+// order of the writes. The returned values depend on it, so no result may use them.
 //
 // `parallel` is true if several threads may write at the same time. If it is false, the plain operation is used, which
 // is several times faster.

@@ -2,7 +2,8 @@
 // and rounding only.
 //
 // On processors with fused multiply-add, the C library runs different code, whose last bits differ. Code that affects
-// the state of a world must therefore not call the C library's functions. √ is exact in hardware and is used directly.
+// the state of a world must therefore not call the C library's functions. √ is an exception: every processor rounds it
+// correctly.
 // Source  Taylor series after the usual range reductions (Muller 2016, Elementary Functions, ch. 11).
 #pragma once
 
@@ -18,7 +19,7 @@ double cos_turns(double turns);
 /// 700.
 double exp(double x);
 
-/// Natural logarithm of a normal x > 0. The relative error is below 1e-15; near x = 1, the absolute error is.
+/// Natural logarithm of a normal x > 0. The relative error (near x = 1, the absolute error) is below 1e-15.
 double log(double x);
 
 /// x^y for x > 0: exp(y log x). The relative error is below 1e-15 · (1 + |y log x|). 0^y is 0 for y > 0, and 0^0 is 1.

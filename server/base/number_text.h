@@ -1,4 +1,4 @@
-// Numbers as text, as messages, errors and exports print them.
+// Converts numbers to text for messages, errors and exports.
 //
 // Threads      any; no state.
 // Determinism  independent of the locale.

@@ -36,7 +36,7 @@ struct ChoiceNames;
 
 } // namespace evod::base
 
-/// Gives the enumerators of an enumeration, in order, the names that users write. Use it at global scope.
+/// Defines the names that users write for the enumerators of Type, in order. Use it at global scope.
 #define EVOD_CHOICE_NAMES(Type, ...)                                                                                   \
     template <>                                                                                                        \
     struct evod::base::ChoiceNames<Type> {                                                                             \

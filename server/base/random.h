@@ -47,7 +47,7 @@ struct Seed {
     friend bool operator==(const Seed&, const Seed&) = default;
 };
 
-/// The part of a draw's identity that many entities share. Constructed once per (purpose, island, generation).
+/// The inputs of a draw that many entities share. Constructed once per (purpose, island, generation).
 class RandomKey {
   public:
     RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);

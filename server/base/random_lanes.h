@@ -31,7 +31,7 @@ inline WordPairs philox_pairs(Words entity, std::uint32_t counter, std::uint32_t
     return {interleave(even.first, odd.first), interleave(even.second, odd.second)};
 }
 
-/// unit_float() of each word.
+/// Computes unit_float() for each word.
 inline Floats unit_floats(Words words) {
     return to_floats((Integers)(words >> 8)) * 0x1p-24f;
 }
@@ -40,7 +40,7 @@ struct Directions {
     Floats x, y;
 };
 
-/// direction() of each word.
+/// Computes direction() for each word.
 inline Directions directions(Words words) {
     const Words quarter = (words + 0x2000'0000u) >> 30;
     const Floats angle =

@@ -25,7 +25,7 @@ enum class RefusalCode {
     Unauthenticated = 16,
 };
 
-/// The documented situation that caused a refusal, for programs. The numbers are those of evod.v1.Reason.
+/// The reason for a refusal, in a form that programs can test. The numbers are those of evod.v1.Reason.
 enum class Reason {
     Unspecified = 0,
     FieldInvalid = 10,
@@ -99,7 +99,7 @@ struct Refusal {
     Reason reason = Reason::Unspecified;
 };
 
-/// A refusal that is not about a field.
+/// Creates a refusal that names no field.
 inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Reason::Unspecified) {
     return {.code = code, .message = std::move(message), .violations = {}, .reason = reason};
 }

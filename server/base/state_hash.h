@@ -33,7 +33,7 @@ struct StateHash {
 /// 32 lower-case hexadecimal digits, high word first.
 std::string to_text(const StateHash& hash);
 
-/// The same 128 bits as 16 bytes, most significant first.
+/// The hash as 16 bytes, most significant first.
 std::string to_bytes(const StateHash& hash);
 
 /// Collects one entity's identity and fields. `kind` distinguishes entities of different kinds with equal ids.

@@ -29,13 +29,14 @@ std::string parameter_list() {
         "# Parameters\n\n"
         "All parameters of a world, as `evod parameters` prints them. The names are the same in experiment files, in\n"
         "`evod run --set`, in `evoctl` and in the protocol.\n\n"
-        "A changed value takes effect from the moment in the column *takes effect*: at the *next tick*, when the\n"
-        "*next generation* begins, or at a *reset* of the world. Parameters of breeding that take effect at the next\n"
-        "tick are used by the next breeding.\n\n"
-        "An experiment file may give a parameter values by generation, unless it takes effect at a reset:\n"
-        "`\"mutation_chance\": {\"1\": 0.2, \"30\": 0.05}`. Each value holds from the first tick of its generation. A\n"
-        "parameter of breeding therefore first acts when the following generation is bred. Before the first listed\n"
-        "generation the parameter has its default.\n\n"
+        "The column *takes effect* states when a changed value takes effect: at the *next tick*, when the\n"
+        "*next generation* begins, or at a *reset* of the world. If a parameter of the genetic algorithm takes\n"
+        "effect at the next tick, the next breeding uses its new value.\n\n"
+        "An experiment file may list different values of a parameter for different generations:\n"
+        "`\"mutation_chance\": {\"1\": 0.2, \"30\": 0.05}`. This is not possible for parameters that take effect at a\n"
+        "reset. Each value holds from the first tick of its generation. A breeding parameter that is listed for\n"
+        "generation N therefore first affects the breeding of generation N + 1. Before the first listed\n"
+        "generation, the parameter has its default value.\n\n"
         "| name | default | allowed | unit | takes effect | meaning |\n|---|---|---|---|---|---|\n";
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
         text += "| `" + std::string{description.name} + "` | " + parameters::to_text(description.default_value()) +

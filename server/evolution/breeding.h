@@ -28,11 +28,12 @@ struct Choice {
 
     /// Shape (places.survivors): the organism that is kept in each place.
     std::span<const std::uint32_t> survivors() const { return picks_survive ? picks : others; }
-    bool picks_survive = false;
-    std::vector<std::uint32_t> others; // the survivors, if they differ from the picks
+    bool picks_survive = false;        // the survivors are the picks
+    std::vector<std::uint32_t> others; // the survivors, unless they are the picks
 };
 
-/// The arguments of select(): the number of picks, and the pool to pick from. If `wanted` is 0, nothing is selected.
+/// The arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, select() is not
+/// called.
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
 
 /// The key to pass to select().
@@ -44,7 +45,7 @@ Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t want
 /// Which parent each gene of a child comes from.
 struct Inheritance {
     Parents parents;          // first: the parent that gave more of the genes
-    GeneMask from_second = 0; // the genes that parents.second gave; at most half of them
+    GeneMask from_second = 0; // the genes that parents.second gave; at most half of all genes
 };
 
 /// Orders the parents of one child by how many genes each gave it; on a tie the pair's first parent stays first.
@@ -84,7 +85,7 @@ class Descent {
         , mutation_{parameters}
         , bounds_{gene_bounds(parameters)} {}
 
-    // by  applies the mutations: WithoutRecord, or a class that also records them.
+    // The argument `by` of keep() and make_child() applies the mutations: WithoutRecord, or a class that records them.
 
     /// Writes the genes of a survivor to `genes`. `place` is its index in the next generation. Returns the number of
     /// clamped genes.

@@ -4,8 +4,8 @@
 //
 // Threads      none of its own.
 // Determinism  the descendants equal those of next_generation() bit for bit.
-// Cost         as much as the selection and the pairing of next_generation(), whatever rows are requested; genes are
-//              computed only for the requested descendants.
+// Cost         as much as the selection and the pairing of next_generation(), for any number of requested rows. Genes
+//              are computed only for the requested descendants.
 #pragma once
 
 #include "server/evolution/crossover.h"

@@ -1,4 +1,4 @@
-// Chance: draws events of one fixed probability p. One random word suffices for many events.
+// Chance: draws random events that happen with a fixed probability p. One random word suffices for many events.
 //
 // A draw compares the binary digits of a uniform number with the digits of p, from the first digit on. It stops at the
 // first difference: after two digits on average. Six genes therefore take little more than one word. The probability of

@@ -51,8 +51,7 @@ unsigned clamp(Genes genes, const GeneBounds& bounds);
 /// bounds.
 ///
 /// organism_count  0 is allowed.
-/// returns         shape (gene_count, organism_count); the first organisms of a larger population equal a smaller
-///                 population.
+/// returns         shape (gene_count, organism_count); a larger population begins with the organisms of a smaller one.
 GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
                               std::uint32_t island);
 

@@ -18,7 +18,7 @@ struct Edge {
     std::uint32_t from, to;
 };
 
-/// Ordered by (to, from).
+/// The pairs of islands between which migrants are sent, ordered by (to, from).
 std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed seed, std::uint64_t generation) {
     std::vector<Edge> result;
     if (islands < 2) {

@@ -17,7 +17,7 @@
 
 namespace evod::evolution {
 
-/// One migrant: which organism goes from where to where.
+/// One migrant: a copy of an organism of one island, which replaces an organism of another island.
 struct Migrant {
     std::uint32_t from, to; // islands, never equal
     std::uint32_t organism; // index in `from`

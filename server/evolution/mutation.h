@@ -38,7 +38,7 @@ struct GeneChange {
     friend bool operator==(const GeneChange&, const GeneChange&) = default;
 };
 
-/// Like clamp(), and appends the genes that it moved to `changes`.
+/// Works like clamp() in chromosome.h, and also appends the genes that it moved to `changes`.
 unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes);
 
 class ValueMutation {
@@ -56,7 +56,7 @@ class ValueMutation {
     ///
     /// returns  the number of clamped genes.
     unsigned apply(Genes genes, base::RandomStream& random) const;
-    /// Does the same, and appends the changes to `changes`, in order.
+    /// Mutates one chromosome, and also appends the changes to `changes`, in order.
     unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
 
   private:

@@ -1,4 +1,4 @@
-// The next generation of one island: chooses survivors and parents, and makes the genes of all organisms.
+// The next generation of one island: chooses survivors and parents, and computes the genes of all organisms.
 //
 //   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, bit flip → bounds
 //
@@ -35,9 +35,9 @@ struct NextGeneration {
     GeneMatrix genes;              // shape (gene_count, organisms): the elite, the other survivors, the children
     std::vector<Parents> parents;  // shape (organisms); first the parent that gave more of the genes
     std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the previous generation, best first
-    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 survived, the elite among them; the others are
-                                      // children
-    std::uint64_t clamped_count = 0; // genes that were out of bounds and were clamped
+    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 survived, the elite included; the remaining
+                                      // organisms are children
+    std::uint64_t clamped_count = 0;  // genes that were out of bounds and were clamped
     // The change from the previous generation, as it was before migration. Set by the caller; nullopt in the first
     // generation, or if the previous generation is not available.
     std::optional<SelectionAccount> account = std::nullopt;

@@ -24,15 +24,15 @@ class OrderMutation {
     /// Mutates with probability rearrange_chance. A pair or slice is given by two different indices; every choice of
     /// them is equally likely.
     ///
-    /// swap       the two genes of a pair exchange values; with probability 1/2 so do those of a second pair, which can
-    ///            be the same.
+    /// swap       the two genes of a pair exchange values; with probability 1/2 so do those of a second pair, which may
+    ///            be the same pair.
     /// scramble   the genes of a slice, both ends included, are shuffled; every order is equally likely, the present
     ///            one too. If all genes differ, nothing changes with probability 2383/10800.
     /// inversion  the genes of a slice, both ends included, are reversed.
     ///
     /// Genes may be out of their bounds afterwards, because each gene has its own bounds.
     ///
-    /// returns  whether the event of probability rearrange_chance happened.
+    /// returns  whether the operation was applied (probability rearrange_chance).
     bool apply(Genes genes, base::RandomStream& random) const;
     /// Applies the same operation to gene indices instead of gene values.
     bool apply(GeneOrder order, base::RandomStream& random) const;

@@ -33,30 +33,30 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
 // clang-format off
 #define EVOD_EVOLUTION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                           \
     COUNT(population_size, 50, 1, 4'000'000, "organisms", NextGeneration, "Organisms on each island.")                 \
-    CHOICE(population_model, PopulationModel, Hybrid, NextTick, "How a generation replaces the previous one: hybrid keeps the selected organisms and adds their children, generational replaces all organisms, steady_state replaces the worst.") \
-    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Share of the population that survives and breeds (hybrid), or that breeds under truncation (generational, steady_state); at least one organism.") \
+    CHOICE(population_model, PopulationModel, Hybrid, NextTick, "How a generation replaces the previous one: hybrid keeps the selected organisms and adds their children, generational replaces all organisms except the elite, steady_state replaces only the worst organisms.") \
+    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Population model hybrid: share of the population that survives and breeds. Other population models with truncation selection: share that may breed. At least one organism.") \
     COUNT(replaced_count, 2, 1, 4'000'000, "organisms", NextTick, "Number of worst organisms that each generation replaces (steady_state).") \
     COUNT(elite_count, 0, 0, 4'000'000, "organisms", NextTick, "Number of best organisms that survive unchanged.")     \
     FLAG(mutate_survivors, false, NextTick, "Whether survivors are mutated too; the elite never are.")                 \
     FLAG(shuffle_fitness, false, NextTick, "Whether fitness values are shuffled among an island's organisms before migration and selection: a control for experiments, in which selection is as strong as before but favours no gene. Statistics and termination criteria use the true fitness.") \
     CHOICE(fitness_scaling, FitnessScaling, None, NextTick, "How fitness is scaled before roulette and stochastic_universal selection.") \
-    REAL(ranking_pressure, 1.5, 1, 2, "", NextTick, "Expected copies of the best organism under linear_ranking; 1 exerts no selection pressure.") \
+    REAL(ranking_pressure, 1.5, 1, 2, "", NextTick, "Expected number of copies of the best organism under linear_ranking; 1 exerts no selection pressure.") \
     REAL(ranking_decay, 0.95, 0.01, 1, "", NextTick, "Weight of each rank relative to the next better one under exponential_ranking.") \
     CHOICE(selection, SelectionMethod, Roulette, NextTick, "How parents are selected.")                                \
-    COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Contestants per tournament; without tournament_replacement at most population_size.") \
-    COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "Winners per tournament; at most tournament_size.") \
+    COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Number of contestants per tournament; without tournament_replacement, at most population_size.") \
+    COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "Number of winners per tournament; at most tournament_size.") \
     FLAG(tournament_replacement, true, NextTick, "Whether an organism can be drawn more than once into the same tournament.") \
     CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed.")                   \
-    REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that a pair's genes are mixed; otherwise its children are copies.") \
-    COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Cut points of multi_point.")                                     \
-    CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how genes change places inside a chromosome.") \
+    REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
+    COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
+    CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how the values of genes are exchanged within a chromosome.") \
     REAL(rearrange_chance, 0.1, 0, 1, "chance", NextTick, "Chance per chromosome of an order mutation.")               \
-    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds: uniform within ±mutation_step, or gaussian with that standard deviation.") \
+    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ±mutation_step, or gaussian with the standard deviation mutation_step.") \
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
-    REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation.")                              \
-    REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within its bounds; 0 is off.") \
-    REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in the gene's fixed-point binary code; 0 is off.") \
-    COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Bits of the binary code, which divides the range between a gene's bounds evenly.") \
+    REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation: its largest step if creep is uniform, its standard deviation if creep is gaussian.")                              \
+    REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
+    REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
+    COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
     REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene in the first generation.")      \
     REAL(initial_gene_max, 120, 0, 10'000, "gene units", Reset, "Highest value of a gene in the first generation.")    \
     REAL(normal_speed_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene normal_speed.")             \
@@ -71,16 +71,16 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     REAL(food_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene food_radius.")              \
     REAL(poison_radius_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene poison_radius.")           \
     REAL(poison_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene poison_radius.")          \
-    COUNT(generation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations; 0 is no limit.") \
+    COUNT(generation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations; 0 means no limit.") \
     FLAG(stop_at_target_fitness, false, NextTick, "Whether the run ends when an organism reaches target_fitness.")     \
-    REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "The fitness that ends the run if stop_at_target_fitness is on.") \
-    COUNT(stagnation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations without a new best fitness; 0 is never.") \
+    REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "Fitness at which the run ends if stop_at_target_fitness is on.") \
+    COUNT(stagnation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations without a new best fitness; 0 means never.") \
     FLAG(stop_at_extinction, false, NextTick, "Whether the run ends with a generation in which every organism died.")  \
     CHOICE(migration, Topology, None, NextTick, "Which islands exchange migrants.")                                    \
-    COUNT(migration_epoch, 10, 1, count_max, "generations", NextTick, "Generations between migrations.")               \
-    COUNT(migrant_count, 1, 1, 4'000'000, "organisms", NextTick, "Organisms copied from an island to each of its targets; if more arrive than an island holds, its places are shared evenly among the sending islands.") \
+    COUNT(migration_epoch, 10, 1, count_max, "generations", NextTick, "Number of generations from one migration to the next.")               \
+    COUNT(migrant_count, 1, 1, 4'000'000, "organisms", NextTick, "Number of organisms that an island copies to each destination island; if more arrive than an island has organisms, its places are shared evenly among the sending islands.") \
     CHOICE(emigrants, Emigrants, Best, NextTick, "Which organisms are copied to other islands.")                       \
-    CHOICE(immigrants_replace, Replaced, Worst, NextTick, "Which organisms migrants replace.")
+    CHOICE(immigrants_replace, Replaced, Worst, NextTick, "Which organisms of the destination island the migrants replace.")
 // clang-format on
 
 namespace evod::evolution {

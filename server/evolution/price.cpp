@@ -109,7 +109,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
 
     const auto population = summed<1>(
         organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
-    // Two sums: over the organisms that breeding used, and over their differences from the organisms as born.
+    // Two sums: of the genes that breeding used, and of their differences from the genes as born.
     SumsOf<2> seen{population[0], {}};
     if (&before != &bred_from) {
         seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
@@ -118,8 +118,8 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
             sums[1] += z - Numbers{column(before, i)};
         });
     }
-    // Three sums: over the descendants; over their parents, each counted once per descendant; over the differences
-    // between descendants and parents.
+    // Three sums, each with one term per descendant: its genes; the mean of its parents' genes; the difference of the
+    // two.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
         if (i + parents_prefetched < parents.size()) {
             prefetch(bred_from, parents[i + parents_prefetched].first);

@@ -71,10 +71,10 @@ class RareEvents {
     struct Digits {
         std::uint32_t high, low;
     };
-    static constexpr unsigned guides = 1024; // so many that most words need no search
+    static constexpr unsigned guides = 1024; // enough that most words need no search
     unsigned trials_;
     std::array<Digits, trials_max> all_fail_{}; // [k]: the probability that the first k + 1 trials all fail
-    std::array<std::uint8_t, guides> guide_{};  // per leading digits of a word: the greatest skip that such a word can
+    std::array<std::uint8_t, guides> guide_{};  // [leading digits of a word]: the greatest skip that such a word can
                                                 // give
 };
 

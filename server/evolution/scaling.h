@@ -2,7 +2,7 @@
 //
 // Scaling never changes the order of organisms. Tournament and truncation selection need only the order, so they use
 // the unscaled fitness.
-// Determinism  element by element, in index or rank order.
+// Determinism  weights are computed one by one, in order of index or rank.
 #pragma once
 
 #include "server/evolution/parameters.h"

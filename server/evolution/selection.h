@@ -61,7 +61,7 @@ struct Picks {
 /// wheel of the scaled fitness (wheel.h describes how it treats negative weights and weights that are all 0).
 ///
 /// ranking  contains at least one organism.
-/// key      made for Purpose::Selection.
+/// key      its purpose is Purpose::Selection.
 std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Parameters& parameters,
                                   const base::RandomKey& key, base::Executor& executor);
 

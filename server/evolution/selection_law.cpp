@@ -68,7 +68,7 @@ double visit_hypergeometric(double all, double marked, double drawn, const Visit
         [=](double x) { return (marked - x) / (x + 1) * ((drawn - x) / (all - marked - drawn + x + 1)); }, visit);
 }
 
-/// A rank wins at most once: if it is a contestant and fewer than `winners` of the other contestants are fitter.
+/// A rank wins at most once: it wins if it is a contestant and fewer than `winners` other contestants are fitter.
 WinsLaw wins_without_replacement(double rank, double population, double size, double winners) {
     double place_left = 0;
     const double all = visit_hypergeometric(population - 1, rank, size - 1, [&](double fitter, double weight) {
@@ -78,10 +78,10 @@ WinsLaw wins_without_replacement(double rank, double population, double size, do
     return {chance, chance, 1 - chance};
 }
 
-/// The wins of a rank if it and the fitter ranks together fill `contestants` of the places of a tournament. Each of
-/// these places belongs to the rank itself with probability `own_share`.
+/// The wins of a rank in a tournament in which `contestants` contestants have this rank or a better one. Each of these
+/// contestants has exactly this rank with probability `own_share`.
 WinsLaw wins_among(double contestants, double own_share, double winners) {
-    if (contestants <= winners) { // each of them wins
+    if (contestants <= winners) { // each of these contestants wins
         const double mean = contestants * own_share;
         return {mean, mean * (1 - own_share) + mean * mean, power(1 - own_share, contestants)};
     }
@@ -91,7 +91,7 @@ WinsLaw wins_among(double contestants, double own_share, double winners) {
     }
     WinsLaw law{.none_chance = 0};
     const double all = visit_binomial(contestants, own_share, [&](double drawn, double weight) {
-        const double won = std::max(drawn - losers, 0.0); // of these contestants, the rank's own lose first
+        const double won = std::max(drawn - losers, 0.0); // of these contestants, those with this rank lose first
         law.mean += weight * won;
         law.mean_square += weight * won * won;
         law.none_chance += won > 0 ? 0 : weight;

@@ -1,4 +1,4 @@
-// Selection law: how often a selection method picks each organism on average, and how much that varies between
+// Selection law: how often a selection method picks each organism on average, and how much this number varies between
 // breedings.
 //
 // Owner        BreedingRecord; nothing in a running world uses it.
@@ -18,11 +18,11 @@ namespace evod::evolution {
 
 struct Tournament;
 
-/// The distribution of one organism's copies, over all picks of one breeding.
+/// The distribution of the number of copies of one organism, over all picks of one breeding.
 struct CopiesLaw {
     double expected = 0;
     double standard_error = 0;  // standard deviation of the copies from one breeding to the next
-    double unpicked_chance = 1; // probability of no copy at all
+    double unpicked_chance = 1; // probability that the organism is not picked at all
 };
 
 class SelectionLaw {
@@ -32,8 +32,8 @@ class SelectionLaw {
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
-    /// rank   0 is the fittest.
-    /// share  its share of the wheel, for roulette and universal sampling; the other methods ignore it.
+    /// rank   the rank of the organism; 0 is the fittest.
+    /// share  the organism's share of the wheel, for roulette and universal sampling; the other methods ignore it.
     CopiesLaw copies(std::uint32_t rank, double share) const;
 
   private:
@@ -44,16 +44,17 @@ class SelectionLaw {
     Parameters parameters_;
 };
 
-/// The distribution of one rank's wins in one tournament.
+/// The distribution of the number of wins of one rank in one tournament.
 struct WinsLaw {
     double mean = 0;
     double mean_square = 0;
-    double none_chance = 1;
+    double none_chance = 1; // probability of no win
 };
 
-/// tournament  its size is at most the population if drawn without replacement; its winners are at most its size.
-/// cost        grows with the square root of the size; with replacement and several winners, at most linearly with the
-///             size.
+/// Computes how often the organism of rank `rank` wins one tournament. The time grows with the square root of
+/// tournament.size; with replacement and several winners, at most linearly.
+///
+/// tournament  winners <= size; without replacement, also size <= population.
 WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

@@ -7,7 +7,7 @@
 namespace evod::evolution {
 namespace {
 
-constexpr std::size_t items_per_bucket = 16384; // on average, per bucket
+constexpr std::size_t items_per_bucket = 16384; // average number
 constexpr std::size_t items_per_stream = 16384;
 
 } // namespace

@@ -11,8 +11,8 @@
 namespace evod::evolution {
 namespace {
 
-// The number of contestants that are drawn, and whose fitness is prefetched, before the first is compared. Their
-// fitness is scattered over memory.
+// Contestants are drawn in groups of about this size. The fitness of a whole group is prefetched before the first
+// comparison, because it is scattered over memory.
 constexpr std::size_t contestants_at_once = 128;
 constexpr std::size_t contestants_per_piece = 4096;
 
@@ -131,7 +131,8 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
 }
 
-/// Like draw_different_winning_ranks(), in a time that does not depend on how many ranks are skipped.
+/// Draws from the same distribution as draw_different_winning_ranks(). The time does not depend on how many ranks are
+/// skipped.
 void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                      base::RandomStream& random) {
     std::uint32_t rank = 0;
@@ -157,10 +158,10 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
 /// How the winners are found. Each method is the fastest in its case.
 enum class Method {
     Held,            // contestants are drawn and compared
-    OrderStatistics, // with replacement
-    WheelOfRanks,    // without replacement, one winner
-    WalkDownRanks,   // without replacement, several winners, a large part of the population
-    SkipRanks,       // without replacement, several winners, a small part of the population
+    OrderStatistics, // ranks are drawn; for tournaments with replacement
+    WheelOfRanks,    // a rank is drawn; without replacement, one winner
+    WalkDownRanks,   // ranks are drawn; without replacement, several winners, a large part of the population
+    SkipRanks,       // ranks are drawn; without replacement, several winners, a small part of the population
 };
 
 // Walking over this many ranks per winner costs as much as one skip.
@@ -183,7 +184,7 @@ Method choose_method(std::uint32_t population, const Tournament& tournament) {
     return size < 4 * winners ? Method::Held : Method::SkipRanks;
 }
 
-/// The rules of the tournaments for a number of picks.
+/// The rules of the tournaments of one selection.
 struct Rules {
     std::uint32_t population, size, winners;
     bool replacement;

@@ -2,7 +2,7 @@
 // sampling spins it once for all picks.
 //
 // Determinism  widths are added in index order.
-// Cost         O(population) to build; a pick takes two comparisons on average, whatever the weights.
+// Cost         O(population) to build; a pick takes two comparisons on average, for any weights.
 // Source       Chen & Asau 1974, "On generating random variates from an empirical distribution" (the guide table).
 #pragma once
 

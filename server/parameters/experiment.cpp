@@ -96,7 +96,7 @@ class ValuesByGeneration {
 /// Collects the schedule of a file and the lines of its values.
 class ScheduleReader {
   public:
-    /// Reads the values of one parameter. Adds those after generation 1 to the schedule and returns the value of
+    /// Reads the values of one parameter. Adds the values after generation 1 to the schedule, and returns the value of
     /// generation 1, if there is one.
     std::optional<ParameterValue> read(const JsonMember& member, std::vector<Violation>& violations) {
         const auto [place, added] = read_.try_emplace(member.name, member.name, member.value);
@@ -211,7 +211,7 @@ class ExperimentReader {
             if (member.value.is_string()) {
                 experiment_.description = member.value.string();
             } else {
-                refuse(member, "a text");
+                refuse(member, "a string");
             }
         } else {
             read_parameter(member);
@@ -227,7 +227,7 @@ class ExperimentReader {
         } else if (auto value = parameter_value_of(member.value)) {
             assignments_.push_back({member.name, *std::move(value)});
         } else {
-            refuse(member, "a number, true, false or a text");
+            refuse(member, "a number, true, false or a string");
         }
     }
 
@@ -346,8 +346,8 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
     std::string text = "{";
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
-        // The value that a reader uses if the file does not name the parameter.
         const std::string scheduled = values_text(schedule, description.name);
+        // A file that does not name reference_population sets it to population_size.
         const bool follows = description.name == "reference_population";
         if (written == Written::Differences && scheduled.empty() &&
             (follows ? parameters.reference_population == parameters.population_size

@@ -2,7 +2,7 @@
 //
 // A parameter that can change while a world runs may have an object of values by generation instead of one value:
 // "mutation_chance": {"1": 0.2, "30": 0.05}. Each value holds from the first tick of its generation. Before the first
-// listed generation the parameter has its default.
+// listed generation the parameter has its default value.
 #pragma once
 
 #include "server/base/random.h"
@@ -24,15 +24,15 @@ struct Experiment {
     std::string description;
 };
 
-/// Reads the text of an experiment file. A parameter that it does not name has its default, except
+/// Reads the text of an experiment file. A parameter that the text does not name has its default value, except
 /// reference_population, which then equals population_size of generation 1. Violations name the field with its line:
 /// "mutation_chance (line 4)", "mutation_chance at generation 30 (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
-/// Does the same for a JSON value inside another file. Violations then name the lines of that file.
+/// Reads an experiment from a JSON value inside another file. Violations name the lines of that file.
 base::Result<Experiment> read_experiment(const JsonNode& document);
 
-/// The value of a parameter. A number without a fraction becomes a count if it fits. Returns nullopt for null, arrays
-/// and objects.
+/// Converts a JSON value to a parameter value. A number without a fraction becomes a count if it fits. Returns nullopt
+/// for null, arrays and objects.
 std::optional<ParameterValue> parameter_value_of(const JsonNode& node);
 
 enum class Written { Differences, Everything }; // Differences: only the parameters that differ from their defaults
@@ -43,7 +43,7 @@ std::string to_experiment_text(const Parameters& parameters, Written written = W
 
 /// A schedule alone, in the form of an experiment file; "{}\n" if it is empty.
 std::string to_schedule_text(const Schedule& schedule);
-/// Reads the output of to_schedule_text() and nothing else. Does not check whether the values fit the run's parameters.
+/// Reads the output of to_schedule_text(). Does not check whether the values fit the parameters of the run.
 base::Result<Schedule> parse_schedule(std::string_view text);
 
 } // namespace evod::parameters

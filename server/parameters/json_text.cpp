@@ -42,7 +42,7 @@ std::string decoded(std::string_view string) {
     return value.is_string() ? std::string{value.get_string()} : std::string{};
 }
 
-/// Finds the values of a valid text and their places, because Boost.JSON returns values without their places.
+/// Finds the values of a valid text and their positions, because Boost.JSON returns values without positions.
 class JsonPlaces {
   public:
     explicit JsonPlaces(std::string_view text) : text_{text} {}
@@ -137,7 +137,7 @@ std::string JsonNode::quoted() const {
     if (text.size() <= bytes_max) {
         return std::string{text};
     }
-    return is_array() ? "a list" : is_object() ? "an object" : "a long text";
+    return is_array() ? "a list" : is_object() ? "an object" : "a long string";
 }
 
 base::Result<JsonNode> parse_json(std::string_view text) {

@@ -45,14 +45,13 @@ struct JsonMember {
     JsonNode value;
 };
 
-/// Parses a text that contains one value. Otherwise refuses it as an invalid argument, and names the line: "not JSON:
-/// line 3: …".
+/// Parses a text that must contain exactly one JSON value. Errors name the line: "not JSON: line 3: …".
 base::Result<JsonNode> parse_json(std::string_view text);
 
 /// "mutation_chance (line 4)"
 std::string with_line(std::string_view field, std::size_t line);
 
-/// The members of an object, each name once. A repetition becomes a violation of the field `prefix` + name.
+/// The members of an object, without repeated names. Each repetition adds a violation of the field `prefix` + name.
 std::vector<const JsonMember*> unique_members(const JsonNode& object, std::string_view prefix,
                                               std::vector<base::Violation>& violations);
 

@@ -108,8 +108,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & 
     return row.back();
 }
 
-/// An upper bound on the share of an island where the centre of a new body cannot be placed, if every organism has the
-/// greatest size. Bodies of the kind that is being placed count with their own area only.
+/// An upper bound on the share of an island in which the centre of a new body cannot be placed, if every organism has
+/// the maximum size. Of bodies of the same kind as the new body, only their own area is counted.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
     const auto square = [](double x) { return x * x; };
     const double radius = p.body_size_max * p.radius_per_unit_px;
@@ -201,7 +201,7 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name) {
 
 namespace {
 
-/// Makes one assignment, or returns what is wrong with it.
+/// Applies one assignment, or returns what is wrong with it.
 std::optional<base::Violation> assign_one(const Assignment& assignment, std::string_view field_prefix,
                                           Parameters& parameters) {
     std::string field = std::string{field_prefix} + assignment.name;
@@ -227,7 +227,7 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
     base::Refusal refusal{
         .code = base::RefusalCode::InvalidArgument, .message = "invalid parameter values", .violations = {}};
     if (const std::size_t most = parameter_registry().size(); assignments.size() > most) {
-        // There may be very many assignments, so they are not checked one by one.
+        // There may be very many assignments. Checking each of them would take too long.
         const std::string field =
             field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
         refusal.violations.push_back(
@@ -331,7 +331,7 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     const double organisms = static_cast<double>(p.island_count) * p.population_size;
     if (organisms > 4e6) {
         refuse("island_count", "at most 4000000 organisms on all islands together",
-               std::to_string(p.island_count) + ", with " + number_text(organisms));
+               std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
     }
 
     if (p.fitness != FitnessFunction::Life) {
@@ -339,10 +339,10 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     }
     require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
     if (p.generation_s / p.tick_s > 1e9) {
-        refuse("generation_s", "at most 1e9 ticks of tick_s", number_text(p.generation_s));
+        refuse("generation_s", "at most 1e9 times tick_s", number_text(p.generation_s));
     }
     if (p.max_speed_px_s * p.tick_s > 5000) {
-        refuse("max_speed_px_s", "at most 5000 px in a tick of tick_s", number_text(p.max_speed_px_s));
+        refuse("max_speed_px_s", "at most 5000 px per tick (tick_s)", number_text(p.max_speed_px_s));
     }
     const IslandPlan plan = island_plan(p);
     const std::string scaled = p.scale_with_population ? " after scaling with the population" : "";
@@ -362,12 +362,13 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
     if (items > 4e7) {
         refuse("island_count", "at most 40000000 items on all islands together",
-               std::to_string(p.island_count) + ", with " + number_text(items));
+               std::to_string(p.island_count) + " islands with a total of " + number_text(items));
     }
     if (const double share = covered_share(p, plan); share > 0.4) {
         refuse("population_size",
-               "organisms of body_size_max, crates and obstacles that cover at most 0.4 of an island",
-               std::to_string(p.population_size) + ", covering " + number_text(std::round(share * 1000) / 1000));
+               "at most 0.4 of an island covered by organisms of the size body_size_max, crates and obstacles",
+               std::to_string(p.population_size) + " organisms, covered share " +
+                   number_text(std::round(share * 1000) / 1000));
     }
     return violations;
 }

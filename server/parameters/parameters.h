@@ -39,8 +39,8 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(island_height_px, 720, 100, 500'000, "px", NextGeneration, "Distance between the upper and lower walls.")     \
     COUNT(food_count, 25, 0, 20'000'000, "items", NextGeneration, "Food items on each island.")                        \
     COUNT(poison_count, 40, 0, 20'000'000, "items", NextGeneration, "Poison items on each island.")                    \
-    FLAG(scale_with_population, false, NextGeneration, "Whether the area, food and poison of islands scale with population_size; the given values are those for reference_population.") \
-    COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population for which island size, food and poison are given if scale_with_population is on; in an experiment file, the default is its population_size.") \
+    FLAG(scale_with_population, false, NextGeneration, "Whether the area, food and poison of each island grow in proportion to population_size; the parameters for them then give the values for reference_population organisms.") \
+    COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population size to which island size, food_count and poison_count apply if scale_with_population is on; in an experiment file, the default is the file's population_size.") \
     COUNT(obstacle_count, 0, 0, 1000, "obstacles", NextGeneration, "Immovable rectangles on each island.")             \
     REAL(obstacle_size_px, 60, 5, 2000, "px", NextGeneration, "Side of an obstacle.")                                  \
     COUNT(crate_count, 0, 0, 1000, "crates", NextGeneration, "Movable rectangles on each island.")                     \
@@ -53,21 +53,21 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(food_health, 25, 0, 10'000, "health", NextTick, "Health gained from a food item.")                            \
     REAL(poison_harm, 40, 0, 10'000, "health", NextTick, "Health lost to a poison item.")                              \
     REAL(steering_lookahead_s, 0.3, 0, 10, "s", NextTick, "How far ahead an organism compensates for its own velocity when it steers to food; with 0 it orbits the food.") \
-    CHOICE(flee_rule, FleeRule, Nearer, NextTick, "When an organism may flee from poison that it sees: nearer means only if the poison is nearer than the nearest food that it sees.") \
-    REAL(flee_certain_impulse, 200, 1, 10'000, "gene units", NextTick, "Value of the gene impulse from which an organism always flees.") \
+    CHOICE(flee_rule, FleeRule, Nearer, NextTick, "When an organism may flee from poison that it sees: nearer, only if the poison is nearer than all food that it sees; always, regardless of food.") \
+    REAL(flee_certain_impulse, 200, 1, 10'000, "gene units", NextTick, "Value of the gene impulse at which an organism flees with certainty; below it, the chance is impulse / flee_certain_impulse.") \
     REAL(damping, 0.999, 0.01, 1, "share per 1/60 s", NextGeneration, "Share of its velocity that a body keeps after 1/60 s.") \
-    REAL(restitution, 0.8, 0, 1, "", NextGeneration, "Share of the approach speed with which two bodies separate after a collision.") \
-    REAL(max_speed_px_s, 600, 1, 100'000, "px/s", NextGeneration, "Greatest speed of a body.")                         \
+    REAL(restitution, 0.8, 0, 1, "", NextGeneration, "Speed at which two bodies separate after a collision, as a share of the speed at which they approached.") \
+    REAL(max_speed_px_s, 600, 1, 100'000, "px/s", NextGeneration, "Maximum speed of a body.")                         \
     CHOICE(integrator, IntegratorChoice, SymplecticEuler, NextGeneration, "How a tick updates velocities and positions.") \
     REAL(radius_per_unit_px, 0.1, 0.001, 10, "px", NextGeneration, "Radius per unit of the gene body_size.")           \
     REAL(mass_per_unit_kg, 0.01, 0.0001, 1000, "kg", NextGeneration, "Mass per unit of the gene body_size.")           \
     REAL(force_per_unit, 1, 0, 1000, "kg px/s²", NextTick, "Force per unit of the genes normal_speed and impulse.")    \
-    REAL(normal_speed_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per (normal_speed/100 − 1).")    \
-    REAL(impulse_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((impulse/100)² − 1).")           \
-    REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per (base_health/100 − 1).")      \
-    REAL(food_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((food_radius/100)² − 1).")   \
-    REAL(poison_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((poison_radius/100)² − 1).") \
-    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "Upper limit of health after a meal, per unit of the gene body_size; 0 is no limit.")
+    REAL(normal_speed_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene normal_speed: health loss is multiplied by 1 + the costs of all genes, this one being normal_speed_cost · (normal_speed/100 − 1).")    \
+    REAL(impulse_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene impulse, as for normal_speed_cost: impulse_cost · ((impulse/100)² − 1).")           \
+    REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene base_health, as for normal_speed_cost: base_health_cost · (base_health/100 − 1).")      \
+    REAL(food_radius_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene food_radius, as for normal_speed_cost: food_radius_cost · ((food_radius/100)² − 1).")   \
+    REAL(poison_radius_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene poison_radius, as for normal_speed_cost: poison_radius_cost · ((poison_radius/100)² − 1).") \
+    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "Upper limit of health after a meal, per unit of the gene body_size; 0 means no limit.")
 // clang-format on
 
 namespace evod::parameters {
@@ -115,7 +115,7 @@ struct ParameterDescription {
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
-/// Every parameter, those of the model first, in the order of the lists.
+/// All parameters: first those of the model, then those of the genetic algorithm, in the order of their lists.
 std::span<const ParameterDescription> parameter_registry();
 
 /// The parameters whose values differ, in the order of the registry.
@@ -142,14 +142,14 @@ std::optional<base::Violation> fault_of(const Assignment& assignment, std::strin
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix = "");
 
-/// Parses a value from text ("0.05", "true", "tournament"), as in `--set` and on consoles.
+/// Parses a value from text: "0.05", "true", "tournament".
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text);
 
-/// Checks whether parameters fit together, each of which is within its range. Violations are, for example, bounds in
-/// the wrong order or too little room.
+/// Checks whether the parameters fit together; each must be within its range. Violations are, for example, a minimum
+/// above its maximum, or organisms that do not fit on the island.
 std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
 
-/// The island that the parameters describe, after scaling with the population if scale_with_population is on.
+/// The size and the number of items of each island; scaled with the population if scale_with_population is on.
 struct IslandPlan {
     double width_px, height_px;
     std::uint32_t food_count, poison_count;
@@ -159,14 +159,14 @@ IslandPlan island_plan(const Parameters& parameters);
 /// The parameters in effect and the requested ones, which may wait for a generation or a reset.
 struct ParameterSet {
     Parameters active;          // in effect now
-    Parameters requested;       // in effect once all have taken effect
+    Parameters requested;       // in effect after all changes have taken effect
     std::uint64_t revision = 1; // increases with every accepted change
 };
 
-/// The set after a change. Values that take effect at once become active; the others are only requested.
+/// The set after a change. Values that take effect at once become active; other values are only requested.
 ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
 
-/// Returns `active` with those requested values that take effect when `reached` happens.
+/// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.
 Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
 
 bool operator==(const Parameters& a, const Parameters& b);

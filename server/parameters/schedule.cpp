@@ -32,10 +32,9 @@ void Schedule::add(std::uint64_t generation, const Assignment& assignment) {
         added.value = static_cast<double>(*whole);
     }
     auto& there = changes_[generation];
-    const auto place = std::ranges::find_if(
-        there, [&](const Assignment& other) { return find_parameter(other.name) > description; }); // both point into
-                                                                                                   // the registry,
-                                                                                                   // which is an array
+    // Both pointers point into the registry, which is an array, so assignments are sorted in its order.
+    const auto place =
+        std::ranges::find_if(there, [&](const Assignment& other) { return find_parameter(other.name) > description; });
     there.insert(place, std::move(added));
 }
 
@@ -73,7 +72,7 @@ namespace {
 
 base::Refusal refused(std::vector<base::Violation> violations) {
     return {.code = base::RefusalCode::InvalidArgument,
-            .message = "invalid parameter values until the world is reset",
+            .message = "invalid parameter values: they do not fit together until all of them have taken effect",
             .violations = std::move(violations)};
 }
 
@@ -85,7 +84,8 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     if (!requested) {
         return requested;
     }
-    // A reset may never come, so the other parameters must be valid without those that wait for one.
+    // The world may never be reset, so the values must also be valid while the parameters that wait for a reset keep
+    // their old values.
     const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
     if (auto violations = validate(next, field_prefix); !violations.empty()) {
         return refused(std::move(violations));
@@ -101,7 +101,7 @@ base::Result<Parameters> request_at_generation(const ParameterSet& set, std::spa
     }
     if (auto violations = validate(breeding_with(set.active, *requested), field_prefix); !violations.empty()) {
         for (base::Violation& violation : violations) {
-            violation.allowed += ", with the values that breeding still uses then";
+            violation.allowed += ", because the generation is bred with the previous values of breeding parameters";
         }
         return refused(std::move(violations));
     }

@@ -1,4 +1,4 @@
-// Schedules: parameters that change by generation, as experiment files list them.
+// Schedules: values of parameters for given generations, as experiment files list them.
 //
 // A value holds from the first tick of its generation. A breeding parameter set for generation N therefore first
 // affects the breeding of generation N + 1. The population size and the contents of the islands already apply to
@@ -40,8 +40,8 @@ class Schedule {
     void add(std::uint64_t generation, const Assignment& assignment);
     /// Removes all values of a parameter.
     void remove(std::string_view name);
-    /// Sets the values of generation 1, for every scheduled parameter, to those of the parameters that a run begins
-    /// with.
+    /// Sets the value of generation 1 of every scheduled parameter to its value in `parameters`, with which a run
+    /// begins.
     void begin_with(const Parameters& parameters);
 
     friend bool operator==(const Schedule&, const Schedule&) = default;
@@ -50,11 +50,10 @@ class Schedule {
     std::map<std::uint64_t, std::vector<Assignment>> changes_;
 };
 
-/// A future moment of a run: exactly one of the two is set.
+/// A future moment of a run. Exactly one of the two members is set.
 struct PlannedMoment {
-    std::optional<std::uint64_t> generation; // its first tick, as in a schedule
-    std::optional<std::uint64_t> tick;       // directly after this tick, counted from the beginning of the run, like a
-                                             // command that arrives there
+    std::optional<std::uint64_t> generation; // from the first tick of this generation on, like a value of a schedule
+    std::optional<std::uint64_t> tick;       // directly after this tick of the run, like a command that arrives then
 
     friend bool operator==(const PlannedMoment&, const PlannedMoment&) = default;
 };
@@ -79,8 +78,8 @@ inline bool can_be_scheduled(const ParameterDescription& description) {
 /// if it is not valid without the parameters that wait for a reset.
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix = "");
-/// Does the same for a change at the beginning of a generation. That generation is bred with the old values of breeding
-/// parameters, but has the new population size.
+/// Like request_of(), for assignments that are made at the beginning of a generation. That generation is bred with the
+/// old values of breeding parameters, but has the new population size.
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix = "");
 
@@ -93,7 +92,7 @@ struct ScheduleFault {
     base::Violation violation; // names the parameter
 };
 /// Returns the violations that the schedule causes in a run that begins with these parameters and has no other changes.
-/// Stops at the first generation that has violations, and returns all of them.
+/// Stops at the first generation that has violations, and returns all violations of that generation.
 ///
 /// parameters  valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);

@@ -20,7 +20,7 @@ namespace evod::physics {
 /// Islands are smaller than this, so that every position fits into a Coordinate.
 constexpr double island_size_max_px = 1 << 19;
 
-/// The nearest unit, halves to even; |px| < island_size_max_px.
+/// Converts px to units, rounded to the nearest unit, halves to even; |px| < island_size_max_px.
 inline Coordinate to_units(double px) {
     EVOD_ASSERT(std::abs(px) < island_size_max_px);
     return static_cast<Coordinate>(std::lrint(px * units_per_px));

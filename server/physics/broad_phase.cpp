@@ -126,8 +126,8 @@ bool NearPairs::stale(const Circles& circles, const Boxes& boxes) const {
 
 void NearPairs::sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
     radius_max_ = greatest_radius(circles);
-    // If circles are distributed evenly, this skin gives about every second circle one other circle within reach. So
-    // few pairs can be tested in each tick, and the list lasts for about twenty ticks. A tick of 20,000 organisms takes
+    // If circles are distributed evenly, about every second circle has one other circle within this skin. So few pairs
+    // can be tested in each tick, and the list remains valid for about twenty ticks. A tick of 20,000 organisms takes
     // a tenth longer with half of this skin, and 4 % longer with twice as much.
     const double share_px2 =
         to_px(area.width) * to_px(area.height) / static_cast<double>(std::max<std::size_t>(circles.size(), 1));

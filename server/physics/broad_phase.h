@@ -5,9 +5,9 @@
 // contiguous range of an adjacent strip. No array is as large as the area, so the cost depends only on the number of
 // circles. It does not depend on crowds, empty regions or the shape of the island.
 //
-// A pair is listed if the gap between the two bodies is less than the skin, a chosen distance (Verlet 1967, "Computer
-// experiments on classical fluids"). A pair that is not listed cannot touch until one of its bodies has moved half the
-// skin. Until then, only listed pairs are tested.
+// A pair is listed if the gap between its two bodies is at most the skin, a chosen distance (the list of Verlet 1967,
+// "Computer experiments on classical fluids"). The two bodies of an unlisted pair can touch only after one of them has
+// moved more than half the skin. The list is renewed before that, so only listed pairs are tested.
 //
 // Threads      strips and blocks of circles are processed in parallel.
 // Determinism  the list contains every touching pair, however thick the skin is. contacts.h then resolves touching
@@ -34,19 +34,19 @@ constexpr std::size_t block_count(std::size_t circles) {
     return (circles + circles_per_block - 1) / circles_per_block;
 }
 /// Whether a loop over so many circles is long enough to be divided among several threads.
-constexpr bool worth_cutting(std::size_t circles) {
+constexpr bool worth_dividing(std::size_t circles) {
     return circles >= 4096;
 }
-/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth cutting.
+/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth dividing.
 constexpr std::size_t blocks_per_piece(std::size_t circles) {
-    return worth_cutting(circles) ? 1 : block_count(circles) + 1;
+    return worth_dividing(circles) ? 1 : block_count(circles) + 1;
 }
 constexpr base::Range circles_of_block(std::size_t circles, std::size_t block) {
     return {block * circles_per_block, std::min((block + 1) * circles_per_block, circles)};
 }
 
-/// Provides one list per block. Lists are kept between ticks. A new list reserves memory for the usual number of
-/// elements.
+/// Changes the number of lists to one per block. Existing lists keep their memory; a new list reserves memory for
+/// `usually_enough` elements.
 template <class T>
 void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks, std::size_t usually_enough) {
     const std::size_t before = list_of_block.size();
@@ -62,7 +62,7 @@ class Strips {
     /// reach_px  the greatest distance at which neighbours will be requested; also the minimum height of a strip.
     void sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor);
 
-    /// Indices of the circles.
+    /// The indices of the circles, in sorted order.
     std::span<const std::uint32_t> order() const { return order_; }
     /// Must be called after the circles have been reordered by order(). order() is then 0, 1, 2, ….
     void follow_reordering();
@@ -99,7 +99,7 @@ class Strips {
     base::Range places(Stretch stretch) const { return {first_[stretch.first_cell], first_[stretch.end_cell]}; }
     /// Prefetches the memory that places() reads.
     void prefetch(Stretch stretch) const { __builtin_prefetch(&first_[stretch.first_cell]); }
-    /// The place in order() where the circles of a strip with x >= left begin, or a little before it.
+    /// A place in order() at or shortly before the first circle of the strip with x >= left.
     std::size_t place_of(std::uint32_t strip, std::int64_t left) const {
         return first_[std::size_t{strip} * columns_ + index_at(left, column_scale_, columns_)];
     }
@@ -124,15 +124,14 @@ class Strips {
     base::Column<std::uint32_t> order_;
 };
 
-/// Pairs that may touch before any body has moved half the skin.
+/// The list of pairs that are at most the skin apart.
 class NearPairs {
   public:
     struct Pair {
-        std::uint32_t a, b; // indices
+        std::uint32_t a, b; // indices of the two bodies
     };
 
-    /// Whether pairs that are not listed might touch, so that the list must be renewed. True until the first list is
-    /// made.
+    /// Whether pairs that are not listed might touch, so that the list must be renewed. True before the first list.
     bool stale(const Circles& circles, const Boxes& boxes) const;
     /// Makes stale() return true; for use after all bodies have been replaced.
     void invalidate() {
@@ -144,8 +143,8 @@ class NearPairs {
         EVOD_ASSERT(circle < circle_count_);
         anchor_x_[circle] = anchor_y_[circle] = void_position;
     }
-    /// Sets the displacement that the next stale() uses: the squared distance of the circle furthest from its anchor,
-    /// px².
+    /// Sets the displacement that stale() uses: the squared distance of the circle furthest from its anchor, px². The
+    /// anchor of a circle is its position at the last sort().
     void set_displacement_square(float displacement_square) {
         EVOD_ASSERT(displacement_square >= 0);
         displacement_square_ = displacement_square;
@@ -165,7 +164,7 @@ class NearPairs {
     /// Lists the pairs; uses the result of the last sort().
     void list(const Circles& circles, const Boxes& boxes, base::Executor& executor);
 
-    /// Pairs of circles, one part per block of circles.
+    /// The pairs of circles that were found in a block of circles.
     std::span<const Pair> circle_pairs(std::size_t block) const {
         EVOD_ASSERT(block < pairs_of_block_.size());
         return pairs_of_block_[block];
@@ -199,7 +198,7 @@ class NearPairs {
     float displacement_square_ = std::numeric_limits<float>::infinity();
     float radius_max_ = 0; // px
     float skin_px_ = 0;
-    float skin_share_ = 1; // the skin as a share of the one for an even distribution; smaller in crowds
+    float skin_share_ = 1; // factor on the skin that suits evenly distributed circles; below 1 in crowds
     std::vector<std::vector<Pair>> pairs_of_block_;
     std::vector<Pair> circle_box_pairs_, box_pairs_;
     std::vector<std::uint32_t> boxes_by_left_;

@@ -1,8 +1,8 @@
-// Integrators: how a tick's acceleration changes a velocity, and which velocity moves a body.
+// Integrators: how acceleration changes the velocity of a body in a tick, and which velocity moves the body.
 //
 //   symplectic Euler  v' = (v + a·dt)·d             x' = x + v'·dt     (d = share kept by damping in a tick)
-//   explicit Euler    v' = (v + a·dt)·d             x' = x + v·dt      plus this tick's impulses
-//   backward Euler    v' = (v + a·dt)/(1 + c·dt)    x' = x + v'·dt     (c = damping rate; no damping: as symplectic)
+//   explicit Euler    v' = (v + a·dt)·d             x' = x + v·dt      (v also contains this tick's collision impulses)
+//   backward Euler    v' = (v + a·dt)/(1 + c·dt)    x' = x + v'·dt     (c = damping rate; c = 0: symplectic Euler)
 //
 // Source  Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, I.1.
 #pragma once

@@ -7,7 +7,7 @@
 namespace evod::physics {
 namespace {
 
-using namespace evod::base; // lanes
+using namespace evod::base; // the vector types of lanes.h
 
 Floats accelerated(Floats velocity, Floats force, Floats inverse_mass, const MotionRules& rules) {
     return (velocity + force * inverse_mass * rules.tick_s) * rules.velocity_kept;

@@ -41,8 +41,8 @@ struct MotionKernels {
     /// force  the forces on the circles from `begin` on: element 0 is for circle `begin`.
     void (*accelerate)(const MotionColumns& columns, const Forces& force, std::size_t begin, std::size_t end,
                        const MotionRules& rules);
-    /// Limits speeds, and applies velocities to positions. Puts circles beyond a wall back inside, and bounces the
-    /// circles among them that still move outward.
+    /// Limits speeds, and applies velocities to positions. Moves circles that are beyond a wall back inside;
+    /// bounces them off the wall if they still move outward.
     MoveCounts (*move)(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules);
     // begin is a multiple of lanes_max. Up to lanes_max − 1 void circles beyond `end` are processed too.
 };

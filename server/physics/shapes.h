@@ -10,24 +10,29 @@ namespace evod::physics {
 struct Overlap {
     bool touching = false;
     float depth = 0;                  // px, >= 0
-    float normal_x = 0, normal_y = 0; // the normal, from the first shape to the second
+    float normal_x = 0, normal_y = 0; // unit vector from the first shape toward the second
 };
 
 struct BoxShape {
     float half_width, half_height; // px
 };
 
-/// dx, dy  second centre − first centre, px. If the centres are equal, depth is the sum of the radii and the normal is
-///         +x.
+/// Tests two circles. If their centres are equal, depth is the sum of the radii, and the normal is +x.
+///
+/// dx, dy  second centre − first centre, px.
 Overlap circle_circle(float dx, float dy, float first_radius, float second_radius);
 
-/// dx, dy  second centre − first centre, px. If both overlaps are equal, the x axis wins; if the centres are equal too,
-///         the normal is positive.
+/// Tests two boxes. The normal is along the axis with the smaller overlap: along x if both overlaps are equal. If the
+/// centres are equal on that axis, the normal is positive.
+///
+/// dx, dy  second centre − first centre, px.
 Overlap box_box(float dx, float dy, BoxShape first, BoxShape second);
 
-/// dx, dy  circle's centre − box's centre, px. If the centre is inside the box or on its edge, the normal points to the
-///         nearest side, and depth is the distance to that side plus the radius. If sides are equally near, the x axis
-///         wins, then the positive side.
+/// Tests a box (first) and a circle (second). If the circle's centre is inside the box or on its edge, the normal
+/// points to the nearest side of the box, and depth is the distance to that side plus the radius. Of equally near
+/// sides, the left and right ones are preferred, then the one in positive direction.
+///
+/// dx, dy  circle's centre − box's centre, px.
 Overlap box_circle(float dx, float dy, BoxShape box, float radius);
 
 } // namespace evod::physics

@@ -47,7 +47,7 @@ class Stepper {
     /// Blocks may be processed in parallel.
     /// force  the forces on the circles of the block.
     void accelerate(Circles& circles, std::size_t block, const Forces& force);
-    /// Does the same for the boxes; then resolves all contacts.
+    /// Applies damping and bounces off walls to the boxes, and finds their contacts; then resolves all contacts.
     void collide(Circles& circles, Boxes& boxes, base::Executor& executor);
     /// Velocities → positions for one block of circles. Blocks may be processed in parallel.
     void move(Circles& circles, std::size_t block);

@@ -281,7 +281,7 @@ bool ComingChanges::apply(const ParameterChange& change, simulation::World& worl
         return world.cancel(*change.cancels).has_value();
     }
     if (change.at) {
-        const bool can_be = world.is_to_come(*change.at) && world.planned().size() < parameters::planned_changes_max;
+        const bool can_be = world.is_in_future(*change.at) && world.planned().size() < parameters::planned_changes_max;
         if (can_be) {
             (void)world.plan({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
         }

@@ -31,7 +31,7 @@ struct BehaviourRules {
     float force_per_unit;  // kg px/s² per gene unit
 };
 
-/// The columns that kernels process. Valid until columns grow or are reordered.
+/// Pointers to the columns that kernels process. Valid until a column grows or is reordered.
 OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
                                  const Items& poison);
 
@@ -40,14 +40,14 @@ struct ChosenForces {
     std::array<float, physics::circles_per_block> x, y;
 };
 
-/// Subtracts the health that a tick costs, and chooses the forces of the organisms of a block. Their views must be
-/// current.
+/// For each organism of a block, subtracts the health that a tick costs and chooses a force. Call Perception::search()
+/// for the block first.
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces);
 
 /// What an organism will do in the next tick.
 struct Intention {
-    Choice choice = Choice::None;                   // None: there is no such organism
+    Choice choice = Choice::None;                   // None: the organism is dead or has no body
     float force_x = 0, force_y = 0;                 // kg px/s²
     physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; the organism's own position if it
                                                     // wanders

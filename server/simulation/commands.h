@@ -15,8 +15,8 @@
 
 namespace evod::simulation {
 
-/// The permanent identity of a run: a random number, drawn outside the core for every create and reset. Not part of the
-/// state.
+/// The permanent identity of a run: a random number, drawn outside the core whenever a world is created, forked or
+/// reset. Not part of the state.
 struct RunId {
     std::uint64_t high = 0, low = 0;
     friend bool operator==(const RunId&, const RunId&) = default;
@@ -24,7 +24,7 @@ struct RunId {
 
 /// 32 lower-case hexadecimal digits.
 std::string to_text(const RunId& id);
-/// The same 128 bits as 16 bytes, most significant first.
+/// The id as 16 bytes, most significant first.
 std::string to_bytes(const RunId& id);
 
 /// Simulated seconds per second, 0.001 to 10,000; nullopt: as fast as possible.
@@ -58,8 +58,8 @@ struct RunUntilTick {
 };
 struct ReleaseLease {
     std::string world;
-    std::optional<std::uint64_t> lease = {}; // number of the lease; refused if it is not the last one. nullopt: any
-                                             // lease
+    std::optional<std::uint64_t> lease = {}; // RunControl::lease at the time when the lease was granted or extended;
+                                             // refused if it has changed since. nullopt: release any lease
 };
 struct Pause {
     std::string world;

@@ -1,5 +1,4 @@
-// Events: what happened in a laboratory. The Laboratory object collects events, and the runtime takes them after every
-// step.
+// Events: what happened in a laboratory. The Laboratory collects events until a caller takes them with take_events().
 #pragma once
 
 #include "server/evolution/termination.h"
@@ -22,7 +21,7 @@ struct MigrationHappened {
     std::uint64_t generation; // the ended generation, whose organisms are replaced
     std::vector<Edge> edges;
 };
-/// Every organism of an island has died before the generation's time is over.
+/// The last living organism of an island has died.
 struct Extinction {
     std::uint32_t island;
     std::uint64_t generation;
@@ -42,10 +41,10 @@ struct ParametersChanged {
 struct ChangeDropped {
     std::uint64_t planned = 0;
     std::string by;                 // as in ParametersChanged
-    std::vector<std::string> names; // names of the parameters to be assigned
+    std::vector<std::string> names; // names of the parameters that the change would have set
     std::vector<base::Violation> violations;
 };
-struct GoalReached {}; // the requested generations or ticks are over: the world waits, or is paused
+struct GoalReached {}; // the requested generations or ticks have been simulated: the world now waits or is paused
 
 using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, ParametersChanged,
                                ChangeDropped, GoalReached>;

@@ -16,7 +16,7 @@ namespace evod::simulation {
 
 /// A body that touches an item.
 struct Touch {
-    std::uint32_t item, place; // place: as in TwoNearest
+    std::uint32_t item, place; // place: as TwoNearest::place
     float square;              // squared distance, px²
     std::uint32_t id, body;
     bool gets_it; // valid after award(); exactly one body that touches an item gets it
@@ -27,7 +27,6 @@ class Feeding {
     /// Prepares for `blocks` blocks. Each block clears its touches when it is searched.
     void begin(std::size_t blocks);
 
-    /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
     /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
     /// that touches an item, and may contain other bodies.
     void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,

@@ -1,4 +1,4 @@
-// First population: given chromosomes with which a run begins. Without them, chromosomes are drawn at random.
+// First population: the chromosomes with which a run begins, if the user gives any.
 #pragma once
 
 #include "server/base/result.h"
@@ -15,11 +15,11 @@ namespace evod::simulation {
 /// large.
 using FirstPopulation = std::shared_ptr<const std::vector<evolution::GeneMatrix>>;
 
-/// Whether two first populations are equal to the last bit, except for the sign of 0.
+/// Whether two first populations have equal genes; 0 and −0 are equal.
 bool same(const FirstPopulation& a, const FirstPopulation& b);
 
-/// The reasons why a world with these parameters cannot begin with this population: wrong numbers of islands or
-/// organisms, genes out of bounds.
+/// Returns why a world with these parameters cannot begin with this population: a wrong number of islands or organisms,
+/// or genes out of bounds.
 ///
 /// field    name of the population as the sender spells it: "create_world.population". The name of a gene is then
 ///          "create_world.population[0].organism[17].body_size".

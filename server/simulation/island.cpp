@@ -16,8 +16,8 @@ namespace {
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
-/// The greatest health that meals can reach. Above it, rounding of a float loses a whole meal, which gives at most
-/// 10,000.
+/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
+/// so large a float.
 constexpr float health_reachable = 0x1p38f;
 
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
@@ -30,7 +30,7 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
 }
 
 ItemRules item_rules(const parameters::Parameters& p) {
-    // Slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
+    // The quotient is slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,
@@ -189,7 +189,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
 /// Processes food and poison, in parallel if that is faster.
 template <class OfFood, class OfPoison>
 void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
-    executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
+    executor.parallel_for(2, physics::worth_dividing(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
         if (kinds.begin == 0) {
             of_food();
         }
@@ -264,12 +264,12 @@ void Island::move(std::size_t block) {
 base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                              base::Executor& executor) {
     // Organisms are processed in blocks, in parallel. The grids of items are then changed sequentially.
-    constexpr std::size_t events_worth_cutting = 128;
+    constexpr std::size_t events_worth_dividing = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
     for (const Block& block : blocks_) {
         events += block.dying.size();
     }
-    executor.parallel_for(blocks_.size(), events < events_worth_cutting ? blocks_.size() : 8, [&](base::Range blocks) {
+    executor.parallel_for(blocks_.size(), events < events_worth_dividing ? blocks_.size() : 8, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             feed_and_remove_dead_in_block(parameters, tick, block);
         }
@@ -486,7 +486,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         }
     }
     if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
-        return wrong("number of the dead");
+        return wrong("number of dead organisms");
     }
     if (!std::ranges::all_of(state.crates, can_move)) {
         return wrong("position or speed of a crate");

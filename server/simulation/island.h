@@ -74,7 +74,7 @@ class Island {
     std::span<const std::uint32_t> bodies_by_id() const { return body_of_; }
     static constexpr std::uint32_t no_body = ~0U;
 
-    /// How living organisms and crates move and overlap; all zeros if there are no bodies.
+    /// How fast living organisms and crates move, and how deeply they overlap; all zeros if there are no bodies.
     physics::MotionReport motion_report(const parameters::Parameters& parameters) const;
 
     std::uint32_t index() const { return index_; }
@@ -83,12 +83,10 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
-    const Living& living() const { return living_; } // columns by body index
-    const physics::Circles& bodies() const {
-        return bodies_;
-    }                                                      // circles of the living organisms, in any order; void bodies
-                                                           // for the dead
-    const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
+    const Living& living() const { return living_; } // indexed by body
+    /// The circles of the living organisms, in any order; void bodies for dead organisms.
+    const physics::Circles& bodies() const { return bodies_; }
+    const physics::Boxes& boxes() const { return boxes_; } // first the crates, then the obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
     const Items& poison() const { return poison_; }
@@ -117,7 +115,7 @@ class Island {
     /// The results of a tick in one block of organisms.
     struct Block {
         base::StateHash hash;             // hash of the living organisms
-        std::vector<std::uint32_t> dying; // bodies that had no health left before meals
+        std::vector<std::uint32_t> dying; // bodies whose health was at most 0 before they ate
         base::StateHash food_hash_change, poison_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };

@@ -22,7 +22,7 @@ const ItemsKernels& items_kernels() {
 namespace {
 
 constexpr std::uint32_t items_per_block = 4096;
-constexpr std::size_t prefetched_ahead = 8; // items
+constexpr std::size_t prefetched_ahead = 8; // number of items
 
 constexpr ItemBucket empty_bucket() {
     ItemBucket bucket{};
@@ -92,7 +92,7 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
     }
     const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
     for (const Item& item : items) {
-        // Items do not touch the walls. Perception relies on this: no item is ever in the corner.
+        // Items do not touch the walls, so no item is at (0, 0), which Perception uses for void bodies.
         if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height) {
             return "position of an item";
         }
@@ -121,7 +121,7 @@ void Items::restore(std::span<const Item> items, base::Executor& executor) {
 
 void Items::choose_cells(std::uint32_t count) {
     // About four items per cell. Few buckets then overflow, and a query whose radius is at most the side of a cell
-    // reads four cells.
+    // reads at most four cells.
     const double share = 4 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
     side_ = static_cast<std::int64_t>(std::clamp(std::sqrt(share), 4096.0, 1073741824.0));
     scale_ = (std::uint64_t{1} << ItemGrid::scale_bits) / static_cast<std::uint64_t>(side_);
@@ -131,7 +131,7 @@ void Items::choose_cells(std::uint32_t count) {
     columns_ = cells(area_.width);
     rows_ = cells(area_.height);
     const std::size_t cell_count = std::size_t{rows_} * columns_;
-    // Room for overflow buckets. Items are distributed evenly, so a tick needs no more, unless obstacles crowd them.
+    // Room for overflow buckets. It is enough for evenly distributed items; obstacles may crowd items together.
     const std::size_t room = cell_count + cell_count / 16 + 16;
     buckets_.reserve(room + 1);
     items_.reserve(room);
@@ -143,7 +143,7 @@ void Items::choose_cells(std::uint32_t count) {
     counts_.assign(cell_count, 0);
     spare_.clear();
     spare_.reserve(room - cell_count);
-    // Enough for the items that disappear and reappear in a tick, or are absent, unless nearly all are eaten at once.
+    // Enough for the items that disappear and reappear in a tick, unless organisms eat nearly all items at once.
     const std::size_t events = count / 16 + 64;
     changes_.reserve(2 * events);
     due_.reserve(events);

@@ -30,8 +30,7 @@ struct ItemRules {
     std::uint32_t count;
     float radius_px;
     bool respawn;
-    std::uint32_t respawn_ticks; // number of ticks from the one in which an item is eaten to the one that begins with
-                                 // it present again, >= 1
+    std::uint32_t respawn_ticks; // >= 1; an item eaten in tick t reappears at the beginning of tick t + respawn_ticks
 };
 
 class Items {
@@ -58,18 +57,18 @@ class Items {
     /// Sets the items; fault_of() must have accepted them.
     void restore(std::span<const Item> items, base::Executor& executor);
 
-    /// Puts back the items that are due at the beginning of `tick`.
+    /// Lets the items that are due at the beginning of `tick` reappear, each at a new random place.
     void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
 
     /// Removes a present item during `tick`.
     void consume(std::uint32_t item, std::uint32_t tick);
 
-    // The two parts of consume(), for many items.
+    // set_due() and take_out() are the two parts of consume(), for many items.
     /// Sets when the item is present again. May be called in parallel for different items. Returns the change of the
     /// hash.
     base::StateHash set_due(std::uint32_t item, std::uint32_t tick);
-    /// Removes an item from the grid, by one caller at a time. place: where it was before any item was removed in this
-    /// tick.
+    /// Removes an item from the grid. Only one thread may call it at a time. place: the place of the item before any
+    /// item was removed in this tick.
     void take_out(std::uint32_t item, std::uint32_t place);
     void add_to_hash(const base::StateHash& change) { hash_ += change; }
     /// Prefetches the memory that take_out() reads.
@@ -87,8 +86,8 @@ class Items {
         __builtin_prefetch(&bucket(row_at(y) * columns_ + column_at(x)));
     }
 
-    /// The nearest item whose centre is at most `radius` px from (x, y), and a lower bound on the distance of the
-    /// others.
+    /// The nearest item whose centre is at most `radius` px from (x, y), and a lower bound on the distance of all other
+    /// items.
     TwoNearest two_nearest(physics::Coordinate x, physics::Coordinate y, float radius) const {
         TwoNearest found;
         const ItemQuery query{x, y, radius};
@@ -131,17 +130,17 @@ class Items {
     /// Changes since forget_changes(), in order: items that disappeared or reappeared.
     struct Change {
         physics::Coordinate x, y;
-        bool came;
+        bool came; // true: the item reappeared; false: it disappeared
     };
     const std::vector<Change>& changes() const { return changes_; }
     void forget_changes() { changes_.clear(); }
 
-    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent
+    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent items
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
     const base::Column<Item>& all() const { return all_; } // all items, by id
     float radius_px() const { return rules_.radius_px; }
-    /// The hash of all items; updated as they come and go.
+    /// The hash of all items; updated when an item disappears or reappears.
     base::StateHash hash() const { return hash_; }
 
   private:
@@ -150,7 +149,7 @@ class Items {
     template <class PlaceOf>
     void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
                base::Executor& executor, PlaceOf&& place_of);
-    /// item_of(id)  returns the present state of an item.
+    /// item_of(id)  returns the current state of an item.
     template <class ItemOf>
     void put_all(base::Executor& executor, ItemOf&& item_of);
     void choose_cells(std::uint32_t count);
@@ -182,13 +181,13 @@ class Items {
     std::int64_t side_ = 1; // side of a cell, as in ItemGrid
     std::uint64_t scale_ = 0;
     std::uint32_t rows_ = 0, columns_ = 0;
-    // Buckets as in ItemGrid, after an empty one. The data that every query reads is stored together, apart from the
-    // rest.
+    // Element 0 of buckets_ is an empty bucket; bucket b of the grid (ItemGrid) is element b + 1. Every query reads
+    // buckets_, so the other data of buckets is stored separately.
     base::Column<ItemBucket> buckets_;
     base::Column<std::array<std::uint32_t, slots>> items_;
     base::Column<std::uint32_t> next_;
     base::Column<std::uint8_t> counts_;
-    std::vector<std::uint32_t> spare_; // empty buckets, besides the first bucket of each cell
+    std::vector<std::uint32_t> spare_; // overflow buckets that are empty, for reuse
     struct Arrival {
         std::uint32_t item, cell;
     };

@@ -7,7 +7,7 @@
 namespace evod::simulation {
 namespace {
 
-using namespace evod::base; // lanes
+using namespace evod::base; // the vector types of lanes.h
 using physics::void_position;
 
 constexpr float px = physics::px_per_unit, units = physics::units_per_px;
@@ -60,7 +60,7 @@ class Search {
 
     /// Tests the buckets of a cell after the first.
     void look_at_overflow(std::uint32_t cell) {
-        // The places are already loaded. Testing them avoids reading next_ for most buckets.
+        // The positions are already loaded. Testing them avoids reading grid_.next for most buckets.
         for (std::uint32_t b = cell;
              grid_.buckets[static_cast<std::int32_t>(b)].x[ItemBucket::slots - 1] != void_position;) {
             b = grid_.next[b];

@@ -1,4 +1,4 @@
-// Items kernels: find the nearest items, eight places at a time.
+// Items kernels: find the nearest items, eight positions at a time.
 //
 // Determinism  the kernels are compiled for two sets of instructions, which give the same bits (base/instructions.h).
 #pragma once
@@ -10,7 +10,7 @@ namespace evod::simulation {
 
 constexpr std::uint32_t no_item = ~0u;
 
-/// The places of up to eight items of one cell, in one cache line. Empty slots come last and have void_position
+/// The positions of up to eight items of one cell, in one cache line. Empty slots come last and have void_position
 /// (physics/units.h), so that all eight can be tested at once.
 struct alignas(64) ItemBucket {
     static constexpr std::uint32_t slots = 8;
@@ -33,7 +33,7 @@ struct TwoNearest {
                          // with the lowest id; no_item if there is none
     std::int32_t x, y;   // its position; void_position if there is none
     float square;        // its squared distance, px²; radius² if there is none
-    float others_square; // no other item is nearer than this, px²; at most radius²
+    float others_square; // lower bound on the squared distance of all other items, px²; at most radius²
 };
 
 /// A search for items at most `radius` px from (x, y); a distance equal to the radius is included.

@@ -39,8 +39,8 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
         return std::nullopt;
     }
     return refusal(RefusalCode::FailedPrecondition,
-                   std::string{"the run has ended by "} + criterion(outcome) +
-                       ": change that parameter to continue, or reset the world",
+                   std::string{"the run has ended because of "} + criterion(outcome) +
+                       ": change this parameter to continue the run, or reset the world",
                    base::Reason::RunEnded);
 }
 
@@ -69,7 +69,7 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
     std::vector<base::Violation> violations;
     const parameters::PlannedMoment& at = *command.at;
     const Moment& now = world.moment();
-    if (!world.is_to_come(at)) {
+    if (!world.is_in_future(at)) {
         violations.push_back({at.generation ? "set_parameters.at_generation" : "set_parameters.at_tick",
                               "at least " + std::to_string(1 + (at.generation ? now.generation : now.tick)),
                               std::to_string(at.generation ? *at.generation : *at.tick)});
@@ -78,7 +78,7 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
         if (const auto* description = parameters::find_parameter(assignment.name);
             description != nullptr && !parameters::can_be_scheduled(*description)) {
             violations.push_back({"set_parameters." + assignment.name,
-                                  "no moment: it takes effect only at a reset, so set it without one",
+                                  "only without at_tick and at_generation: it takes effect at a reset",
                                   parameters::to_text(assignment.value)});
         }
     }
@@ -187,7 +187,8 @@ Refusal Laboratory::not_found(std::string_view name) const {
         return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
     }
     if (name.empty()) {
-        return refusal(RefusalCode::NotFound, "name a world: there are " + names, base::Reason::WorldNotFound);
+        return refusal(RefusalCode::NotFound, "the request names no world: name one of " + names,
+                       base::Reason::WorldNotFound);
     }
     return Refusal{.code = RefusalCode::NotFound,
                    .message = "no world has that name",
@@ -271,18 +272,20 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
 Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
     const Result<parameters::Parameters> beginning = entry.world.beginning();
     if (!beginning) {
-        return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "the run cannot begin with the schedule's values of generation 1 and the requested "
-                                  "parameters: change the unscheduled ones, or create another world",
-                       .violations = beginning.error().violations,
-                       .reason = base::Reason::ResetImpossible};
+        return Refusal{
+            .code = RefusalCode::FailedPrecondition,
+            .message = "cannot reset the world: the requested parameters do not fit the scheduled values of generation "
+                       "1; change the parameters that are not scheduled, or create another world",
+            .violations = beginning.error().violations,
+            .reason = base::Reason::ResetImpossible};
     }
     if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty()) {
-        return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "the requested parameters do not fit the first population that the world was "
-                                  "created with: change them back, or create another world",
-                       .violations = std::move(faults),
-                       .reason = base::Reason::ResetImpossible};
+        return Refusal{
+            .code = RefusalCode::FailedPrecondition,
+            .message = "cannot reset the world: the requested parameters do not fit the first population that it was "
+                       "created with; change them back, or create another world",
+            .violations = std::move(faults),
+            .reason = base::Reason::ResetImpossible};
     }
     Applied applied = applied_now(entry);
     entry.world.reset(command.seed.value_or(entry.world.seed()));
@@ -331,7 +334,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease& command) {
     if (command.lease && *command.lease != entry.control.lease) {
-        return refusal(RefusalCode::FailedPrecondition, "the lease is outdated: the world has been stepped since",
+        return refusal(RefusalCode::FailedPrecondition, "the lease is outdated: a later RunUntilTick has extended it",
                        base::Reason::NoLease);
     }
     if (entry.control.leased) {
@@ -369,8 +372,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     World& world = entry.world;
     if (command.expected_revision && *command.expected_revision != world.parameters().revision) {
         return Refusal{.code = RefusalCode::Aborted,
-                       .message = "the parameters have changed since: read them again, and set "
-                                  "them with their new revision",
+                       .message = "the parameters have changed since you read them: read them again, and send "
+                                  "the change with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}},
                        .reason = base::Reason::RevisionChanged};
@@ -421,10 +424,11 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
     if (command.at_generation) {
-        return refusal(RefusalCode::FailedPrecondition,
-                       "the beginning of a generation is stored only in a run file, and there is none: "
-                       "fork the world as it is now, or start the server without --keep-nothing",
-                       base::Reason::RunsNotKept);
+        return refusal(
+            RefusalCode::FailedPrecondition,
+            "cannot fork from the beginning of a generation: it is stored only in a run file, and there is none; "
+            "fork the world as it is now, or start the server without --keep-nothing",
+            base::Reason::RunsNotKept);
     }
     return fork(command, entry.world);
 }

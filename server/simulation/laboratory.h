@@ -30,7 +30,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then pause
     bool paused = false;
     bool leased = false;     // the pause or step lasts only until the lease ends
-    std::uint64_t lease = 0; // number of the last lease since the server started
+    std::uint64_t lease = 0; // incremented by each RunUntilTick that grants or extends a lease
     Speed speed = 1.0;
 };
 
@@ -40,7 +40,7 @@ bool remove_reached_goals(RunControl& control, const World& world);
 
 /// The extent of a replay: a world that shows the run of a run file.
 struct Replay {
-    std::string replay_of; // the world whose run it shows; empty if the laboratory has no world with that run
+    std::string replay_of; // the world whose run the replay shows; empty if the laboratory has no world with that run
     std::uint64_t first_generation = 1, last_generation = 1;
     std::uint64_t first_tick = 0, last_tick = 0;
 };
@@ -68,7 +68,7 @@ struct Entry {
     World world;
     // Measured by the simulation loop; not part of the state.
     double ticks_per_s = 0;
-    bool slowed = false;                           // the machine cannot reach the requested speed
+    bool slowed = false;                           // the machine does not reach the requested speed
     std::optional<Replay> replay = std::nullopt;   // nullopt: a live world; otherwise the world is a replay
     std::optional<Storage> storage = std::nullopt; // nullopt: the world's run is not stored
 
@@ -76,7 +76,7 @@ struct Entry {
     bool replays_another_world() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
-    /// Whether a tick is due according to goals and pause.
+    /// Whether the world should advance: a goal has not been reached, and the world is not paused.
     bool wants_tick() const;
 };
 
@@ -96,7 +96,7 @@ class Laboratory {
     /// ForkWorld throw std::bad_alloc, with nothing changed, if memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
 
-    /// Adds a world that was created elsewhere; its name must be free.
+    /// Adds a world that was created elsewhere; its name must be unused.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
     /// Removes a world that was added by adopt().
     void dismiss(std::string_view name) {
@@ -113,8 +113,8 @@ class Laboratory {
     /// Advances a world that wants a tick by one tick, and removes the goals that it has reached.
     void advance(Entry& entry, base::Executor& executor);
 
-    /// The world of that name. An empty name means the only world, or the world `default`. If there is no such world: a
-    /// refusal NOT_FOUND that lists the existing names.
+    /// The world with that name. An empty name means the only world or, if there are several, the world `default`. If
+    /// no world is found: a refusal NOT_FOUND that lists the existing names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 

@@ -14,19 +14,19 @@ namespace evod::simulation {
 
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
 
-/// Index i of every column is the organism with body i; its id is the body's id. Columns are as long as those of the
-/// bodies, void bodies included.
+/// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
+/// of physics::Circles, void bodies included.
 struct Living {
     base::Column<float> health;                     // −infinity for void bodies
     base::Column<float> loss_per_tick;              // health that a tick of life costs
     base::Column<float> normal_speed, impulse;      // gene units
-    base::Column<float> food_radius, poison_radius; // px; how far it perceives
+    base::Column<float> food_radius, poison_radius; // px; how far the organism perceives
 
     void clear();
-    /// Like resize() and put() of physics::Circles.
+    /// resize() and put() work like those of physics::Circles.
     void resize(std::size_t size);
     void put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& parameters);
-    /// Like reorder() of physics::Circles.
+    /// Works like physics::Circles::reorder().
     void reorder(const physics::Reordering& reordering);
 };
 
@@ -46,7 +46,7 @@ base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& l
 
 /// What happened to each organism that was born, by id.
 struct Fate {
-    std::vector<std::uint32_t> lived_ticks; // until death; 0 for the living
+    std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for living organisms
     std::vector<CauseOfDeath> cause;
     std::vector<std::uint32_t> food_eaten, poison_eaten;
 

@@ -9,7 +9,7 @@
 namespace evod::simulation {
 namespace {
 
-using namespace evod::base; // lanes
+using namespace evod::base; // the vector types of lanes.h
 
 void append(FoundIndices& found, std::size_t begin, unsigned bits) {
     for (; bits != 0; bits &= bits - 1) {

@@ -11,7 +11,7 @@ namespace evod::simulation {
 
 /// The views of organisms on the items of one kind (perception.h).
 struct ViewColumns {
-    float* others;       // px
+    float* others;       // every item except the nearest is at least this far away, px
     std::int32_t *x, *y; // position of the nearest item
     const float* radius; // px; how far organisms perceive
     float item_radius;   // px
@@ -51,7 +51,8 @@ struct HashWords {
 };
 
 struct OrganismKernels {
-    // begin is a multiple of physics::lanes_max. Up to lanes_max − 1 void bodies beyond `end` are processed too.
+    // In every kernel, `begin` must be a multiple of physics::lanes_max. Up to lanes_max − 1 void bodies beyond `end`
+    // are processed too.
 
     /// Finds the organisms whose view is stale: others < 0.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
@@ -59,8 +60,8 @@ struct OrganismKernels {
     /// force_x, force_y  forces on the organisms from `begin` on, padded; kg px/s². Element 0 is for organism `begin`.
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                    float* force_x, float* force_y);
-    /// Predicts the same choice without subtracting health, and reports it. Changes nothing else.
-    /// choices  one Choice per organism, indexed like the forces.
+    /// Makes the same choice as choose(), but does not subtract health, and also reports the choice.
+    /// choices  receives one Choice per organism, indexed like the forces.
     void (*predict)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                     float* force_x, float* force_y, std::int32_t* choices);
     /// Updates views to the present positions of the organisms: their `others` are reduced by the distance moved, and
@@ -68,7 +69,8 @@ struct OrganismKernels {
     /// does, and some that do not.
     void (*follow)(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
                    FoundIndices& at_poison);
-    /// Returns the sum of base::hash_of() over the living organisms. `dying` receives those whose health is at most 0.
+    /// Returns the sum of base::hash_of() over the organisms that are not void. Finds, among them, the organisms whose
+    /// health is at most 0.
     HashWords (*hash)(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                       FoundIndices& dying);
 };

@@ -21,8 +21,8 @@ const OrganismKernels& organism_kernels() {
 
 namespace {
 
-// An organism searches a wider circle than it perceives, so that it need not search again soon. A wider search costs
-// more, but is needed less often.
+// An organism searches a circle that is at least this much wider than the circle that it perceives, so that it need not
+// search again soon. A wider search costs more, but is needed less often.
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
 constexpr float needs_search = -1;

@@ -5,7 +5,7 @@
 // the nearest item, and no search is needed. An organism thus searches for each kind in about 4 % of the ticks. It
 // perceives exactly the items that a search in every tick would find.
 //
-// Owner        an island. Columns are by body index, as long as those of the bodies.
+// Owner        an island. Columns are indexed by body and are as long as those of physics::Circles.
 // Threads      organisms search in parallel; changes of items are processed in parallel.
 // Determinism  the perceived items do not depend on when organisms searched.
 #pragma once
@@ -33,8 +33,8 @@ class Perception {
     void search(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                 base::Range range);
 
-    /// notice_food() updates views after food has disappeared or reappeared since the last call; notice_poison() does
-    /// so for poison. Bodies must not have moved since their views were last updated. The two functions may run in
+    /// Updates the views after food (notice_food()) or poison (notice_poison()) has disappeared or reappeared since the
+    /// last call. Bodies must not have moved since their views were last updated. The two functions may run in
     /// parallel.
     void notice_food(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
                      base::Executor& executor);
@@ -50,10 +50,9 @@ class Perception {
 
   private:
     struct View {
-        base::Column<float> others; // no other item is nearer than this, px; < 0: stale, a search is needed
-        base::Column<physics::Coordinate> x,
-            y;                       // position of the nearest item; void_position if there is none within the search
-                                     // radius
+        base::Column<float> others; // every item except the nearest is at least this far away, px; < 0: stale
+        // Position of the nearest item; void_position if there is none within the search radius.
+        base::Column<physics::Coordinate> x, y;
         float search_radius_max = 0; // px
     };
 

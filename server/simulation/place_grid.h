@@ -1,5 +1,5 @@
-// PlaceGrid: the bodies already placed on an island, in square cells, so that a search near a place costs the same
-// however many there are.
+// PlaceGrid: stores the bodies already placed on an island in square cells, so that the cost of a search near a place
+// does not depend on the number of bodies.
 //
 // A cell is one cache line, and a search reads few cells. A caller with many places to try can therefore prefetch the
 // cells of all of them before the first search.
@@ -24,7 +24,7 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  the type stored with the place of each body: 4 or 8 bytes that describe its size.
+/// What  the type that describes the size of a body, stored with its place; 4 or 8 bytes.
 template <class What>
 class PlaceGrid {
   public:
@@ -108,7 +108,8 @@ class PlaceGrid {
     struct Stripes {
         std::uint32_t count = 1;
         physics::Coordinate length = 0;
-        std::uint64_t per_unit = (std::uint64_t{count} << 32) / (static_cast<std::uint64_t>(length) + 1); // · 2^-32
+        // Stripes per unit, times 2^32.
+        std::uint64_t per_unit = (std::uint64_t{count} << 32) / (static_cast<std::uint64_t>(length) + 1);
 
         std::uint32_t at(physics::Coordinate coordinate) const {
             const auto inside = static_cast<std::uint64_t>(std::clamp(coordinate, 0, length));

@@ -1,8 +1,8 @@
 // Placement: uniform random places on an island that do not overlap obstacles or bodies already placed.
 //
-// Determinism  a place depends on the given stream and on the bodies already there. Organisms are placed in order of
-//              id. Each gets the first of its attempts that is clear of the bodies placed before it, whatever the
-//              number of threads.
+// Determinism  a place depends only on the given stream and on the bodies placed before. Organisms are placed in order
+//              of id. Each organism gets the first of its random places that is clear of the bodies placed before, for
+//              any number of threads.
 #pragma once
 
 #include "server/base/executor.h"
@@ -18,10 +18,10 @@ namespace evod::simulation {
 /// Stores boxes in a grid, and tests whether a place is clear of them. The cost does not depend on the number of boxes.
 class BoxGrid {
   public:
-    /// No boxes.
+    /// Creates a grid without boxes.
     BoxGrid() = default;
     BoxGrid(const physics::Area& area, std::size_t expected_count) : grid_{area, expected_count} {}
-    /// The boxes at their present positions.
+    /// Creates a grid with these boxes at their present positions.
     BoxGrid(const physics::Area& area, const physics::Boxes& boxes);
 
     void add(Place place, float half_width_px, float half_height_px);
@@ -55,8 +55,8 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 
 /// Uniform random places for circles, one after another, clear of walls, `boxes` and each other.
 ///
-/// radius_px  shape (count). The caller has checked that there is room: together at most 0.4 of the area (parameters.h,
-///            validate).
+/// radius_px  shape (count). The caller has checked that bodies and boxes cover at most 0.4 of the area (validate() in
+///            parameters.h).
 /// returns    shape (count).
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,

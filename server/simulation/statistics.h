@@ -1,6 +1,6 @@
-// Statistics: the results of a generation on an island, and the present state of an island.
+// Statistics: the results of a generation on an island, and the current state of an island.
 //
-// Determinism  sums are taken by id, over blocks of fixed size, whose sums are added in order.
+// Determinism  organisms are summed in order of id, in blocks of fixed size; the sums of the blocks are added in order.
 #pragma once
 
 #include "server/base/executor.h"
@@ -45,8 +45,8 @@ struct GenerationStatistics {
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number except those of the account, in the order of columns in files. In files,
-/// the columns of the account come after these.
+/// Calls visit(name, value) for every number except those of `account`, in the order of the columns in files. In files,
+/// the columns of `account` follow.
 ///
 /// Statistics  GenerationStatistics, or const GenerationStatistics.
 template <class Statistics, class Visit>
@@ -93,8 +93,10 @@ struct LiveStatistics {
     std::uint32_t starved_count = 0, poisoned_count = 0;
 };
 
-/// Computes LiveStatistics::health_mean. health: in any order, −infinity for void bodies; alive_count: number of other
-/// bodies.
+/// Computes LiveStatistics::health_mean.
+///
+/// health       health of all bodies, in any order; −infinity for void bodies.
+/// alive_count  number of bodies that are not void.
 double mean_health(std::span<const float> health, std::uint32_t alive_count);
 
 } // namespace evod::simulation

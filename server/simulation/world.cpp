@@ -174,7 +174,7 @@ std::uint64_t World::alive_count() const {
 }
 
 std::uint64_t World::plan(parameters::PlannedChange change) {
-    EVOD_ASSERT(is_to_come(change.at));
+    EVOD_ASSERT(is_in_future(change.at));
     return add_planned(std::move(change));
 }
 
@@ -194,12 +194,12 @@ std::optional<parameters::PlannedChange> World::cancel(std::uint64_t id) {
     return cancelled;
 }
 
-bool World::is_to_come(const parameters::PlannedMoment& moment) const {
+bool World::is_in_future(const parameters::PlannedMoment& moment) const {
     return moment.generation ? *moment.generation > moment_.generation : *moment.tick > moment_.tick;
 }
 
 void World::drop_due_changes() {
-    std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_to_come(change.at); });
+    std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_in_future(change.at); });
 }
 
 void World::apply_planned_for(std::uint64_t generation) {
@@ -302,7 +302,7 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
     }
     evolution::migrate(migrants, populations);
     if (!founders_.empty()) {
-        std::vector<std::uint32_t> of_migrants; // all emigrants are copied before any arrives
+        std::vector<std::uint32_t> of_migrants; // all founders are copied before any is overwritten
         of_migrants.reserve(migrants.size());
         for (const evolution::Migrant& migrant : migrants) {
             of_migrants.push_back(founders_[migrant.from][migrant.organism]);
@@ -438,7 +438,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     EVOD_ASSERT(moment_.generation_tick == 0);
     const auto wrong = [](const char* what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = std::string{"impossible state in this generation: "} + what,
+                             .message = std::string{"impossible state for this generation: wrong "} + what,
                              .violations = {}};
     };
     const Moment& moment = state.moment;

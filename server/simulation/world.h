@@ -1,13 +1,13 @@
-// World: one experiment with its parameters, seed, islands and history. Pure: time passes only in advance_tick().
+// World: one experiment with its parameters, seed, islands and history. Simulated time advances only in advance_tick().
 //
 // A moment is (generation, tick within it). The last tick of a generation ends it: statistics are computed, and the
 // world keeps its organisms, dead and alive. The next advance_tick() breeds the next generation and performs its first
 // tick. Breeding therefore uses the parameters in effect at that time.
 //
-// The scheduled values of a generation are requested before that generation is bred. They determine its population size
-// and its islands. Parameters that do not wait for a generation take effect in its first tick, so its breeding still
-// uses their previous values. At the first moment of a generation, the active parameters of a world are therefore those
-// that bred it, and the requested parameters are those that it will run with.
+// The scheduled values of a generation are requested before that generation is bred. Values with Effect::NextGeneration
+// take effect at once, so they apply to its population size and to the contents of its islands. Values with
+// Effect::NextTick take effect in its first tick, so it is still bred with their previous values. At the first moment
+// of a generation, the active parameters are therefore those that bred it.
 //
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
@@ -36,7 +36,7 @@ namespace evod::simulation {
 
 /// The state of a world at the beginning of a generation, before its first tick.
 struct Opening {
-    Moment moment; // generation_tick 0
+    Moment moment; // its generation_tick is 0
     parameters::ParameterSet parameters;
     evolution::Progress progress; // progress of the run over the previous generations
 };
@@ -58,8 +58,9 @@ class GenerationRows {
     std::shared_ptr<const std::vector<GenerationStatistics>> rows_;
 };
 
-/// The founder of each organism, per island, by id: its ancestor in the first generation along first parents, also
-/// across islands. Founders are numbered from 0, island after island. Not part of the state; empty if unknown.
+/// For each island, the founder of each organism, by id: the ancestor in the first generation that is found by
+/// following first parents, also across islands. Founders are numbered from 0, island after island. Not part of the
+/// state; empty if unknown.
 using Founders = std::vector<std::vector<std::uint32_t>>;
 
 class World {
@@ -78,16 +79,16 @@ class World {
     /// Creates the first generation, at moment (1, 0).
     ///
     /// parameters        valid.
-    /// first_population  valid for these parameters; nullptr: it is drawn.
-    /// schedule          its generation 1 has the values of `parameters`.
+    /// first_population  valid for these parameters; nullptr: drawn from the seed.
+    /// schedule          must have the values of `parameters` in generation 1.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
           parameters::Schedule schedule = {});
 
-    /// Creates a world at the beginning of a generation of a run; it continues as that run did.
+    /// Creates a world at the beginning of a generation of an existing run. It continues exactly as that run did.
     ///
-    /// born              the bred organisms, shape (islands): opening.parameters.active.island_count.
+    /// born              the organisms of the generation; shape (opening.parameters.active.island_count).
     /// history           statistics of the previous generations that are available.
-    /// first_population  the first population of the run, for resets; nullptr: it is drawn.
+    /// first_population  the first population of the run, for resets; nullptr: drawn from the seed.
     /// founders          founders of the organisms in `born`; not needed for the first generation.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
@@ -95,16 +96,16 @@ class World {
 
     /// A copy of this world as it was at the first moment of its generation.
     ///
-    /// keep_requests  whether to keep the parameters requested since then; only if the world is still at that moment.
+    /// keep_requests  keeps the parameters that were requested after that moment; ignored after the first tick.
     World at_its_opening(base::Executor& executor, bool keep_requests = false) const;
 
     /// The data that restore() needs to bring a world to this moment.
     WorldState state(base::Executor& executor) const;
-    /// The number of entities on each island, for a state of this generation.
+    /// The number of entities on each island. Every state of this generation has these numbers.
     std::vector<IslandShape> shapes() const;
     /// Brings a world at the beginning of a generation to a later moment of that generation. It then continues as the
-    /// world on which state() was called. Refused, with nothing changed, if the state is impossible. If the caller has
-    /// the hash of that state, it must compare the hash itself.
+    /// world on which state() was called. Refused, with nothing changed, if the state is impossible. Does not check the
+    /// state hash; a caller that knows it compares it with hash().
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// The parameters that the run begins with after a reset: the requested parameters, with the schedule's values of
@@ -130,15 +131,16 @@ class World {
     const parameters::Schedule& schedule() const { return schedule_; }
     /// The planned changes, in order of id.
     const std::vector<parameters::PlannedChange>& planned() const { return planned_; }
-    /// Adds a planned change, whose moment must be in the future (is_to_come()). It is applied at its moment; changes
-    /// of the same moment are applied in order of id, after those of the schedule. Assigns an id and returns it.
+    /// Adds a planned change under a new id and returns the id. The moment of the change must be in the future
+    /// (is_in_future()). At that moment, changes are applied in order of id, after the values of the schedule.
     std::uint64_t plan(parameters::PlannedChange change);
     /// Cancels a planned change and returns it; nullopt if there is none with that id.
     std::optional<parameters::PlannedChange> cancel(std::uint64_t id);
-    bool is_to_come(const parameters::PlannedMoment& moment) const;
-    /// For a world that was brought to a later moment than the one at which changes were planned. add_planned() adds
-    /// the changes again under the same ids. drop_due_changes() then drops the changes that are already due, because
-    /// they have been applied in the run.
+    bool is_in_future(const parameters::PlannedMoment& moment) const;
+    /// For replays: restore the planned changes in a world that starts in the middle of a run. The caller passes every
+    /// change that the run planned before that moment to add_planned(), in order, so that each gets its original id. It
+    /// then calls drop_due_changes(), which removes the changes whose moment is not in the future: the run has already
+    /// applied them.
     std::uint64_t add_planned(parameters::PlannedChange change);
     void drop_due_changes();
     /// Sets the requested parameters, which assign() has computed from parameters().requested. Each takes effect at the
@@ -146,8 +148,8 @@ class World {
     void request_parameters(const parameters::Parameters& requested);
 
     bool generation_over() const { return generation_over_; }
-    /// The criterion that holds at the end of a generation, with the parameters in effect now; Running during a
-    /// generation.
+    /// At the end of a generation: the termination criterion that holds with the active parameters. During a
+    /// generation: Running.
     evolution::Outcome outcome() const;
 
     /// The opening of the present generation. Island::born() contains its organisms.
@@ -161,10 +163,10 @@ class World {
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.
     bool has_bodies() const { return parameters_.active.fitness == parameters::FitnessFunction::Life; }
-    /// What organisms [ids.begin, ids.end) of an island will do next, computed from the items there now. The choice is
-    /// None for dead organisms, at the end of a generation, and if there are no bodies.
+    /// What organisms [ids.begin, ids.end) of an island will do next, if no item reappears before. The choice is None
+    /// for dead organisms, at the end of a generation, and if there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
-    /// Living organisms on all islands.
+    /// The number of living organisms on all islands.
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
@@ -185,9 +187,9 @@ class World {
     void apply_planned_for(std::uint64_t generation);
     /// Applies the changes planned for the tick that has just ended.
     void apply_planned_now();
-    /// Requests all of the changes, or reports why they are dropped.
+    /// Requests all of the changes. If `requested` is a refusal, drops them and reports why.
     ///
-    /// id, by  as in ParametersChanged.
+    /// id, by  ParametersChanged::planned and ParametersChanged::by.
     void apply_planned(std::span<const parameters::Assignment> changes,
                        const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
@@ -197,7 +199,8 @@ class World {
     void find_fitness(base::Executor& executor);
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
-    /// The parents' chromosomes: `migrated` after a migration, otherwise the chromosomes of the ended generation.
+    /// The chromosomes to breed from, per island. If migrants arrive, these are new matrices, which are stored in
+    /// `migrated`; otherwise the chromosomes of the ended generation.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     /// Sets the founders of the organisms in `bred`.
     void find_founders(const std::vector<evolution::NextGeneration>& bred);

@@ -1,5 +1,5 @@
 // World state: the state of a world during a generation, without the parts that can be derived from the generation's
-// beginning. A world at that beginning that receives this state continues bit for bit.
+// beginning. A world at the beginning of the generation that restores this state continues the run bit for bit.
 //
 // It omits data that can be derived from seed, parameters and the bred organisms (bodies, boxes, sizes, chromosomes),
 // and caches (near pairs, views of items, the order in memory).
@@ -29,7 +29,7 @@ struct Moment {
     friend bool operator==(const Moment&, const Moment&) = default;
 };
 
-/// Counters of the generation that cannot be derived from Fate.
+/// What has happened on the island in this generation so far.
 struct IslandCounts {
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
@@ -72,7 +72,7 @@ struct WorldState {
     Moment moment;
     parameters::ParameterSet parameters;
     std::vector<IslandState> islands;
-    std::vector<GenerationStatistics> ended; // at the end of the generation: one per island
+    std::vector<GenerationStatistics> ended; // at the end of a generation: one per island; otherwise empty
 };
 
 } // namespace evod::simulation

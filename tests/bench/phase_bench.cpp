@@ -46,15 +46,15 @@ enum Phase : std::size_t {
 };
 constexpr std::array<const char*, phase_count> phase_names = {"near pairs",
                                                               "items reappear",
-                                                              "notice changes",
-                                                              "look",
+                                                              "update perception",
+                                                              "search for items",
                                                               "choose",
                                                               "accelerate and find contacts",
                                                               "resolve contacts",
                                                               "move",
-                                                              "follow and touch",
+                                                              "follow, find touched items",
                                                               "hash",
-                                                              "feed and record_death",
+                                                              "feed and remove the dead",
                                                               "whole tick"};
 
 constexpr std::uint32_t warm_up_ticks = 60, measured_ticks = 60; // as in workload_bench

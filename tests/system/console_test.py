@@ -229,7 +229,7 @@ class Population(Folder):
             good + "0,1,100,110,nan,130,140,150\n": "body_size: got nan",
             good + "0,1,100,110,120,130,140,150,160\n": "line 3: got ",
             "1,0,100,110,120,130,140,150\n": "line 2: got ",
-            "": "holds no organism",
+            "": "contains no organism",
         }.items():
             with self.subTest(rows):
                 said = self.run_with(rows, status=1).stderr

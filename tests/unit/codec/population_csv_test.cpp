@@ -34,7 +34,7 @@ TEST(PopulationCsv, ErrorsNameTheLine) {
     const std::string good = heading + "0,0,1,2,3,4,5,6\n";
     EXPECT_THAT(wrong(""), StartsWith("line 1: got \"\", allowed the heading island,"));
     EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
-    EXPECT_EQ(wrong(heading), "holds no organism");
+    EXPECT_EQ(wrong(heading), "contains no organism");
     for (const char* line : {"0,1,1,2,3,4,5", "0,1,1,2,3,4,5,", "0,1,1,2,3,4,5,6,7", "0,1,1,2,3,4,5,6,",
                              "0,1,1,2,x,4,5,6", "", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"}) {
         EXPECT_EQ(wrong(good + line + "\n"),

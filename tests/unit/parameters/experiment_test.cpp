@@ -208,7 +208,7 @@ TEST(Experiment, EveryCombinationOfAScheduleIsValidated) {
     EXPECT_EQ(refusal_of(R"({"population_size": {"2": 250}, "body_size_max": {"2": 100}, "island_width_px": 1280})"),
               "");
     EXPECT_THAT(refusal_of(R"({"population_size": {"2": 900}, "body_size_max": {"2": 60}})"),
-                HasSubstr("with the values that breeding still uses then"));
+                HasSubstr("bred with the previous values of breeding parameters"));
     EXPECT_EQ(refusal_of(R"({"population_size": {"3": 900}, "body_size_max": {"2": 60}})"), "");
 }
 

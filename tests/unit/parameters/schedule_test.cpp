@@ -75,7 +75,7 @@ TEST(Request, MustBeValidWithoutAReset) {
     const std::vector<Assignment> larger{{"population_size", 200'000u}}; // 8 million organisms on 40 islands
     const auto refused = request_of(set, larger, "p.");
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("until the world is reset"));
+    EXPECT_THAT(refused.error().message, HasSubstr("until all of them have taken effect"));
     EXPECT_THAT(refused.error().violations, ElementsAre(Field(&base::Violation::field, "p.island_count")));
 }
 
