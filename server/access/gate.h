@@ -1,7 +1,8 @@
 // Gate: authenticates sessions by their tokens.
 //
 // Owner        the server, on the network thread.
-// Full         stores failed logins of at most addresses_max addresses. Beyond that it drops the oldest address.
+// Full         stores the failed logins of at most addresses_max addresses. Beyond that it drops the address whose
+//              last failure is the oldest.
 #pragma once
 
 #include "server/access/token_file.h"
@@ -48,9 +49,9 @@ class Gate {
     /// Reads the token file again if it has changed, and returns whether it has changed. While the file is not
     /// trustworthy, new sessions are refused and existing sessions continue.
     bool refresh();
-    /// Whether the token with which a session was admitted is still valid.
+    /// Whether the token with which the visitor was admitted is still valid.
     bool knows(const Visitor& visitor) const;
-    /// The reason why the token file cannot be used at present; nullopt: it can be used.
+    /// Why the token file cannot be used now; nullopt: it can be used.
     const std::optional<base::Refusal>& trouble() const { return trouble_; }
 
     std::uint64_t failed_login_count() const { return failed_login_count_; }

@@ -12,7 +12,7 @@
 
 namespace evod::commands {
 
-/// The number of decimals that is needed to show the differences between the means of a comparison.
+/// The number of decimals that shows the differences between the means of a comparison.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
 /// A table with the rise of every arm. courses  shape (arms, replicates).

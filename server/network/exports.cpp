@@ -65,7 +65,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
             if (!part && part.error().code == RefusalCode::FailedPrecondition) {
                 limit_counters_.met(Limit::ExportPatience);
             }
-            came(number, id, !part || part->last);
+            on_part(number, id, !part || part->last);
             const auto asking = weak.lock();
             if (!asking) {
                 return;
@@ -85,7 +85,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     });
 }
 
-void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
+void Exports::on_part(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
     if (found == exports_.end() || found->second.id != id) {
         return; // the session has started another export in the meantime

@@ -15,8 +15,8 @@ namespace evod::network {
 
 class Leases {
   public:
-    /// expired  called when a lease expires, then again every lease_time until end() or begin() is called for that
-    ///          world.
+    /// expired  called when the lease of a world expires, and again every lease_time until end() or begin() is called
+    ///          for the world.
     Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> expired)
         : context_{context}, expired_{std::move(expired)} {}
 

@@ -1,4 +1,4 @@
-// Actors: converts the cause of a change from text to a message.
+// Actors: converts the cause of a change from a text to the message Actor.
 //
 // The simulation and run files store the cause as text: "user: client address", "client address" for a client without a
 // token, and "evod" for the server itself.

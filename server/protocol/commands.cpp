@@ -24,8 +24,8 @@ using RequestCase = v1::Request::KindCase;
 
 constexpr const char* least_1 = "at least 1";
 
-/// Whether a request contains more assignments than there are parameters. It must then repeat a name, which is invalid
-/// anyway. Without this check, a very long request could block the simulation.
+/// Whether a request contains more assignments than parameters exist. It must then repeat a name, which is invalid.
+/// Without this early check, a very long request could block the simulation.
 bool too_many(int assignments, std::string field, Violations& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
@@ -64,7 +64,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
     return command;
 }
 
-/// Requires that a destructive command names its world, because a client may have forgotten the field.
+/// Requires that a destructive command names its world, because an empty name may be a mistake of the client.
 void need_world(const std::string& world, const char* field, Violations& violations) {
     if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});

@@ -149,8 +149,8 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
         }
     }
     if (!complete) {
-        // The request will be refused anyway. The other assignments are still checked, but without the state of the
-        // world.
+        // The request will be refused. The other assignments are checked, too, so that the refusal lists all errors
+        // that do not depend on the state of the world.
         for (const parameters::Assignment& assignment : made) {
             if (auto fault = parameters::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));

@@ -1,4 +1,4 @@
-// Answers to queries. They read the laboratory between two ticks.
+// Queries: answers queries by reading the laboratory between two ticks.
 //
 // Threads      get_…() and find_…() run on the simulation thread, to_proto() on the network thread.
 #pragma once

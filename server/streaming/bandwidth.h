@@ -36,7 +36,8 @@ class Bandwidth {
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
-        // Time of the next call; if the detail is lower than wanted, the time to call refine().
+        // When to continue: without a detail, the time to call choose() again; with a lower detail than wanted, the
+        // time to call refine().
         Clock::time_point again;
     };
     /// Chooses the level of detail of a snapshot and spends its cost.
@@ -45,8 +46,8 @@ class Bandwidth {
     template <class Cost>
     Choice choose(Clock::time_point now, const Cost& cost);
 
-    /// Chooses a higher level of detail for a snapshot that was already sent. The choice is empty if more is not
-    /// affordable.
+    /// Chooses a higher level of detail for a snapshot that was already sent. Choice::detail is nullopt if the
+    /// accumulated bytes do not suffice.
     ///
     /// shown  the detail in which the snapshot was sent; it is lower than wanted.
     template <class Cost>

@@ -102,7 +102,7 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
 
 TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
     for (int i = 0; i < 300; ++i) {
-        ASSERT_TRUE(make_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
+        ASSERT_TRUE(create_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
         std::FILE* file = std::fopen((folder + "/evod.crt").c_str(), "r");
         X509* certificate = PEM_read_X509(file, nullptr, nullptr, nullptr);
         ASSERT_NE(certificate, nullptr);
@@ -111,7 +111,7 @@ TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
         std::filesystem::remove(folder + "/evod.crt");
         std::filesystem::remove(folder + "/evod.key");
     }
-    EXPECT_EQ(make_certificate({"not a host"}, folder).error().code, RefusalCode::InvalidArgument);
+    EXPECT_EQ(create_certificate({"not a host"}, folder).error().code, RefusalCode::InvalidArgument);
 }
 
 } // namespace
