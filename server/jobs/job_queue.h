@@ -3,7 +3,7 @@
 // Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
 // Owner        the object whose jobs it runs. A job owns its data and delivers its result itself.
-// Threads      the queue starts a thread when a job finds no idle one. Any thread may call add().
+// Threads      the queue starts a thread when a job is added and no thread is idle. Any thread may call add().
 // Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 

@@ -27,7 +27,7 @@ class Family {
 /// Names follow the rules of Prometheus: the name of a counter ends in _total, the name of a metric with a unit ends in
 /// the unit.
 ///
-/// help  one sentence without a full stop.
+/// help  a description of the metric: one sentence without a full stop.
 Family add_counter(v1::Metrics& to, const char* name, const char* help);
 Family add_gauge(v1::Metrics& to, const char* name, const char* help);
 Family add_histogram(v1::Metrics& to, const char* name, const char* help);

@@ -1,7 +1,7 @@
 // Exports: sends tables of stored runs to clients, at most one export per session at a time.
 //
 // Owner        the dispatcher, on the network thread. A job queue produces the parts (runtime/export_job.h).
-// Full         while exports_max exports are running, a new one is refused.
+// Full         while exports_max exports are running, a new export is refused.
 #pragma once
 
 #include "server/network/session.h"

@@ -1,5 +1,5 @@
-// Leases: limit the time for which a client may hold a world that it steps with RunUntilTick. If the client disconnects
-// or stops renewing the lease, the lease expires and the world continues for the other clients.
+// Leases: limit how long a client that steps a world with RunUntilTick can keep the world paused. If the client
+// disconnects or stops renewing its lease, the lease expires and the world continues for the other clients.
 //
 // Owner        the dispatcher, on the network thread. The simulation decides whether a world has a lease.
 #pragma once

@@ -22,7 +22,7 @@ constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
 constexpr std::size_t watched_islands_max = 16'384; // four times the number of islands in the largest world
 constexpr double snapshot_rate_hz_max = 120;
-// Lower rates are raised to this one, because the period of a much lower rate would overflow the clock.
+// The server raises lower rates to this rate, because the period of a much lower rate would overflow the clock.
 constexpr double snapshot_rate_hz_min = 1e-6;
 constexpr std::uint32_t retries_kept = 1000;
 constexpr std::uint32_t client_keys_max = 256;
@@ -153,7 +153,8 @@ constexpr std::chrono::seconds farewell_timeout{1}; // time to send the last byt
 constexpr std::chrono::milliseconds accept_pause{100};
 // File descriptors reserved for run files. If the system allows only few, an eighth of them is reserved instead.
 constexpr std::uint64_t descriptors_kept = 32;
-// Number of refused connections that may receive a Goodbye at the same time. Further ones are closed without a Goodbye.
+// Number of refused connections that may receive a Goodbye at the same time. Further connections are closed without a
+// Goodbye.
 constexpr std::size_t farewells_max = 64;
 
 // Constants for HTTP.

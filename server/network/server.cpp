@@ -340,7 +340,7 @@ void Server::stop() {
 }
 
 void Server::start_housekeeping() {
-    looked_ = clock_.now();
+    checked_at_ = clock_.now();
     schedule_housekeeping();
 }
 
@@ -354,7 +354,7 @@ void Server::schedule_housekeeping() {
         // If the timer fired late, the server itself was busy. That time does not count against the clients.
         const auto now = clock_.now();
         const auto watched =
-            std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * housekeeping_interval);
+            std::min<runtime::Clock::duration>(now - std::exchange(checked_at_, now), 2 * housekeeping_interval);
         for (const auto& [number, session] : sessions_) {
             session->check_progress(watched);
         }
@@ -380,13 +380,13 @@ void Server::check_tokens() {
     if (!gate_->refresh()) {
         return;
     }
-    if (gate_->trouble()) {
-        log::error("{}; new connections are refused until this is fixed", gate_->trouble()->message);
+    if (gate_->file_problem()) {
+        log::error("{}; new connections are refused until this is fixed", gate_->file_problem()->message);
     }
     // fail() may remove sessions from the table, so the loop iterates over a copy.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions) {
-        if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor())) {
+        if (session->greeted() && !gate_->file_problem() && !gate_->is_still_valid(session->visitor())) {
             session->fail(refusal(base::RefusalCode::Unauthenticated,
                                   "the token has been revoked: ask the operator of the server for a new one",
                                   base::Reason::TokenRevoked));

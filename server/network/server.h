@@ -94,7 +94,7 @@ class Server {
     void schedule_housekeeping();
     void trim_heap(runtime::Clock::time_point now);
     void check_tokens();
-    /// Closes the sessions that use the most memory until the limit of SendMemory holds.
+    /// Closes the sessions that use the most memory until all sessions together are within the limit of SendMemory.
     void evict_sessions();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
@@ -132,7 +132,7 @@ class Server {
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
-    runtime::Clock::time_point looked_, trim_at_;
+    runtime::Clock::time_point checked_at_, trim_at_;
     std::size_t ended_since_trim_ = 0;   // number of sessions
     std::uint64_t answered_at_trim_ = 0; // number of bytes
     std::size_t connections_ = 0;        // sessions, and refused connections that are receiving a Goodbye

@@ -77,7 +77,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     /// Starts reading and writing.
     ///
-    /// refusal  if set, the session only sends it as a Goodbye.
+    /// refusal  if set, the session only sends a Goodbye with this refusal.
     void start(const std::optional<base::Refusal>& refusal = {});
 
     std::uint64_t number() const { return number_; }
@@ -112,7 +112,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     /// Closes the session if its client has received nothing for stalled_timeout. Must be called periodically.
     ///
-    /// watched  time since the last call during which the server could observe the client.
+    /// watched  the part of the time since the last call in which the server was able to observe the client.
     void check_progress(runtime::Clock::duration watched);
     /// Number of bytes that would be released if this session were closed.
     std::size_t held_bytes() const;
@@ -141,7 +141,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     asio::awaitable<void> read();
     /// Limits the time from the first to the last byte of a frame.
     ///
-    /// one_came  a frame was completed since the last call.
+    /// one_came  true: at least one frame was completed since the last call.
     void update_frame_timer(bool one_came);
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
@@ -165,7 +165,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void written(const Queued& queued);
     void wake_writer();
     void log_connection(const std::string& what) const;
-    /// code  may be empty.
+    /// code  name of the refusal's code; empty: the session was not refused.
     void log_closed(std::string_view code, const std::string& why);
     void end();
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t organisms = 0, crates = 3; // indices in codec::Counts
 
-/// Returns the part of each long column that belongs to one tile.
+/// Returns the parts of the columns x and y that belong to one tile.
 template <class Part, class Displacements>
 Part part_of(Displacements& all, std::uint32_t begin, std::uint32_t count) {
     return {std::span{all.x}.subspan(begin, count), std::span{all.y}.subspan(begin, count)};

@@ -6,7 +6,7 @@
 //
 // Owner        the session, which sends the snapshots.
 // Threads      the network thread.
-// Full         a newer snapshot replaces the waiting one. The subscription counts the replaced one as dropped.
+// Full         a newer snapshot replaces the waiting snapshot, which the subscription counts as dropped.
 #pragma once
 
 #include "evod/v1/session.pb.h"

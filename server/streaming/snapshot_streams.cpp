@@ -16,7 +16,7 @@ runtime::Clock::duration between_snapshots(double rate_hz) {
     return std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz});
 }
 
-/// Whether a group with this rate receives a snapshot now. If so, the time of the next one is set.
+/// Whether a group with this rate receives a snapshot now. If so, sets the time of the group's next snapshot.
 bool is_due(double rate_hz, runtime::Clock::time_point& next, bool after_change, runtime::Clock::time_point now) {
     const auto between = between_snapshots(rate_hz);
     // A snapshot may be sent a tenth of the interval too early. Otherwise the group might have to wait for the next

@@ -87,16 +87,16 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
     EXPECT_FALSE(gate.refresh());
     ASSERT_TRUE(revoke_token(folder, "anna"));
     EXPECT_TRUE(gate.refresh());
-    EXPECT_FALSE(gate.knows(visitor));
-    EXPECT_TRUE(gate.knows(*gate.admit(karl, "a", now)));
+    EXPECT_FALSE(gate.is_still_valid(visitor));
+    EXPECT_TRUE(gate.is_still_valid(*gate.admit(karl, "a", now)));
     // The name alone does not identify the token.
     ASSERT_TRUE(add_token(folder, "anna", Role::Viewer));
     EXPECT_TRUE(gate.refresh());
-    EXPECT_FALSE(gate.knows(visitor));
+    EXPECT_FALSE(gate.is_still_valid(visitor));
     std::filesystem::permissions(token_file_of(folder), std::filesystem::perms::others_read,
                                  std::filesystem::perm_options::add);
     EXPECT_TRUE(gate.refresh());
-    ASSERT_TRUE(gate.trouble());
+    ASSERT_TRUE(gate.file_problem());
     EXPECT_EQ(gate.admit(karl, "a", now).error().code, RefusalCode::Unavailable);
 }
 
