@@ -255,11 +255,11 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
         violations.push_back({"export_run.format", "a value of TextFormat, from 1", std::to_string(request.format())});
     }
     if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION) {
-        violations.push_back(
-            {"export_run.generation", "absent except for the population", std::to_string(request.generation())});
+        violations.push_back({"export_run.generation", "absent unless table is RUN_TABLE_POPULATION",
+                              std::to_string(request.generation())});
     }
     if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE) {
-        violations.push_back({"export_run.of", "absent except for the lineage",
+        violations.push_back({"export_run.of", "absent unless table is RUN_TABLE_LINEAGE",
                               "generation " + std::to_string(request.of().generation())});
     }
 }
@@ -347,9 +347,9 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
     } else if (request.has_set_view()) {
         add_faults(request.set_view(), violations);
     } else if (request.has_seek() && !request.seek().has_to()) {
-        violations.push_back({"seek.to", "a moment of the run", "nothing"});
+        violations.push_back({"seek.to", "a RunMoment, which may be empty", "nothing"});
     } else if (request.has_close_replay() && request.close_replay().world().empty()) {
-        violations.push_back({"close_replay.world", "a world opened with open_replay", "nothing"});
+        violations.push_back({"close_replay.world", "the name of a replay opened with open_replay", "nothing"});
     } else if (request.has_export_run()) {
         add_faults(request.export_run(), violations);
     }
