@@ -13,8 +13,8 @@ namespace evod::access {
 struct TlsFiles {
     std::string certificate; // PEM file with the certificate chain; empty: no TLS
     std::string key;         // PEM file; only its owner and group may be able to read it
-    // PEM file with certificates of authorities, one of which must have signed each client's certificate; empty:
-    // clients need no certificate
+    // PEM file with certificate authorities, one of which must have signed the certificate of a client; empty: clients
+    // need no certificate
     std::string client_ca;
 };
 

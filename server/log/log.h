@@ -45,7 +45,7 @@ std::string plain_line(std::string_view message);
 
 /// A function object that formats and writes a message.
 template <Level level>
-struct Says {
+struct LogFunction {
     template <class... Arguments>
     void operator()(const Fields& fields, fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
         if (wanted(level)) {
@@ -57,10 +57,10 @@ struct Says {
         (*this)(Fields{}, text, std::forward<Arguments>(arguments)...);
     }
 };
-inline constexpr Says<Level::Trace> trace;
-inline constexpr Says<Level::Debug> debug;
-inline constexpr Says<Level::Info> info;
-inline constexpr Says<Level::Warn> warn;
-inline constexpr Says<Level::Error> error;
+inline constexpr LogFunction<Level::Trace> trace;
+inline constexpr LogFunction<Level::Debug> debug;
+inline constexpr LogFunction<Level::Info> info;
+inline constexpr LogFunction<Level::Warn> warn;
+inline constexpr LogFunction<Level::Error> error;
 
 } // namespace evod::log

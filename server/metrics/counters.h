@@ -62,7 +62,7 @@ class TimeHistogram {
         sum_ns_.add(ns * times);
     }
 
-    /// bucket  index, 0 to bounds.size().
+    /// The number of measurements in a bucket. bucket  its index, 0 to bounds.size().
     std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
     std::uint64_t count() const {
         std::uint64_t all = 0;

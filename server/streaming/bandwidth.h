@@ -36,8 +36,8 @@ class Bandwidth {
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
-        // When to continue: without a detail, the time to call choose() again; with a lower detail than wanted, the
-        // time to call refine().
+        // If `detail` is nullopt, the time to call choose() again. If it is lower than wanted, the time to call
+        // refine().
         Clock::time_point again;
     };
     /// Chooses the level of detail of a snapshot and spends its cost.
