@@ -40,7 +40,7 @@ using Target =
 /// printed after the name of the option.
 using Check = std::function<std::string(const std::string& word)>;
 
-/// A handle of an option or flag. It is valid as long as its command. Every setter returns the same handle.
+/// A handle of an option or flag. It is valid as long as its command exists. Every setter returns the same handle.
 class Option {
   public:
     explicit Option(CLI::Option* option) : option_{option} {}
@@ -55,9 +55,9 @@ class Option {
     Option needs(Option other) const;
     /// Rejects this option if the other option is given too.
     Option excludes(Option other) const;
-    /// The environment variable that contains the value if the command line does not.
+    /// Names an environment variable whose value is used if the command line does not contain the option.
     Option environment(const std::string& variable) const;
-    /// Makes the help show the present value of the target as the default.
+    /// Makes the help show the current value of the target as the default.
     Option show_default() const;
 
     /// Whether the command line or the environment contained a value.
@@ -87,7 +87,7 @@ class Command {
     Command& footer(const std::string& text);
     /// Sets the column at which the explanations of options begin in the help.
     Command& help_column(std::size_t column);
-    /// Allows options of this command after the name of the subcommand too. Applies to subcommands that are added
+    /// Also accepts options of this command after the name of a subcommand. Applies to subcommands that are added
     /// later.
     Command& accept_options_after_commands();
     /// Treats options before the name of a subcommand as if they were given to the subcommand. If the subcommand does

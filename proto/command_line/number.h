@@ -7,8 +7,8 @@
 
 namespace evod::command_line {
 
-/// Accepts decimal digits without a sign. Rejects a leading zero, because CLI11 would read an octal number. Rejects
-/// "-1", because CLI11 would read the greatest 64-bit number.
+/// Accepts decimal digits without a sign. Rejects a leading zero, because CLI11 would parse an octal number. Rejects
+/// "-1", because CLI11 would parse it as the largest 64-bit number.
 struct WholeNumber {
     std::uint64_t min = 0, max = std::numeric_limits<std::uint64_t>::max();
 

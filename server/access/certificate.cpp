@@ -60,11 +60,11 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
     Certificate certificate{X509_new()};
     unsigned char serial[16];
     bool good = certificate && RAND_bytes(serial, sizeof serial) == 1;
-    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // makes the number positive and of full length
+    serial[0] = static_cast<unsigned char>((serial[0] & 0x7f) | 0x40); // a positive number of exactly 16 bytes
     constexpr long day_s = 24 * 60 * 60;
     good = good && X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
            ASN1_STRING_set(X509_get_serialNumber(certificate.get()), serial, sizeof serial) == 1 &&
-           // A day in the past, because clocks may be wrong.
+           // Valid from yesterday, because the clock of a client may be slow.
            X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr &&
            X509_gmtime_adj(X509_getm_notAfter(certificate.get()), certificate_days * day_s) != nullptr &&
            X509_set_pubkey(certificate.get(), key) == 1;
@@ -89,26 +89,27 @@ Result<void> write_pem(const std::string& path, mode_t mode, const Write& write)
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor < 0) {
         return refusal(errno == EEXIST ? RefusalCode::AlreadyExists : RefusalCode::Unavailable,
-                       errno == EEXIST ? path + " exists already"
-                                       : path + ": cannot be written: " + std::strerror(errno));
+                       errno == EEXIST ? path + " exists already: move it away, or name another folder with --folder"
+                                       : "cannot create the file " + path + ": " + std::strerror(errno));
     }
     std::FILE* file = ::fdopen(descriptor, "w");
     const bool written = write(file) == 1;
     if (std::fclose(file) != 0 || !written) {
         ::unlink(path.c_str());
-        return refusal(RefusalCode::Unavailable, path + ": cannot be written: the disk may be full");
+        return refusal(RefusalCode::Unavailable, "cannot write the file " + path + ": the disk may be full");
     }
     return {};
 }
 
 } // namespace
 
-Result<void> make_certificate(const std::vector<std::string>& hosts, const std::string& folder) {
+Result<void> create_certificate(const std::vector<std::string>& hosts, const std::string& folder) {
     std::string names;
     for (const std::string& host : hosts) {
         const std::string name = alternative_name(host);
         if (name.empty()) {
-            return refusal(RefusalCode::InvalidArgument, "\"" + host + "\" is not a host name or IP address");
+            return refusal(RefusalCode::InvalidArgument,
+                           "host: got \"" + host + "\", allowed a host name or an IP address");
         }
         names += (names.empty() ? "" : ",") + name;
     }
@@ -120,7 +121,8 @@ Result<void> make_certificate(const std::vector<std::string>& hosts, const std::
     }
     const std::string key_path = folder + "/evod.key", certificate_path = folder + "/evod.crt";
     if (::access(certificate_path.c_str(), F_OK) == 0) {
-        return refusal(RefusalCode::AlreadyExists, certificate_path + " exists already");
+        return refusal(RefusalCode::AlreadyExists,
+                       certificate_path + " exists already: move it away, or name another folder with --folder");
     }
     if (auto written = write_pem(key_path, 0600,
                                  [&](std::FILE* file) {

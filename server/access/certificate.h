@@ -11,10 +11,10 @@ namespace evod::access {
 constexpr int certificate_days = 825;
 
 /// Writes a private key (EC P-256) and a self-signed certificate as PEM files: `evod.key`, which only its owner can
-/// read, and `evod.crt`, which clients name with --ca. Refused if one of the files exists.
+/// read, and `evod.crt`, which clients name with --ca. Refuses to overwrite existing files.
 ///
-/// hosts   the names or IP addresses under which clients reach the server; at least one.
-/// folder  must exist.
-base::Result<void> make_certificate(const std::vector<std::string>& hosts, const std::string& folder);
+/// hosts   the names or IP addresses with which clients connect to the server; at least one.
+/// folder  an existing folder.
+base::Result<void> create_certificate(const std::vector<std::string>& hosts, const std::string& folder);
 
 } // namespace evod::access

@@ -23,8 +23,8 @@ Gate::Stamp Gate::stamp() const {
 Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
     Gate gate{folder, token_needed};
     gate.refresh();
-    if (gate.trouble_) {
-        return *gate.trouble_;
+    if (gate.file_problem_) {
+        return *gate.file_problem_;
     }
     if (token_needed && gate.tokens_.empty()) {
         return refusal(
@@ -47,14 +47,14 @@ bool Gate::refresh() {
     }
     stamp_ = now;
     auto tokens = folder_.empty() ? Result<Tokens>{Tokens{}} : read_tokens(folder_);
-    trouble_ = tokens ? std::nullopt : std::optional{tokens.error()};
+    file_problem_ = tokens ? std::nullopt : std::optional{tokens.error()};
     if (tokens) {
         tokens_ = *std::move(tokens);
     }
     return true;
 }
 
-bool Gate::knows(const Visitor& visitor) const {
+bool Gate::is_still_valid(const Visitor& visitor) const {
     if (visitor.name.empty()) {
         return !token_needed_;
     }
@@ -79,7 +79,7 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
     if (token.empty() && !token_needed_) {
         return Visitor{};
     }
-    if (trouble_) {
+    if (file_problem_) {
         return refusal(RefusalCode::Unavailable,
                        "authentication is unavailable: the token file cannot be used (see the server log)",
                        base::Reason::AuthenticationUnavailable);

@@ -1,7 +1,8 @@
 // Gate: authenticates sessions by their tokens.
 //
 // Owner        the server, on the network thread.
-// Full         stores failed logins of at most addresses_max addresses. Beyond that it drops the oldest address.
+// Full         stores the failed logins of at most addresses_max addresses. Beyond that it drops the address whose
+//              last failure is the oldest.
 #pragma once
 
 #include "server/access/token_file.h"
@@ -33,8 +34,8 @@ class Gate {
     static constexpr std::chrono::minutes forgotten_after{10};
     static constexpr std::size_t addresses_max = 10'000;
 
-    /// folder        folder of the token file; empty: there are no tokens.
-    /// token_needed  true: a client without a token is refused; false: it is an admin.
+    /// folder        folder of the token file; empty: there is no token file.
+    /// token_needed  true: a client without a token is refused; false: a client without a token becomes an admin.
     ///
     /// Refused if the token file is not trustworthy, or if a token is needed and the file contains none.
     static base::Result<Gate> open(const std::string& folder, bool token_needed);
@@ -48,10 +49,10 @@ class Gate {
     /// Reads the token file again if it has changed, and returns whether it has changed. While the file is not
     /// trustworthy, new sessions are refused and existing sessions continue.
     bool refresh();
-    /// Whether the token with which a session was admitted is still valid.
-    bool knows(const Visitor& visitor) const;
-    /// The reason why the token file cannot be used at present; nullopt: it can be used.
-    const std::optional<base::Refusal>& trouble() const { return trouble_; }
+    /// Whether the token with which the visitor was admitted is still valid.
+    bool is_still_valid(const Visitor& visitor) const;
+    /// Why the token file cannot be used now; nullopt: it can be used.
+    const std::optional<base::Refusal>& file_problem() const { return file_problem_; }
 
     std::uint64_t failed_login_count() const { return failed_login_count_; }
 
@@ -78,7 +79,7 @@ class Gate {
     std::string folder_;
     bool token_needed_;
     Tokens tokens_;
-    std::optional<base::Refusal> trouble_;
+    std::optional<base::Refusal> file_problem_;
     Stamp stamp_;
     std::map<std::string, Failures> failures_; // key: address
     std::uint64_t failed_login_count_ = 0;

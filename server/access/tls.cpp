@@ -19,7 +19,7 @@ using base::Result;
 
 namespace {
 
-// The certificates of all authorities of a usual system take about 200 KiB.
+// A file with all certificate authorities of a typical system has about 200 KiB.
 constexpr std::size_t pem_bytes_max = 4 << 20;
 
 Refusal refusal(std::string message) {
@@ -38,10 +38,10 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
     }
     struct stat about {};
     if (::stat(files.key.c_str(), &about) != 0) {
-        return refusal("--tls-key: " + files.key + " cannot be read: " + std::strerror(errno));
+        return refusal("--tls-key: cannot read " + files.key + ": " + std::strerror(errno));
     }
     if ((about.st_mode & 007) != 0) {
-        return refusal("--tls-key: all users can read " + files.key + ": run chmod 600 on it");
+        return refusal("--tls-key: all users can access " + files.key + ": run chmod 600 on it");
     }
     auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
     SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
@@ -55,7 +55,7 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
         boost::system::error_code error;
         use(boost::asio::buffer(*text), error);
         if (error) {
-            return refusal(std::string{option} + ": " + file + " cannot be used: " + error.message());
+            return refusal(std::string{option} + ": cannot use " + file + ": " + error.message());
         }
         return {};
     };
@@ -69,7 +69,8 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
         return loaded.error();
     }
     if (SSL_CTX_check_private_key(context->native_handle()) != 1) {
-        return refusal("--tls-key: " + files.key + " is not the key of " + files.certificate);
+        return refusal("--tls-key: " + files.key + " is not the private key for the certificate in " +
+                       files.certificate);
     }
     if (!files.client_ca.empty()) {
         loaded = load("--tls-client-ca", files.client_ca,

@@ -13,11 +13,12 @@ namespace evod::access {
 struct TlsFiles {
     std::string certificate; // PEM file with the certificate chain; empty: no TLS
     std::string key;         // PEM file; only its owner and group may be able to read it
-    // PEM file; if it is set, clients need a certificate that one of these authorities has signed.
+    // PEM file with certificate authorities, one of which must have signed the certificate of a client; empty: clients
+    // need no certificate
     std::string client_ca;
 };
 
-/// Returns nullptr if there is no certificate. A refusal names the option, the file and the problem.
+/// Returns nullptr if `files` contains no certificate. A refusal names the option, the file and the problem.
 base::Result<std::unique_ptr<boost::asio::ssl::context>> server_context(const TlsFiles& files);
 
 } // namespace evod::access

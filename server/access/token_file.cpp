@@ -31,7 +31,7 @@ constexpr std::string_view heading = "# evod tokens 1";
 constexpr std::size_t file_bytes_max = tokens_max * 200;
 
 Refusal cannot(const std::string& what, const std::string& path) {
-    return refusal(RefusalCode::Unavailable, path + ": cannot be " + what + ": " + std::strerror(errno));
+    return refusal(RefusalCode::Unavailable, "cannot " + what + " " + path + ": " + std::strerror(errno));
 }
 
 bool is_token_name(std::string_view name) {
@@ -103,31 +103,32 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
         ::unlink(next.c_str()); // an interrupted process may have left this file
         const Descriptor file{::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
         if (!file.open()) {
-            return cannot("written", next);
+            return cannot("write", next);
         }
-        errno = ENOSPC; // write() wrote only a part of the data
+        errno = ENOSPC; // reported if write() writes only a part of the data
         if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0) {
-            return cannot("written", next);
+            return cannot("write", next);
         }
     }
     if (::rename(next.c_str(), path.c_str()) != 0) {
-        return cannot("replaced", path);
+        return cannot("replace", path);
     }
-    // Without this a revoked token could be valid again after a power failure.
+    // Without this, a revoked token could be valid again after a power failure.
     if (::fsync(folder_descriptor) != 0) {
-        return cannot("written", folder);
+        return cannot("write to", folder);
     }
     return {};
 }
 
-/// Reads the file, applies `change` and writes the file again. A lock excludes other processes meanwhile.
+/// Reads the file, applies `change` and writes the file. Locks the folder, so that no other process changes the file
+/// meanwhile.
 template <class Change>
 Result<void> change_tokens(const std::string& folder, const Change& change) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     const Descriptor locked{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
     if (!locked.open() || ::flock(*locked, LOCK_EX) != 0) {
-        return cannot("used", folder);
+        return cannot("open and lock", folder);
     }
     auto tokens = read_tokens(folder);
     if (!tokens) {
@@ -164,20 +165,20 @@ std::string token_file_of(const std::string& folder) {
 std::string to_text(const Tokens& tokens) {
     std::string text = std::string{heading} + '\n';
     for (const Token& token : tokens) {
-        text += token.name + ' ' + name_of(token.role) + ' ' + to_hex(token.digest) + ' ' + token.made_on + '\n';
+        text += token.name + ' ' + name_of(token.role) + ' ' + to_hex(token.digest) + ' ' + token.created_on + '\n';
     }
     return text;
 }
 
 Result<Tokens> parse_tokens(std::string_view text) {
     const auto wrong = [](std::size_t line, const std::string& allowed) {
-        return refusal(RefusalCode::DataLoss, "line " + std::to_string(line) + " is not " + allowed);
+        return refusal(RefusalCode::DataLoss, "line " + std::to_string(line) + " must be " + allowed);
     };
     Tokens tokens;
     for (std::size_t number = 1; !text.empty() || number == 1; ++number) {
         const std::size_t end = text.find('\n');
         if (end == std::string_view::npos) {
-            return wrong(number, "a whole line");
+            return wrong(number, "a line that ends with a line break");
         }
         const std::string line{text.substr(0, end)};
         text.remove_prefix(end + 1);
@@ -188,20 +189,21 @@ Result<Tokens> parse_tokens(std::string_view text) {
             continue;
         }
         std::istringstream words{line};
-        std::string name, role, digest, made_on, more;
-        words >> name >> role >> digest >> made_on;
+        std::string name, role, digest, created_on, more;
+        words >> name >> role >> digest >> created_on;
         const auto role_of = role_named(role);
         const auto bytes = from_hex(digest);
-        if (!is_token_name(name) || !role_of || !bytes || made_on.empty() || made_on.size() > 10 || words >> more) {
+        if (!is_token_name(name) || !role_of || !bytes || created_on.empty() || created_on.size() > 10 ||
+            words >> more) {
             return wrong(number, "NAME ROLE SHA256 DATE");
         }
         if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; })) {
-            return wrong(number, "a token with a new name");
+            return wrong(number, "a token whose name occurs only once");
         }
         if (tokens.size() == tokens_max) {
-            return wrong(number, "within the limit of " + std::to_string(tokens_max) + " tokens");
+            return wrong(number, "absent, because the limit of " + std::to_string(tokens_max) + " tokens is reached");
         }
-        tokens.push_back({name, *role_of, *bytes, made_on});
+        tokens.push_back({name, *role_of, *bytes, created_on});
     }
     return tokens;
 }
@@ -215,8 +217,9 @@ Result<Tokens> read_tokens(const std::string& folder) {
     const struct stat& about = file->about();
     if (about.st_uid != ::geteuid() || (about.st_mode & 077) != 0) {
         return refusal(RefusalCode::FailedPrecondition,
-                       path + " is accessible to other users and therefore refused: chown it to the user that runs "
-                              "evod, and chmod it to 600");
+                       path +
+                           " is refused, because other users own it or can access it: chown it to the user that runs "
+                           "evod, and chmod it to 600");
     }
     const auto text = file->read(file_bytes_max);
     if (!text) {
@@ -232,7 +235,7 @@ Result<Tokens> read_tokens(const std::string& folder) {
 Result<std::string> add_token(const std::string& folder, const std::string& name, Role role) {
     if (!is_token_name(name)) {
         return refusal(RefusalCode::InvalidArgument,
-                       "a token's name must be 1 to 64 of a-z A-Z 0-9 _ - ., not \"" + name + '"');
+                       "name: got \"" + name + "\", allowed 1 to 64 characters of a-z A-Z 0-9 _ - .");
     }
     Digest drawn;
     if (RAND_bytes(drawn.data(), static_cast<int>(drawn.size())) != 1) {

@@ -31,7 +31,7 @@ struct Token {
     std::string name; // 1 to 64 characters of a-z A-Z 0-9 _ - .
     Role role = Role::Viewer;
     Digest digest{};
-    std::string made_on; // date in the form "2026-11-22"
+    std::string created_on; // date in UTC, in the form "2026-11-22"
 
     friend bool operator==(const Token&, const Token&) = default;
 };
@@ -53,7 +53,7 @@ std::string token_file_of(const std::string& folder);
 /// Returns no tokens if the file does not exist. Refused if it is damaged, cannot be read, or is accessible to other
 /// users.
 base::Result<Tokens> read_tokens(const std::string& folder);
-/// Creates a token and returns its secret: "evod_" and 64 hexadecimal digits. The secret is not stored.
+/// Creates a token and returns its text: "evod_" and 64 hexadecimal digits. The text is not stored.
 base::Result<std::string> add_token(const std::string& folder, const std::string& name, Role role);
 base::Result<void> revoke_token(const std::string& folder, const std::string& name);
 

@@ -15,9 +15,9 @@ struct CertificateOptions {
     std::string folder = ".";
 };
 
-int make_certificate(const CertificateOptions& options) {
-    if (const auto made = access::make_certificate(options.hosts, options.folder); !made) {
-        return fail("evod certificate", made.error());
+int create_certificate(const CertificateOptions& options) {
+    if (const auto created = access::create_certificate(options.hosts, options.folder); !created) {
+        return fail("evod certificate", created.error());
     }
     return 0;
 }
@@ -27,12 +27,15 @@ int make_certificate(const CertificateOptions& options) {
 void add_certificate_command(command_line::Command& app) {
     auto& command = app.add_command("certificate", "Create a key and a self-signed certificate for TLS");
     auto& options = command.keep(CertificateOptions{});
-    command.add_option("host", &options.hosts, "Names and IP addresses under which clients will reach the server")
+    command.add_option("host", &options.hosts, "Host names and IP addresses with which clients connect to the server")
         .required();
-    command.add_option("--folder", &options.folder, "Folder for evod.key and evod.crt").show_default();
-    command.footer("Then: evod --tls-cert evod.crt --tls-key evod.key, and evoctl --ca evod.crt. Good for " +
-                   std::to_string(access::certificate_days) + " days.");
-    command.action([&] { return make_certificate(options); });
+    command.add_option("--folder", &options.folder, "Existing folder in which to create evod.key and evod.crt")
+        .show_default();
+    command.footer(
+        "Start the server with evod --tls-cert evod.crt --tls-key evod.key, and connect with evoctl --ca evod.crt. "
+        "The certificate is valid for " +
+        std::to_string(access::certificate_days) + " days.");
+    command.action([&] { return create_certificate(options); });
 }
 
 } // namespace evod::commands

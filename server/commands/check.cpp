@@ -33,9 +33,9 @@ int check(const std::string& path) {
 } // namespace
 
 void add_check_command(command_line::Command& app) {
-    auto& command = app.add_command("check", "Print what an experiment file changes, or what is wrong with it");
+    auto& command = app.add_command("check", "Check an experiment file and print the parameters that it changes");
     auto& path = command.keep(std::string{});
-    command.add_option("experiment", &path, "JSON file").required();
+    command.add_option("experiment", &path, "Experiment file (JSON)").required();
     command.action([&] { return check(path); });
 }
 

@@ -12,7 +12,7 @@ namespace evod::commands {
 
 inline constexpr command_line::WholeNumber any_number{}, generation_number{.min = 1}, thread_count{1, 1024};
 
-/// Exit statuses with the same meaning in every command.
+/// Exit statuses that mean the same in every command.
 constexpr int exit_error = 1;
 constexpr int exit_interrupted = 130; // ended by SIGINT or SIGTERM
 
@@ -30,7 +30,7 @@ std::string data_folder_or_default(const std::string& given);
 inline constexpr const char* no_data_folder =
     "there is no default folder for runs, because neither XDG_STATE_HOME nor HOME is set: name a folder with --data";
 
-/// Replaces an empty `folder` by the default. If there is no default, prints the error and returns false.
+/// Replaces an empty `folder` with the default. If there is no default, prints the error and returns false.
 bool find_data_folder(std::string_view command, std::string& folder);
 
 } // namespace evod::commands

@@ -35,7 +35,7 @@ struct CompareOptions {
 constexpr std::uint32_t replicates_advised = 20;
 constexpr int compared_max = 12; // maximum number of curves that a plot can show clearly
 
-/// Whether the file can be created or written. Does not change its contents.
+/// Whether the file can be created or written to. Does not change its contents.
 bool can_be_written(const std::string& path) {
     std::error_code error;
     const bool existed = std::filesystem::exists(path, error);
@@ -81,14 +81,14 @@ std::optional<std::vector<std::vector<Course>>> run(const ComparisonPlan& plan, 
     return courses;
 }
 
-/// Writes a file. Prints an error if this is not possible. Returns whether the file was written.
+/// Writes a file. If that fails, prints an error and returns false.
 bool write_file(const std::string& option, const std::string& path, const auto& write) {
     std::ofstream file{path, std::ios::binary};
     write(file);
     if (file.flush()) {
         return true;
     }
-    fail("evod compare", option + ": cannot write " + path + ", the disk may be full");
+    fail("evod compare", option + ": cannot write " + path + ": the disk may be full");
     return false;
 }
 
@@ -139,7 +139,7 @@ int compare(const CompareOptions& options) {
     }
     if (options.replicates < replicates_advised) {
         std::cerr << "evod compare: --replicates: fewer than " << replicates_advised
-                  << " can show large differences only\n";
+                  << " replicates can show only large differences\n";
     }
     catch_interrupts();
     std::printf("%s: %u replicates of %u generations, from seed %llu\n", plan->arms[0].name.c_str(), options.replicates,
@@ -174,38 +174,39 @@ int compare(const CompareOptions& options) {
 } // namespace
 
 void add_compare_command(command_line::Command& app) {
-    auto& command = app.add_command(
-        "compare", "Did evolution do it? Compare a world with its controls, or with other worlds, by the same seeds");
+    auto& command =
+        app.add_command("compare", "Compare a world with its controls, or with other worlds, using the same seeds");
     auto& options = command.keep(CompareOptions{});
     auto& request = options.request;
     request.drawn_seed = network::draw_seed();
     command
         .add_option("experiments", &request.experiments,
-                    "JSON files. With --controls one, or none for the default world; otherwise the world that the "
-                    "others are compared with comes first")
+                    "Experiment files (JSON). With --controls: one file, or none for the default world. Otherwise: "
+                    "two or more files; the first is compared with each of the others")
         .count(0, compared_max);
     command.add_flag("--controls", &request.controls,
-                     "Compare with random selection, no mutation, harmless poison and shuffled fitness");
-    command.add_option("--replicates", &options.replicates, "Runs of each world, each with its own seed")
+                     "Compare the world with its controls: random selection, no mutation, harmless poison and shuffled "
+                     "fitness");
+    command.add_option("--replicates", &options.replicates, "Number of runs of each world, each with its own seed")
         .check(command_line::WholeNumber{2, 10'000})
         .show_default();
     command
         .add_option("--generations", &request.generations,
-                    "Generations of each run; without it, the generation_limit of the first file or " +
+                    "Number of generations of each run; default: the generation_limit of the first file, or " +
                         std::to_string(experiments::default_generations) + ". No other criterion ends a run")
         .check(command_line::WholeNumber{2, 1'000'000});
     command
         .add_option("--seed", &request.seed,
-                    "Seed from which the seeds of the runs are derived; without it, the seed of the first file or a "
+                    "Seed from which the seeds of all runs are derived; default: the seed of the first file, or a "
                     "random one")
         .check(any_number);
-    command.add_option("--jobs", &options.jobs, "Runs at a time; the results do not depend on it")
+    command.add_option("--jobs", &options.jobs, "Number of simultaneous runs; it does not affect the results")
         .check(thread_count)
         .show_default();
-    command.add_option("--set", &request.changes, "Parameters of all worlds as NAME=VALUE");
-    command.add_option("--csv", &options.csv, "CSV file to write with the fitness of every run and generation");
+    command.add_option("--set", &request.changes, "NAME=VALUE: set a parameter in all worlds");
+    command.add_option("--csv", &options.csv, "CSV file to which the fitness of every run and generation is written");
     command.add_option("--plot,--picture", &options.plot,
-                       "File to write with the curves as SVG, PNG or PDF; needs python3-matplotlib");
+                       "SVG, PNG or PDF file to which the curves are drawn; needs the package python3-matplotlib");
     command.footer("Exit status: 0 compared, 130 interrupted, 1 error.");
     command.action([&] { return compare(options); });
 }

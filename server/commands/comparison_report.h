@@ -12,16 +12,20 @@
 
 namespace evod::commands {
 
-/// The number of decimals that is needed to show the differences between the means of a comparison.
+/// The number of decimals that shows the differences between the means of a comparison.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
-/// A table with the rise of every arm. courses  shape (arms, replicates).
+/// Formats a table with the rise in mean fitness of every arm, that is, of each compared world.
+///
+/// courses  shape (arms, replicates).
 std::string rises_text(const experiments::ComparisonPlan& plan,
                        std::span<const std::vector<experiments::Course>> courses, int decimals);
-/// A table that compares the first arm with every other arm. findings  shape (arms − 1).
+/// Formats a table that compares the first arm with every other arm.
+///
+/// findings  shape (arms − 1).
 std::string findings_text(const experiments::ComparisonPlan& plan, std::span<const experiments::Finding> findings,
                           int decimals);
-/// One line per conclusion.
+/// Formats the conclusions of the comparison, one line each.
 std::string conclusions_text(const experiments::ComparisonPlan& plan,
                              std::span<const std::vector<experiments::Course>> courses,
                              std::span<const experiments::Finding> findings, int decimals);

@@ -33,7 +33,7 @@ Refusal wrong_option(const std::string& option, const std::string& allowed, cons
             .violations = {}};
 }
 
-/// Parses "30:0:12".
+/// Parses GENERATION:ISLAND:ORGANISM, such as "30:0:12".
 std::optional<replay::OrganismName> organism_named(const std::string& text) {
     replay::OrganismName name;
     const char* at = text.data();
@@ -60,7 +60,7 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
                                                         {"events", RunTable::Events}};
     const auto table = tables.find(options.what);
     if (table == tables.end() && options.bundle.empty()) {
-        return wrong_option("--what", "one of the tables in the help, or --bundle FOLDER instead", "nothing");
+        return wrong_option("--what", "a table that evod export --help lists, or --bundle FOLDER instead", "nothing");
     }
     if (!options.of.empty() && options.what != "lineage") {
         return wrong_option("--of", "only with --what lineage", options.of);
@@ -88,14 +88,14 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
 
 void report_omitted_generations(RunFile& file) {
     if (const auto count = replay::generations_out_of_reach(file)) {
-        std::cerr
-            << "evod export: " << count
-            << " generations are left out: the file no longer contains their organisms, and this evod cannot simulate "
-               "them again, because they follow another version of the model\n";
+        std::cerr << "evod export: " << count
+                  << " generations are omitted: the file does not contain their organisms, and this evod cannot "
+                     "simulate them "
+                     "again, because another version of the model simulated them\n";
     }
 }
 
-/// Replaces the names of fields by the names of the command line options.
+/// Replaces the names of protocol fields with the names of the command line options.
 Refusal with_option_names(Refusal refused) {
     for (base::Violation& violation : refused.violations) {
         violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
@@ -146,8 +146,8 @@ Result<void> export_to(const ExportOptions& options) {
     }
     if (!out.flush()) {
         return cannot_write(options.output.empty()
-                                ? "standard output cannot be written, the disk may be full"
-                                : "--output: cannot write " + options.output + ", the disk may be full");
+                                ? "cannot write to standard output: the disk may be full"
+                                : "--output: cannot write " + options.output + ": the disk may be full");
     }
     return sound; // reports damage only after writing the intact part of the file
 }
@@ -162,7 +162,8 @@ int export_run(const ExportOptions& options) {
 }
 
 void add_export_command(command_line::Command& app) {
-    auto& command = app.add_command("export", "Write the contents of a run file as rows for other programs");
+    auto& command =
+        app.add_command("export", "Export a table of a run file as CSV or JSON lines, or the whole run as a folder");
     auto& options = command.keep(ExportOptions{});
     options.threads = default_thread_count();
     command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();
@@ -170,27 +171,30 @@ void add_export_command(command_line::Command& app) {
         command
             .add_option(
                 "--what", &options.what,
-                "generations: statistics; organisms: parents, genes and fate of each; lineage: the parents of each; "
-                "population: the genes of one generation, for --population; events: the commands")
+                "Table to export. generations: statistics; organisms: parents, genes and cause of death of each "
+                "organism; lineage: parents of each organism; population: genes of one generation, as input for "
+                "--population; events: the commands of the run")
             .choices({"generations", "organisms", "lineage", "population", "events"});
-    command.add_option("--of", &options.of,
-                       "GENERATION:ISLAND:ORGANISM: only the ancestors of this organism, back to generation 1");
+    command.add_option(
+        "--of", &options.of,
+        "Only with --what lineage: export only the organism GENERATION:ISLAND:ORGANISM and its ancestors");
     command
         .add_option("--generation", &options.generation,
-                    "Generation of the population; without it, the last that has begun")
+                    "Only with --what population: generation to export; default: the last that has begun")
         .check(generation_number);
-    command.add_option("--format", &options.format, "csv, or jsonl: one JSON object per line")
+    command.add_option("--format", &options.format, "Format of the table: csv, or jsonl with one JSON object per line")
         .choices({"csv", "jsonl"})
         .show_default();
-    const auto output = command.add_option("--output", &options.output, "File; without it, standard output");
+    const auto output = command.add_option("--output", &options.output, "Output file; default: standard output");
     command
         .add_option("--threads", &options.threads,
-                    "Threads that simulate the generations that the file no longer contains in full")
+                    "Number of threads that recompute the generations that the file does not store in full")
         .check(thread_count)
         .show_default();
     command
         .add_option("--bundle", &options.bundle,
-                    "New folder for a copy of the run file, all tables, checksums and instructions to repeat the run")
+                    "Folder to create, with a copy of the run file, all tables, checksums, and instructions to repeat "
+                    "the run")
         .excludes(what)
         .excludes(output);
     command.action([&] { return export_run(options); });

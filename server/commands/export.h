@@ -1,6 +1,6 @@
-// `evod export`: writes the contents of a run file as rows for other programs, or the run as a bundle.
+// `evod export`: writes a table of a run file as CSV or JSON lines, or the whole run as a bundle.
 //
-// Threads  one; `threads` workers simulate the generations that the file does not store whole.
+// Threads  one; `threads` workers simulate the generations that the file does not store in full.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// `evod fork`: creates a second world that begins with a generation of a run file.
+// `evod fork`: creates a new world that begins with a generation of a stored run.
 #include "server/replay/fork.h"
 #include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
@@ -24,7 +24,7 @@ struct ForkOptions {
     std::string data_folder;                    // folder for the new run file
 };
 
-/// Replaces the field names of requests by the names of the command line options.
+/// Replaces the field names of requests with the names of the command line options.
 base::Refusal with_fork_options(base::Refusal refused) {
     for (base::Violation& violation : refused.violations) {
         if (violation.field == "generation") {
@@ -69,16 +69,18 @@ int fork(const ForkOptions& options) {
 } // namespace
 
 void add_fork_command(command_line::Command& app) {
-    auto& command = app.add_command("fork", "Create a second world from a generation of a run file, or from its end");
+    auto& command =
+        app.add_command("fork", "Create a new world from a generation of a stored run, or from the end of the run");
     auto& options = command.keep(ForkOptions{});
     command.add_option("run", &options.run_file, "Run file, NAME.evod; the run may still be in progress").required();
     command
         .add_option("--at-generation", &options.at_generation,
-                    "Generation whose first tick the fork begins with; without it, the last tick of the file")
+                    "The fork begins with the first tick of this generation; default: the last tick in the file")
         .check(generation_number);
     command.add_option("--name", &options.name, "Name of the new world").required();
-    command.add_option("--data", &options.data_folder,
-                       "Folder for the new run file, in use by no server; without it, the folder of the run file");
+    command.add_option(
+        "--data", &options.data_folder,
+        "Folder for the new run file, which no running server may use; default: the folder of the run file");
     command.footer(
         "The fork has the seed, the organisms and the parameters of the run at that tick. It is paused until "
         "a client runs it.");

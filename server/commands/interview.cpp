@@ -11,7 +11,7 @@ using parameters::Parameters;
 
 struct Question {
     const char* name;
-    bool (*matters)(const Parameters&); // gets the answers so far; the question is asked only if it returns true
+    bool (*matters)(const Parameters&); // receives the answers so far; false: the question is not asked
 };
 
 constexpr auto always = [](const Parameters&) { return true; };

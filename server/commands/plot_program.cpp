@@ -21,7 +21,7 @@ std::string script_path() {
     return error ? std::string{} : (program.parent_path() / "plot_compare").string();
 }
 
-/// Runs the script. The script prints its own errors to stderr.
+/// Runs the script with these arguments. The script prints its own errors to stderr.
 base::Result<void> run_script(std::vector<std::string> words) {
     words.insert(words.begin(), script_path());
     std::vector<char*> arguments;
@@ -32,7 +32,7 @@ base::Result<void> run_script(std::vector<std::string> words) {
     pid_t process = 0;
     if (const int error = ::posix_spawn(&process, arguments[0], nullptr, nullptr, arguments.data(), environ);
         error != 0) {
-        return refusal(RefusalCode::FailedPrecondition, words[0] + " cannot be run: " + std::strerror(error) +
+        return refusal(RefusalCode::FailedPrecondition, "cannot run " + words[0] + ": " + std::strerror(error) +
                                                             "; it needs the packages python3 and python3-matplotlib");
     }
     int status = 0;

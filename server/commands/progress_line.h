@@ -1,7 +1,7 @@
 // Progress line: one line on stderr. Each update overwrites it, at most ten times a second. If stderr is not a
 // terminal, nothing is printed.
 //
-// Threads  one at a time. If several threads use it, they must hold a lock.
+// Threads  one thread at a time; several threads must use a lock.
 #pragma once
 
 #include <unistd.h>

@@ -7,7 +7,7 @@
 
 namespace evod::commands {
 
-/// The heading of the table, and one row of it. The columns have fixed widths. The text does not end with a newline.
+/// Formats the heading or one row of the table. The columns have fixed widths. The text does not end with a newline.
 std::string table_heading(bool with_island);
 std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
 

@@ -34,8 +34,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct RunOptions {
-    std::string experiment; // path; empty: use the default world
-    std::string population; // path; empty: draw the first generation at random
+    std::string experiment; // path of an experiment file; empty: use the default world
+    std::string population; // path of a CSV file; empty: draw the first generation at random
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> generations; // overrides generation_limit
     std::size_t threads = default_thread_count();
@@ -51,7 +51,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The computing time of a run.
+/// The computation time of a run.
 struct Cost {
     double start_s = 0, tick_s = 0, turnover_s = 0;
     std::uint64_t organism_ticks = 0; // sum of the organisms alive at the start of each tick
@@ -201,7 +201,7 @@ int run(const RunOptions& options) {
         }
         std::fflush(stdout);
         if (table && !csv.flush()) {
-            return fail("evod run", "--csv: cannot write " + options.csv + ", the disk may be full");
+            return fail("evod run", "--csv: cannot write " + options.csv + ": the disk may be full");
         }
     }
     progress.clear();
@@ -215,22 +215,26 @@ int run(const RunOptions& options) {
 void add_run_command(command_line::Command& app) {
     auto& command = app.add_command("run", "Run an experiment without a network");
     auto& options = command.keep(RunOptions{});
-    command.add_option("experiment", &options.experiment, "JSON file; without it, the default world");
-    command.add_option("--seed", &options.seed, "Seed; without it, the seed of the file or a random one")
+    command.add_option("experiment", &options.experiment, "Experiment file (JSON); default: the default world");
+    command
+        .add_option("--seed", &options.seed,
+                    "Seed of the run; default: the seed of the experiment file, or a random one")
         .check(any_number);
-    command.add_option("--population", &options.population,
-                       "CSV file of `evod export --what population`: begin with these organisms instead of random "
-                       "ones");
+    command.add_option(
+        "--population", &options.population,
+        "CSV file from `evod export --what population`; the run begins with its organisms instead of random "
+        "ones");
     command
         .add_option("--generations", &options.generations,
-                    "Number of generations; replaces generation_limit, 0: no limit")
+                    "Number of generations, 0: no limit; default: the parameter generation_limit")
         .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
-    command.add_option("--set", &options.changes, "Parameters as NAME=VALUE; evod parameters lists them");
-    command.add_option("--csv", &options.csv, "CSV file to write with the statistics of every generation");
-    command.add_flag(
-        "--ask", &options.ask,
-        "Ask on the terminal for population, food, poison, time and every option of the genetic algorithm");
+    command.add_option("--threads", &options.threads, "Number of simulation threads")
+        .check(thread_count)
+        .show_default();
+    command.add_option("--set", &options.changes, "NAME=VALUE: set a parameter; evod parameters lists all parameters");
+    command.add_option("--csv", &options.csv, "CSV file to which the statistics of every generation are written");
+    command.add_flag("--ask", &options.ask,
+                     "Prompt for population, food, poison, time and every setting of the genetic algorithm");
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
                    "2 a value is not allowed.");
     command.action([&] { return run(options); });

@@ -41,7 +41,8 @@ void log_http_address(const boost::asio::ip::tcp::endpoint& http) {
     log::info("metrics and health at http://{}:{}/metrics and /healthz",
               http.address().is_v6() ? "[" + address + "]" : address, http.port());
     if (!http.address().is_loopback()) {
-        log::warn("HTTP has no tokens: any machine that reaches {}:{} can read the metrics", address, http.port());
+        log::warn("HTTP requires no token: any machine that can connect to {}:{} can read the metrics", address,
+                  http.port());
     }
 }
 
@@ -56,7 +57,7 @@ int run_server(network::ServerOptions options) {
         return fail("evod", server.error());
     }
     if (!folder.empty()) {
-        log::info("runs are kept in {}", folder);
+        log::info("runs are stored in {}", folder);
     }
     const auto endpoint = (*server)->endpoint();
     if (!endpoint.address().is_loopback() && !encrypted) {
@@ -85,7 +86,7 @@ void add_server(Command& app) {
     add_server_options(app, options);
     add_first_world_options(app, options);
     add_storage_options(app, options);
-    app.footer("Without a subcommand evod is a server.");
+    app.footer("Without a subcommand, evod starts a server.");
     app.hand_options_down("the server");
     app.action([&options] {
         begin_log(options);
@@ -95,15 +96,19 @@ void add_server(Command& app) {
 }
 
 void add_replay_command(Command& app) {
-    auto& command = app.add_command("replay", "Serve a run file: clients can watch its run, but not change it");
+    auto& command = app.add_command("replay", "Serve a stored run as a replay, which clients can view but not change");
     auto& options = command.keep(ServeOptions{});
     auto& run = command.keep(network::ServerOptions::Replay{});
     command.add_option("run", &run.path, "Run file, NAME.evod; the run may still be in progress").required();
-    command.add_option("--generation", &run.generation, "Generation to begin with; without it, the first")
+    command
+        .add_option("--generation", &run.generation,
+                    "Generation that the replay shows first; default: the first one in the file")
         .check(generation_number);
-    command.add_option("--data", &options.data_folder, "Folder with the tokens of clients on other machines");
+    command.add_option("--data", &options.data_folder,
+                       "Folder with the token file; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
     add_server_options(command, options);
-    command.footer("Open the replay with evoview, seek in it with evoctl seek, run and pause it like any world.");
+    command.footer("View the replay with evoview, move it to another moment with evoctl seek, and run or pause it like "
+                   "any world.");
     command.action([&options, &run] {
         begin_log(options);
         return run_server(replay_server_options(options, run));

@@ -19,24 +19,28 @@ using command_line::WholeNumber;
 constexpr WholeNumber port_number{0, 65535};
 
 void add_tls_options(Command& command, access::TlsFiles& tls) {
-    command.add_option("--tls-cert", &tls.certificate,
-                       "PEM file with the certificate. With it, the server accepts TLS only; see evod certificate");
+    command.add_option(
+        "--tls-cert", &tls.certificate,
+        "PEM file with the server's certificate, such as one from evod certificate; the server then accepts "
+        "only TLS");
     command.add_option("--tls-key", &tls.key, "PEM file with the private key for --tls-cert");
     command.add_option(
         "--tls-client-ca", &tls.client_ca,
-        "PEM file with CA certificates. With it, every client needs a certificate that one of them signed");
+        "PEM file with CA certificates; every client then needs a certificate that one of these CAs has signed");
 }
 
 void add_http_options(Command& command, ServeOptions& options) {
     const auto http = command
                           .add_option("--http-port", &options.http_port,
-                                      "Port for /metrics and /healthz over HTTP, for example 7745; 0: any free port. "
-                                      "Without the option, the server has no HTTP")
+                                      "TCP port for /metrics and /healthz over HTTP, for example 7745; 0: any free "
+                                      "port; default: no HTTP")
                           .check(port_number);
-    command.add_option("--http-bind", &options.http_bind_address, "Address for HTTP").needs(http).show_default();
+    command.add_option("--http-bind", &options.http_bind_address, "IP address on which the server listens for HTTP")
+        .needs(http)
+        .show_default();
 }
 
-/// The part of the configuration that is the same for `evod` and `evod replay`.
+/// The part of the configuration that `evod` and `evod replay` share.
 network::ServerOptions common_server_options(const ServeOptions& options) {
     network::ServerOptions server;
     server.bind_address = options.bind_address;
@@ -81,75 +85,86 @@ base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
 } // namespace
 
 void add_server_options(Command& command, ServeOptions& options) {
-    command.add_option("--bind", &options.bind_address, "Address to listen on; 0.0.0.0: all interfaces").show_default();
-    command.add_option("--port", &options.port, "Port to listen on; 0: any free port")
+    command
+        .add_option("--bind", &options.bind_address, "IP address on which the server listens; 0.0.0.0: all interfaces")
+        .show_default();
+    command.add_option("--port", &options.port, "TCP port on which the server listens; 0: any free port")
         .check(port_number)
         .show_default();
-    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.add_option("--threads", &options.threads, "Number of simulation threads")
+        .check(thread_count)
+        .show_default();
     add_http_options(command, options);
     command
         .add_option("--log-level", &options.log_level,
-                    "Least severe level that is logged. debug adds every refusal, trace every request")
+                    "Lowest level that is logged; debug adds every refusal, trace every request")
         .choices({log::level_names.begin(), log::level_names.end()})
         .show_default();
-    command.add_option("--log-format", &options.log_format, "text: sentences; json: one JSON object per line")
+    command
+        .add_option("--log-format", &options.log_format,
+                    "Format of the log: text, or json with one JSON object per line")
         .choices({"text", "json"})
         .show_default();
-    command.add_flag("--require-token", &options.token_needed,
-                     "Require a token from clients on this machine too. Clients on other machines always need one");
+    command.add_flag(
+        "--require-token", &options.token_needed,
+        "Require a token even if the server listens only on the loopback interface; on other interfaces the "
+        "server always requires one");
     add_tls_options(command, options.tls);
     const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
         command.add_option(name, &count, help).check(WholeNumber{1, 1'000'000}).show_default();
     };
     add_sessions("--sessions-max", options.session_bounds.sessions_max,
-                 "Most sessions at a time; the server rejects further ones. Each takes a file descriptor");
+                 "Maximum number of simultaneous sessions; each session uses one file descriptor");
     add_sessions("--sessions-per-address-max", options.session_bounds.sessions_per_address_max,
-                 "Most sessions at a time from one IPv4 address or one IPv6 /64");
+                 "Maximum number of simultaneous sessions from one IPv4 address or one IPv6 /64 prefix");
 }
 
 void add_first_world_options(Command& command, ServeOptions& options) {
-    command.add_option("--experiment", &options.experiment_file, "JSON file with the parameters of the first world");
+    command.add_option("--experiment", &options.experiment_file,
+                       "Experiment file (JSON) with the parameters of the first world");
     command
         .add_option("--seed", &options.seed,
-                    "Seed of the first world; without it, the seed of the experiment file or a random one")
+                    "Seed of the first world; default: the seed of the experiment file, or a random one")
         .check(any_number);
-    command.add_option("--population", &options.population_file,
-                       "CSV file of `evod export --what population`: the first world begins with these organisms "
-                       "instead of random ones");
+    command.add_option(
+        "--population", &options.population_file,
+        "CSV file from `evod export --what population`; the first world begins with its organisms instead of "
+        "random ones");
     command
         .add_option("--speed", &options.speed,
-                    "Speed of the first or the restored world: simulated seconds per second, 0.001 to 10000, or max")
+                    "Speed of the first or the restored world in simulated seconds per second, 0.001 to 10000, or max")
         .check([](const std::string& text) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
         });
-    command.add_flag("--start", &options.start, "Run that world at once, without a limit");
+    command.add_flag("--start", &options.start, "Run the first or the restored world at once, without a goal");
 }
 
 void add_storage_options(Command& command, ServeOptions& options) {
     const auto data = command.add_option("--data", &options.data_folder,
-                                         "Folder with one file per run; the server restores the worlds that it finds "
-                                         "there. Without the option, $XDG_STATE_HOME/evod or ~/.local/state/evod");
+                                         "Folder for run files and the token file; the server restores the worlds "
+                                         "stored in it; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
     const auto keep_nothing =
-        command.add_flag("--keep-nothing", &options.keep_nothing, "Write no files: runs are lost when the server ends")
+        command
+            .add_flag("--keep-nothing", &options.keep_nothing, "Do not store runs: they are lost when the server ends")
             .excludes(data);
     command
         .add_option("--durability", &options.durability,
-                    "When the server answers a command. full: after it is on the disk; relaxed: before, so that a "
-                    "power cut can lose it, but a crash of evod cannot")
+                    "When the server answers a command. full: after the command was written to the disk; relaxed: "
+                    "earlier, so that a power failure may lose the command, but a crash of evod does not")
         .choices({"full", "relaxed"})
         .excludes(keep_nothing)
         .show_default();
     command
         .add_option("--file-bytes-max", &options.file_bytes_max,
-                    "Size above which a run file keeps fewer of its older generations in full. evod can simulate the "
-                    "others again, and the file keeps their statistics")
+                    "Size of a run file in bytes above which evod stores fewer of the older generations in full; it "
+                    "keeps the statistics of all generations, and can simulate them again")
         .check(WholeNumber{std::uint64_t{1} << 20, std::uint64_t{1} << 50})
         .excludes(keep_nothing)
         .show_default();
     command
         .add_option("--keep-every", &options.keep_every,
-                    "New run files keep every N-th generation in full, and the first and the last. evod can simulate "
-                    "the others again, and the file keeps their statistics")
+                    "In new run files, store the first, the last and every N-th generation in full; evod keeps the "
+                    "statistics of all generations, and can simulate them again")
         .check(WholeNumber{1, 1'000'000'000})
         .excludes(keep_nothing)
         .show_default();

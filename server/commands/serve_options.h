@@ -26,7 +26,7 @@ struct ServeOptions {
     std::size_t threads = default_thread_count();
     std::string experiment_file, population_file;
     std::optional<std::uint64_t> seed;
-    std::string speed; // text that parse_speed() accepts; empty: the default
+    std::string speed; // a text that parse_speed() accepts; empty: the speed of the world stays
     bool start = false;
     std::string data_folder;
     bool keep_nothing = false;
@@ -47,8 +47,8 @@ void add_storage_options(command_line::Command& command, ServeOptions& options);
 /// Parses "max", or a number of simulated seconds per second. Returns nullopt for any other text.
 std::optional<simulation::Speed> parse_speed(const std::string& text);
 
-/// The configuration of the server for `evod`. Reads the experiment and the population that the options name. Draws at
-/// random what the options leave open.
+/// The configuration of the server for `evod`. Reads the experiment and the population that the options name. Draws the
+/// run id and, if neither the options nor the experiment contain one, the seed at random.
 base::Result<network::ServerOptions> server_options(const ServeOptions& options);
 /// The configuration of the server for `evod replay`.
 network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run);

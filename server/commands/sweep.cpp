@@ -162,8 +162,8 @@ Refusal runs_missing(const std::vector<std::size_t>& missing, const Sweep& sweep
 }
 
 /// Executes the runs and prints their duration. Returns the number of finished runs.
-Result<std::size_t> make_runs(const std::vector<std::size_t>& runs, const Sweep& sweep, const SweepFolder& folder,
-                              const SweepOptions& options) {
+Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Sweep& sweep, const SweepFolder& folder,
+                                 const SweepOptions& options) {
     std::optional<Progress> progress;
     experiments::SweepRunner runner{sweep,
                                     folder,
@@ -205,8 +205,8 @@ std::vector<std::size_t> run_numbers(const Sweep& sweep, std::optional<std::size
 }
 
 /// Executes the runs that are still missing. Returns the exit status.
-Result<int> make_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
-                              const std::string& out) {
+Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
+                                 const std::string& out) {
     if (options.run_files) {
         if (auto made = folder.create_run_file_folder(); !made) {
             return made.error();
@@ -226,7 +226,7 @@ Result<int> make_missing_runs(const SweepOptions& options, const Sweep& sweep, c
     if (missing.empty()) {
         return 0;
     }
-    const auto made = make_runs(missing, sweep, folder, options);
+    const auto made = execute_runs(missing, sweep, folder, options);
     if (!made) {
         return made.error();
     }
@@ -262,7 +262,7 @@ Result<int> run_sweep(const SweepOptions& options) {
             return runs_missing(missing, *sweep, *folder);
         }
     } else {
-        const auto status = make_missing_runs(options, *sweep, *folder, out);
+        const auto status = execute_missing_runs(options, *sweep, *folder, out);
         if (!status || *status != 0) {
             return status;
         }
@@ -281,34 +281,36 @@ Result<int> run_sweep(const SweepOptions& options) {
 } // namespace
 
 void add_sweep_command(command_line::Command& app) {
-    auto& command = app.add_command("sweep", "Run an experiment many times, with other parameters and seeds");
+    auto& command = app.add_command("sweep", "Run an experiment many times with different parameters and seeds");
     auto& options = command.keep(SweepOptions{});
     command
         .add_option("sweep", &options.file,
-                    "JSON file with an experiment and a grid, a list or a Latin hypercube of parameters")
+                    "Sweep file (JSON): an experiment, and a grid, list or Latin hypercube of parameter values")
         .required();
-    command.add_option("--out", &options.out,
-                       "Folder for the results; the same command resumes an interrupted sweep in it. Without the "
-                       "option, a folder named like the file, without its extension");
-    const auto with_jobs = command.add_option("--jobs", &options.jobs, "Runs at a time, each on one thread")
-                               .check(thread_count)
-                               .show_default();
+    command.add_option(
+        "--out", &options.out,
+        "Folder for the results, in which the same command resumes an interrupted sweep; default: the name "
+        "of the sweep file without its extension");
+    const auto with_jobs =
+        command.add_option("--jobs", &options.jobs, "Number of simultaneous runs, each on one thread")
+            .check(thread_count)
+            .show_default();
     const auto with_run_files =
-        command.add_flag("--run-files", &options.run_files, "Also write a run file per run: FOLDER/run-files");
+        command.add_flag("--run-files", &options.run_files, "Also write a run file for each run, in FOLDER/run-files");
     const auto with_array_index =
         command
             .add_option("--array-index", &options.array_index,
-                        "Run only this cell, counted from 0, as one task of a job array; after all tasks, "
-                        "use --gather")
+                        "Run only the cell with this index, from 0, as one task of a job array; when all tasks have "
+                        "ended, use --gather")
             .check(any_number);
     const auto with_gather =
         command
             .add_flag("--gather", &options.gather,
-                      "Do not run anything: write FOLDER/runs.csv, or print which runs are missing")
+                      "Only write FOLDER/runs.csv from the finished runs, or list the runs that are missing")
             .excludes(with_jobs)
             .excludes(with_run_files)
             .excludes(with_array_index);
-    command.add_flag("--dry-run", &options.dry_run, "Write nothing: print cells and seeds")
+    command.add_flag("--dry-run", &options.dry_run, "Only print cells and seeds; run nothing and write no file")
         .excludes(with_gather)
         .excludes(with_jobs)
         .excludes(with_run_files)

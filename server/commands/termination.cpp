@@ -20,7 +20,7 @@ namespace {
 
 constexpr int exit_out_of_memory = 3;
 
-/// Reserved memory. The handler frees it before it writes its message, because writing needs memory.
+/// Reserved memory. The handler frees it before writing its message, because writing needs memory.
 std::unique_ptr<char[]> memory_for_last_message;
 
 [[noreturn]] void exit_after_second_failure() {
@@ -34,7 +34,7 @@ std::unique_ptr<char[]> memory_for_last_message;
     std::abort();
 }
 
-/// Names the exhausted resource. Aborts if the exception has any other cause.
+/// Returns a text that names the exhausted resource. Aborts if the exception has another cause.
 const char* missing_resource(std::exception_ptr error) {
     if (!error) {
         std::abort();
@@ -47,7 +47,7 @@ const char* missing_resource(std::exception_ptr error) {
         if (error.code() != std::errc::resource_unavailable_try_again && error.code() != std::errc::not_enough_memory) {
             abort_with(error);
         }
-        return "out of memory or of threads";
+        return "out of memory or threads";
     } catch (const std::exception& error) {
         abort_with(error);
     } catch (...) {
@@ -60,9 +60,9 @@ const char* missing_resource(std::exception_ptr error) {
     std::thread::id none;
     if (!terminating.compare_exchange_strong(none, std::this_thread::get_id())) {
         while (terminating != std::this_thread::get_id()) {
-            ::pause(); // another thread ends the program
+            ::pause(); // another thread is ending the program
         }
-        exit_after_second_failure(); // memory also ran out while the message below was written
+        exit_after_second_failure(); // memory ran out again while this thread wrote the message below
     }
     const char* const missing = missing_resource(std::current_exception());
     memory_for_last_message.reset();

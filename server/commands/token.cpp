@@ -15,17 +15,16 @@ struct TokenOptions {
     std::string folder, name, role;
 };
 
-/// Prints only the secret to stdout, so that a script can store it. Prints to stderr how to use the secret.
+/// Prints only the token to stdout, so that a script can store it. Prints to stderr how to use the token.
 int add_token(const TokenOptions& options) {
     const access::Role role = *access::role_named(options.role);
     const auto secret = access::add_token(options.folder, options.name, role);
     if (!secret) {
         return fail("evod token", secret.error());
     }
-    std::cerr
-        << "token of " << options.name << ", " << access::name_of(role)
-        << ", printed only this once; evoctl and evoview read it from the environment variable EVOD_TOKEN or from "
-           "the file of --token-file\n";
+    std::cerr << "token of " << options.name << ", role " << access::name_of(role)
+              << ": it cannot be printed again; evoctl and evoview read it from the environment variable EVOD_TOKEN or "
+                 "from the file given with --token-file\n";
     std::cout << *secret << std::endl;
     return 0;
 }
@@ -36,11 +35,12 @@ int list_tokens(const TokenOptions& options) {
         return fail("evod token", tokens.error());
     }
     if (tokens->empty()) {
-        std::cerr << "evod token: there are no tokens in " << options.folder << ": make one with evod token add\n";
+        std::cerr << "evod token: there are no tokens in " << options.folder
+                  << ": create one with evod token add NAME --role ROLE\n";
     }
-    std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "MADE ON");
+    std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "CREATED ON");
     for (const access::Token& token : *tokens) {
-        std::printf("%-24s %-10s %s\n", token.name.c_str(), access::name_of(token.role), token.made_on.c_str());
+        std::printf("%-24s %-10s %s\n", token.name.c_str(), access::name_of(token.role), token.created_on.c_str());
     }
     return 0;
 }
@@ -59,16 +59,17 @@ void add_token_command(command_line::Command& app) {
     auto& options = token.keep(TokenOptions{});
     const auto set_up = [&options](command_line::Command& command, int (*act)(const TokenOptions&)) {
         command.add_option("--data", &options.folder,
-                           "Folder of the server's run files; without it, the server's default folder");
+                           "Data folder of the server; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
         command.action(
             [&options, act] { return find_data_folder("evod token", options.folder) ? act(options) : exit_error; });
     };
 
     auto& add = token.add_command("add", "Create a token and print it; it cannot be printed again");
-    add.add_option("name", &options.name, "Name of its owner, 1 to 64 of a-z A-Z 0-9 _ - .").required();
-    add.add_option("--role", &options.role,
-                   "viewer: reads and watches. controller: also runs worlds and sets parameters. admin: also makes and "
-                   "deletes worlds, and shuts the server down")
+    add.add_option("name", &options.name, "Name of the user, 1 to 64 characters of a-z A-Z 0-9 _ - .").required();
+    add.add_option(
+           "--role", &options.role,
+           "Role of the user. viewer: may view worlds; controller: may also run worlds and set parameters; admin: "
+           "may also create and delete worlds, and shut the server down")
         .required()
         .choices({"viewer", "controller", "admin"});
     set_up(add, add_token);
@@ -76,8 +77,8 @@ void add_token_command(command_line::Command& app) {
     auto& list = token.add_command("list", "Print the names and roles of all tokens");
     set_up(list, list_tokens);
 
-    auto& revoke = token.add_command("revoke", "Revoke a token; the server ends the sessions that use it");
-    revoke.add_option("name", &options.name, "Name of its owner").required();
+    auto& revoke = token.add_command("revoke", "Revoke a token; the server ends all sessions that use it");
+    revoke.add_option("name", &options.name, "Name of the user").required();
     set_up(revoke, revoke_token);
 }
 

@@ -98,11 +98,12 @@ int verify(const VerifyOptions& options) {
 } // namespace
 
 void add_verify_command(command_line::Command& app) {
-    auto& command =
-        app.add_command("verify", "Simulate the run of a run file again and compare all that the file contains");
+    auto& command = app.add_command("verify", "Simulate a stored run again and compare the result with the run file");
     auto& options = command.keep(VerifyOptions{});
     command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();
-    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.add_option("--threads", &options.threads, "Number of simulation threads")
+        .check(thread_count)
+        .show_default();
     command.footer("Exit status: 0 everything agrees, 1 the file differs, is damaged or cannot be simulated again.");
     command.action([&] { return verify(options); });
 }

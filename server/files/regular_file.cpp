@@ -38,7 +38,7 @@ Result<RegularFile> RegularFile::open(const std::string& path, std::string_view 
         return refusal(why == ENOENT ? RefusalCode::NotFound : RefusalCode::Unavailable,
                        path + ": cannot be read: " + std::strerror(why));
     };
-    // O_NONBLOCK, because opening a pipe would otherwise wait for a writer.
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
     const int descriptor =
         ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | (links == Links::Refused ? O_NOFOLLOW : 0));
     if (descriptor < 0) {
@@ -78,7 +78,7 @@ Result<std::string> RegularFile::read(std::size_t bytes_max) const {
     if (static_cast<std::uint64_t>(about_.st_size) > bytes_max) {
         return too_large();
     }
-    // The size in stat cannot be relied on: it is 0 for files of the kernel, and other files may grow.
+    // The size that fstat() reports is unreliable: it is 0 for files in /proc, and a file may grow while it is read.
     std::string text;
     constexpr std::size_t block = 1 << 16;
     for (std::size_t expected = static_cast<std::size_t>(about_.st_size);; expected = 0) {

@@ -22,8 +22,8 @@ class RegularFile {
   public:
     /// kind  what the file should contain, for messages: "an experiment file".
     ///
-    /// A refusal names the path. NotFound: the file does not exist. InvalidArgument: the path is a folder, pipe, device
-    /// or socket. Unavailable: all other errors.
+    /// A refusal names the path. NotFound: the file does not exist. FailedPrecondition: the path is a folder, pipe,
+    /// device or socket. Unavailable: all other errors.
     static base::Result<RegularFile> open(const std::string& path, std::string_view kind,
                                           Links links = Links::Followed);
 
@@ -35,8 +35,8 @@ class RegularFile {
     const struct stat& about() const { return about_; }
     /// Returns the contents of the file. Refused with InvalidArgument if it has more than bytes_max bytes.
     base::Result<std::string> read(std::size_t bytes_max) const;
-    /// Reads bytes from the given offset. Returns the number of bytes read, which is smaller than requested at the end
-    /// of the file.
+    /// Reads bytes from the given offset. Returns the number of bytes read. It is smaller than requested at the end of
+    /// the file and after an error.
     std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
 
   private:
@@ -51,8 +51,8 @@ class RegularFile {
 /// Opens a file and returns its contents.
 base::Result<std::string> read_file(const std::string& path, std::string_view kind, std::size_t bytes_max);
 
-/// Returns what a path is if it is not a regular file: "a folder", "a pipe", "a device", "a socket", "a link". Returns
-/// an empty string for a regular file.
+/// Returns the kind of a file that is not regular: "a folder", "a pipe", "a device", "a socket", "a link". Returns an
+/// empty string for a regular file.
 std::string_view other_than_file(mode_t mode);
 
 } // namespace evod::files

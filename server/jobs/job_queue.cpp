@@ -50,8 +50,8 @@ void JobQueue::start_thread() {
 void JobQueue::work() {
     pthread_setname_np(pthread_self(), options_.name.c_str());
     if (options_.niceness != 0) {
-        // On Linux each thread has its own niceness. If the call fails, the thread only competes more with other
-        // threads.
+        // On Linux each thread has its own niceness. If the call fails, the thread keeps the niceness of the
+        // process, which is harmless.
         (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), options_.niceness);
     }
     std::unique_lock lock{mutex_};

@@ -3,7 +3,7 @@
 // Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
 // Owner        the object whose jobs it runs. A job owns its data and delivers its result itself.
-// Threads      the queue starts a thread when a job finds no idle one. Any thread may call add().
+// Threads      the queue starts a thread when a job is added and no thread is idle. Any thread may call add().
 // Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace evod::jobs {
 
 class JobQueue {
   public:
-    /// stop  is requested by the caller, and when the queue is destroyed.
+    /// stop  requested when the caller cancels the job and when the queue is destroyed.
     using Job = std::function<void(const std::stop_token& stop)>;
 
     struct Options {
@@ -40,7 +40,8 @@ class JobQueue {
 
     /// Adds a job.
     ///
-    /// returns  cancels the job. A job that still waits is run with `stop` already requested.
+    /// returns  a handle that cancels the job. A job that is cancelled while it waits still runs, with `stop`
+    ///          requested.
     std::stop_source add(Job job);
     /// The first thread, for reading its CPU time. Only valid with Options::start_now.
     pthread_t handle() { return threads_.front().native_handle(); }
@@ -60,7 +61,7 @@ class JobQueue {
     std::vector<std::stop_source> running_;
     std::size_t idle_threads_ = 0;
     bool stopping_ = false;
-    std::vector<std::thread> threads_; // last member, because the threads use the others
+    std::vector<std::thread> threads_; // last member, because the threads use the members above
 };
 
 } // namespace evod::jobs

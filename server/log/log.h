@@ -22,13 +22,14 @@ enum class Level { Trace, Debug, Info, Warn, Error };
 constexpr std::array<const char*, 5> level_names{"trace", "debug", "info", "warn", "error"};
 enum class Format { Text, Json };
 
-/// The subject of a message; unknown fields are empty. The sentence also contains the subject.
+/// What a message is about, as separate fields of a JSON line. The message itself must also contain this information.
 struct Fields {
     std::optional<std::uint64_t> session = {};
     std::string client = {}, world = {}, code = {}; // empty: unknown
 };
 
-/// Sets the level and format of all later messages. Before the first call, messages are text from Level::Info on.
+/// Sets the least severe level that is logged, and the format. Before the first call they are Level::Info and
+/// Format::Text.
 void begin(Level least, Format format);
 Level level_named(std::string_view name); // name: one of level_names
 
@@ -39,11 +40,12 @@ void write(Level level, const Fields& fields, std::string_view message);
 /// fields are omitted. Invalid UTF-8 becomes U+FFFD.
 std::string json_line(std::chrono::system_clock::time_point time, Level level, const Fields& fields,
                       std::string_view message);
-/// Replaces control characters, except line ends, by '?'.
+/// Replaces control characters, except line ends, with '?'.
 std::string plain_line(std::string_view message);
 
+/// A function object that formats and writes a message.
 template <Level level>
-struct Says {
+struct LogFunction {
     template <class... Arguments>
     void operator()(const Fields& fields, fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
         if (wanted(level)) {
@@ -55,10 +57,10 @@ struct Says {
         (*this)(Fields{}, text, std::forward<Arguments>(arguments)...);
     }
 };
-inline constexpr Says<Level::Trace> trace;
-inline constexpr Says<Level::Debug> debug;
-inline constexpr Says<Level::Info> info;
-inline constexpr Says<Level::Warn> warn;
-inline constexpr Says<Level::Error> error;
+inline constexpr LogFunction<Level::Trace> trace;
+inline constexpr LogFunction<Level::Debug> debug;
+inline constexpr LogFunction<Level::Info> info;
+inline constexpr LogFunction<Level::Warn> warn;
+inline constexpr LogFunction<Level::Error> error;
 
 } // namespace evod::log

@@ -17,7 +17,8 @@ namespace evod::metrics {
 /// A number that starts at 0 and only increases.
 class Counter {
   public:
-    // There is only one writer, so an atomic increment is not needed. It would cost more than the counted work.
+    // There is only one writer, so a load and a store suffice. An atomic increment would cost more than the counted
+    // work.
     void add(std::uint64_t count = 1) { value_.store(value() + count, std::memory_order_relaxed); }
     std::uint64_t value() const { return value_.load(std::memory_order_relaxed); }
 
@@ -61,7 +62,7 @@ class TimeHistogram {
         sum_ns_.add(ns * times);
     }
 
-    /// bucket  0 to bounds.size().
+    /// The number of measurements in a bucket. bucket  its index, 0 to bounds.size().
     std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
     std::uint64_t count() const {
         std::uint64_t all = 0;
@@ -73,8 +74,8 @@ class TimeHistogram {
     double sum_s() const { return static_cast<double>(sum_ns_.value()) * 1e-9; }
 
   private:
-    /// Finds the bucket without a branch, because the bucket is unpredictable. Numbers of equal bit width differ by
-    /// less than a factor of 2, so at most one bound lies between them.
+    /// Finds the bucket without a branch, because a branch would be mispredicted often. Numbers of equal bit width
+    /// differ by less than a factor of 2, so at most one bound is between them.
     static std::size_t bucket_of(std::uint64_t ns) {
         const std::size_t bucket = first_bucket[static_cast<std::size_t>(std::bit_width(ns))];
         return bucket + (ns > bounds_ns[bucket] ? 1 : 0);

@@ -24,10 +24,10 @@ class Family {
     v1::MetricFamily* family_;
 };
 
-/// Names follow the rules of Prometheus: the name of a counter ends in _total, the name of a metric with a unit ends in
-/// the unit.
+/// Each function adds an empty family. Names must follow the rules of Prometheus: the name of a counter ends in _total,
+/// the name of a metric with a unit ends in the unit.
 ///
-/// help  one sentence without a full stop.
+/// help  a description of the metric: one sentence without a full stop.
 Family add_counter(v1::Metrics& to, const char* name, const char* help);
 Family add_gauge(v1::Metrics& to, const char* name, const char* help);
 Family add_histogram(v1::Metrics& to, const char* name, const char* help);

@@ -44,7 +44,7 @@ double start_time_s() {
 } // namespace
 
 Process read_process() {
-    // Computed only once, because each calculation would give a slightly different result as the clock is adjusted.
+    // Computed only once: when the clock is adjusted, a second computation would give a slightly different result.
     static const double started = start_time_s();
     Process process{.start_time_s = started, .cpu_s = seconds_on(CLOCK_PROCESS_CPUTIME_ID)};
     std::uint64_t virtual_pages = 0, resident_pages = 0;

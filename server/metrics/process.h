@@ -18,7 +18,7 @@ struct Process {
 /// Values that the system does not report are 0.
 Process read_process();
 
-/// CPU time of a thread that was not joined yet; nullopt if the system does not report it.
+/// CPU time of a thread that has not been joined; nullopt if the system does not report it.
 std::optional<double> cpu_s_of(pthread_t thread);
 
 } // namespace evod::metrics

@@ -11,7 +11,7 @@ struct Traffic {
     Counter connections; // accepted connections
     Counter requests;    // readable requests, including those that were refused
     Counter received_bytes, sent_control_bytes, sent_stream_bytes; // without the overhead of TLS
-    Counter snapshots_sent;                                        // one for each island and subscription
+    Counter snapshots_sent;                                        // counted per island and subscription
     Counter snapshots_dropped; // snapshots that newer ones replaced before they were sent
     Counter events_dropped;    // events that were not sent because a session was too slow
 };

@@ -1,7 +1,7 @@
 // Worlds: the metrics of each world that exists.
 //
 // Threads      the simulation thread adds worlds and updates the metrics. Any thread may call list().
-// Full         the number of worlds bounds the size.
+// Full         never: it contains one entry per world, and the number of worlds is limited.
 #pragma once
 
 #include "server/metrics/counters.h"
@@ -23,7 +23,7 @@ struct World {
 
 class Worlds {
   public:
-    /// Adds a world. list() contains it as long as the caller keeps the result.
+    /// Adds a world. list() contains the world as long as the caller keeps the result.
     std::shared_ptr<World> add(std::string name);
     /// Returns all worlds, sorted by name.
     std::vector<std::shared_ptr<const World>> list() const;

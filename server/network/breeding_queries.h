@@ -2,8 +2,8 @@
 // thread may write to that file.
 //
 // Owner        the dispatcher, on the network thread.
-// Full         `at_once` queries run at the same time, at most one per session. The others wait in a queue. Its length
-//              is bounded because the number of unanswered requests of each session is limited.
+// Full         `at_once` queries run at the same time, at most one per session. Further queries wait in a queue.
+//              The limit of unanswered requests per session also limits the length of the queue.
 #pragma once
 
 #include "server/jobs/job_queue.h"
@@ -55,7 +55,7 @@ class BreedingQueries {
     LimitCounters& limit_counters_;
     std::deque<Asked> waiting_;
     std::list<Work> under_way_;
-    jobs::JobQueue jobs_{{.name = "breeding", .threads_max = at_once}}; // last member, because its jobs use the others
+    jobs::JobQueue jobs_{{.name = "breeding", .threads_max = at_once}}; // last member, because its jobs use the rest
 };
 
 } // namespace evod::network

@@ -5,7 +5,7 @@
 
 namespace evod::network {
 
-/// The complete description except the limits, which depend on the server's options. It is built on the first call.
+/// Returns the complete description except the limits, which depend on the server's options. The first call builds it.
 const v1::Description& description();
 
 } // namespace evod::network

@@ -31,9 +31,10 @@ void Exports::begin(Session& session, std::uint64_t request_id, const replay::St
     if (exports_.size() + cancelled_.size() >= exports_max) {
         limit_counters_.met(Limit::Exports);
         return session.answer(
-            refused(request_id, refusal(RefusalCode::ResourceExhausted,
-                                        std::to_string(exports_max) + " exports are running already: try again",
-                                        base::Reason::ExportsMax)));
+            refused(request_id,
+                    refusal(RefusalCode::ResourceExhausted,
+                            std::to_string(exports_max) + " exports are already running: try again when one has ended",
+                            base::Reason::ExportsMax)));
     }
     Export begun{++last_id_, std::make_unique<runtime::ExportJob>(jobs_, run, wanted)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
@@ -44,15 +45,16 @@ void Exports::go_on(Session& session, std::uint64_t request_id, const v1::Contin
     if (found == exports_.end() || found->second.id != request.export_id()) {
         return session.answer(
             refused(request_id, {.code = RefusalCode::NotFound,
-                                 .message = "this session has no such export: start one with export_run",
+                                 .message = "this session has no export with this id: start one with export_run",
                                  .violations = {{"continue_export.export_id", "the id of the running export",
                                                  std::to_string(request.export_id())}},
                                  .reason = base::Reason::ExportNotFound}));
     }
     if (found->second.asked) {
-        return session.answer(refused(request_id, refusal(RefusalCode::FailedPrecondition,
-                                                          "the previous part is not answered yet: wait for it",
-                                                          base::Reason::ExportEnded)));
+        return session.answer(
+            refused(request_id, refusal(RefusalCode::FailedPrecondition,
+                                        "the previous request for a part is not answered yet: wait for its answer",
+                                        base::Reason::ExportEnded)));
     }
     ask(session, request_id, found->second);
 }
@@ -65,7 +67,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
             if (!part && part.error().code == RefusalCode::FailedPrecondition) {
                 limit_counters_.met(Limit::ExportPatience);
             }
-            came(number, id, !part || part->last);
+            on_part(number, id, !part || part->last);
             const auto asking = weak.lock();
             if (!asking) {
                 return;
@@ -85,7 +87,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     });
 }
 
-void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
+void Exports::on_part(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
     if (found == exports_.end() || found->second.id != id) {
         return; // the session has started another export in the meantime

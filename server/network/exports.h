@@ -1,7 +1,7 @@
 // Exports: sends tables of stored runs to clients, at most one export per session at a time.
 //
 // Owner        the dispatcher, on the network thread. A job queue produces the parts (runtime/export_job.h).
-// Full         while exports_max exports are running, a new one is refused.
+// Full         while exports_max exports are running, a new export is refused.
 #pragma once
 
 #include "server/network/session.h"
@@ -36,13 +36,14 @@ class Exports {
     };
 
     void ask(Session& session, std::uint64_t request_id, Export& from);
-    void came(std::uint64_t session, std::uint64_t id, bool last);
+    /// Called on the network thread when the job has produced a part or a refusal. last  true: the export has ended.
+    void on_part(std::uint64_t session, std::uint64_t id, bool last);
     void cancel(std::map<std::uint64_t, Export>::iterator of);
 
     runtime::Outbox& outbox_;
     LimitCounters& limit_counters_;
     std::uint64_t last_id_ = 0;
-    jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // outlives the exports
+    jobs::JobQueue jobs_{{.name = "export", .threads_max = exports_max}}; // must outlive the exports
     std::map<std::uint64_t, Export> exports_;                             // key: number of the session
     std::vector<std::unique_ptr<runtime::ExportJob>> cancelled_; // cancelled exports whose jobs are still finishing
 };

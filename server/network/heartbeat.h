@@ -1,7 +1,7 @@
 // Heartbeat: checks for /healthz whether the simulation thread responds.
 //
 // Owner        the server, on the network thread.
-// Full         the mailbox contains at most one call of the heartbeat. All callers wait for the same call.
+// Full         the mailbox contains at most one call from the heartbeat. All pending checks wait for that call.
 #pragma once
 
 #include "server/runtime/mailbox.h"
@@ -32,7 +32,7 @@ class Heartbeat {
     runtime::Mailbox& mailbox_;
     runtime::Outbox& outbox_;
     bool asked_ = false, stopped_ = false;
-    std::set<boost::asio::steady_timer*> waiting_; // timers of the waiting callers; the response cancels them
+    std::set<boost::asio::steady_timer*> waiting_; // timers of the pending checks; answered() cancels them
 };
 
 } // namespace evod::network

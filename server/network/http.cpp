@@ -33,7 +33,7 @@ bool is_too_long(boost::system::error_code error) {
     return error == http::error::header_limit || error == http::error::buffer_overflow;
 }
 
-/// Returns the error page if the request is invalid, whatever its path; nullopt if the request is valid.
+/// Returns an error page if the request is invalid; nullopt if it is valid. Does not check the path.
 std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
     if (is_too_long(error)) {
         return Http::Page{.status = http::status::request_header_fields_too_large,
@@ -46,7 +46,7 @@ std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser
     }
     if (request.get().method() != http::verb::get && request.get().method() != http::verb::head) {
         return Http::Page{.status = http::status::method_not_allowed,
-                          .text = "this server only has pages to read: use GET or HEAD\n"};
+                          .text = "this server does not support other methods: use GET or HEAD\n"};
     }
     if (!request.is_done()) {
         return Http::Page{.status = http::status::bad_request, .text = "send the request without a body\n"};
@@ -118,12 +118,12 @@ void Http::close() {
 asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
     boost::beast::tcp_stream stream{std::move(socket)};
     connections_.insert(&stream);
-    // may contain a complete request and the start of the next one
+    // The buffer may contain a complete request and the start of the next one.
     boost::beast::flat_buffer buffer{2 * http_header_bytes_max};
     boost::system::error_code error;
     for (bool goes_on = true; goes_on && !closed_;) {
         Parser request;
-        // An approximate limit for the parser; the exact limit is checked below.
+        // The parser applies its limit only approximately. The exact limit is checked below.
         request.header_limit(2 * http_header_bytes_max);
         stream.expires_after(http_request_timeout);
         std::size_t header_bytes = 0;

@@ -1,7 +1,7 @@
 // HTTP: read-only pages for monitoring. Every client that can connect to the port may read them.
 //
 // Owner        the server, on the network thread. Each connection has one coroutine.
-// Full         limits.h bounds the number of connections, the size of a request's header and the time for a request.
+// Full         limits.h limits the number of connections, the size of a request's header and the time for a request.
 // Source       RFC 9110 and RFC 9112. Boost.Beast parses requests and writes answers.
 #pragma once
 

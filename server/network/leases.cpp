@@ -28,7 +28,7 @@ void Leases::await_end(const std::string& world, Lease& lease) {
         const auto ended = leases_.find(world);
         if (error || ended == leases_.end() ||
             ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now()) {
-            return; // the lease was renewed just before the timer expired
+            return; // end() or renew() was called just before the timer expired
         }
         ended->second.client_key.clear();
         await_end(world, ended->second);

@@ -1,5 +1,5 @@
-// Leases: limit the time for which a client may hold a world that it steps with RunUntilTick. If the client disconnects
-// or stops renewing the lease, the lease expires and the world continues for the other clients.
+// Leases: limit how long a client that steps a world with RunUntilTick can keep the world paused. If the client
+// disconnects or stops renewing its lease, the lease expires and the world continues for the other clients.
 //
 // Owner        the dispatcher, on the network thread. The simulation decides whether a world has a lease.
 #pragma once
@@ -15,8 +15,8 @@ namespace evod::network {
 
 class Leases {
   public:
-    /// expired  called when a lease expires, then again every lease_time until end() or begin() is called for that
-    ///          world.
+    /// expired  called when the lease of a world expires, and again every lease_time until end() or begin() is called
+    ///          for the world.
     Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> expired)
         : context_{context}, expired_{std::move(expired)} {}
 

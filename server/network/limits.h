@@ -17,12 +17,12 @@
 
 namespace evod::network {
 
-// The table in limits.cpp states what each limit bounds and what happens when it is reached.
+// The table in limits.cpp describes each limit and what the server does when the limit is reached.
 constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
 constexpr std::size_t watched_islands_max = 16'384; // four times the number of islands in the largest world
 constexpr double snapshot_rate_hz_max = 120;
-// Lower rates are raised to this one, because the period of a much lower rate would overflow the clock.
+// The server raises lower rates to this rate, because the period of a much lower rate would overflow the clock.
 constexpr double snapshot_rate_hz_min = 1e-6;
 constexpr std::uint32_t retries_kept = 1000;
 constexpr std::uint32_t client_keys_max = 256;
@@ -31,7 +31,7 @@ constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
 constexpr std::chrono::seconds stalled_timeout{10};
 constexpr std::chrono::seconds lease_time{5};
-constexpr std::uint32_t requests_per_s_max = 50'000; // higher than the rate of a client that waits for each answer
+constexpr std::uint32_t requests_per_s_max = 50'000; // a client that waits for each answer never reaches this rate
 constexpr std::uint32_t request_burst_max = 5'000;
 // A long frame counts as several frames, in proportion to the cost of reading and answering it.
 constexpr std::size_t bytes_per_turn = 64, answer_bytes_per_turn = 1 << 10;
@@ -92,10 +92,10 @@ enum class Limit : std::uint8_t {
 
 struct LimitRow {
     Limit limit;
-    std::string_view name; // name of the field in v1::Limits
-    std::uint64_t value;   // default value
-    std::string_view of;   // description of the bounded quantity
-    std::string_view then; // what the server does when the limit is reached
+    std::string_view name;    // name of the field in v1::Limits
+    std::uint64_t value;      // default value
+    std::string_view limited; // the limited quantity, in words
+    std::string_view effect;  // what the server does when the limit is reached
 };
 
 /// One row per Limit, in the order of the enum.
@@ -153,7 +153,8 @@ constexpr std::chrono::seconds farewell_timeout{1}; // time to send the last byt
 constexpr std::chrono::milliseconds accept_pause{100};
 // File descriptors reserved for run files. If the system allows only few, an eighth of them is reserved instead.
 constexpr std::uint64_t descriptors_kept = 32;
-// Number of refused connections that may receive a Goodbye at the same time. Further ones are closed without a Goodbye.
+// Number of refused connections that may receive a Goodbye at the same time. Further connections are closed without a
+// Goodbye.
 constexpr std::size_t farewells_max = 64;
 
 // Constants for HTTP.

@@ -23,9 +23,10 @@ base::Result<void> Listener::check(const std::string& address, const char* optio
     if (!error) {
         return {};
     }
-    return base::refusal(base::RefusalCode::InvalidArgument,
-                         "cannot listen on '" + address + "', which is not an IP address: give " + option +
-                             " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
+    return base::refusal(
+        base::RefusalCode::InvalidArgument,
+        std::string{option} + ": got '" + address +
+            "', allowed the IP address of an interface, such as 127.0.0.1, or 0.0.0.0 for all interfaces");
 }
 
 base::Result<Listener> Listener::open(asio::io_context& context, const std::string& address, std::uint16_t port,
@@ -60,7 +61,7 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
             names.port);
     }
     if (error == asio::error::access_denied) {
-        return refused(std::string{"ports below 1024 need privileges: choose another with "} + names.port);
+        return refused(std::string{"ports below 1024 require privileges: choose another port with "} + names.port);
     }
     if (error) {
         return refused(error.message());
@@ -76,8 +77,8 @@ rlim_t descriptors_max() {
     return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
-/// Whether this descriptor is one of those reserved for run files. The system always assigns the lowest free number, so
-/// a high number means that few descriptors are free.
+/// Whether so few descriptors are free that the rest is reserved for run files. The system always assigns the lowest
+/// free number, so a high number means that few descriptors are free.
 bool is_among_the_last(int descriptor) {
     const rlim_t most = descriptors_max();
     return static_cast<rlim_t>(descriptor) + std::min(descriptors_kept, most / 8) >= most;
@@ -104,7 +105,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
                 log::warn("cannot accept a connection: {}; new connections wait{}", error.message(),
                           error == asio::error::no_descriptors
                               ? " until one of the " + std::to_string(descriptors_max()) +
-                                    " file descriptors is free: allow evod more (ulimit -n, or systemd's LimitNOFILE)"
+                                    " file descriptors is free: allow more with ulimit -n or systemd's LimitNOFILE"
                               : "");
             }
             pause.expires_after(accept_pause);

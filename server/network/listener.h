@@ -17,19 +17,19 @@ namespace evod::network {
 
 class Listener {
   public:
-    /// Opens the port. If that fails, the refusal states how to solve the problem.
-    ///
-    /// address   the address of an interface: "127.0.0.1", "0.0.0.0", "::1".
-    /// port      0: any free port.
-    /// names     the command-line options for address and port, as refusals name them.
+    /// The command-line options for address and port, for messages.
     struct Names {
         const char* address = "--bind";
         const char* port = "--port";
     };
     /// Checks that the text is an IP address, without opening a port.
     ///
-    /// option  the command-line option, as the refusal names it.
+    /// option  the command-line option for the address, for the message of a refusal.
     static base::Result<void> check(const std::string& address, const char* option);
+    /// Opens the port. If that fails, the refusal states how to solve the problem.
+    ///
+    /// address  the IP address of an interface: "127.0.0.1", "0.0.0.0", "::1".
+    /// port     0: any free port.
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address, std::uint16_t port,
                                        const Names& names);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address,

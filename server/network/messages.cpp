@@ -20,7 +20,7 @@ void log_refusal(std::uint64_t session, const std::string& by, const v1::Respons
         return;
     }
     const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
-    log::debug({.session = session, .client = by, .code = code}, "session {}: {} is refused request {}: {}: {}",
+    log::debug({.session = session, .client = by, .code = code}, "session {}: {}: request {} is refused: {}: {}",
                session, by, response.request_id(), code, response.status().message());
 }
 

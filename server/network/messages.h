@@ -22,7 +22,7 @@ SharedBytes encode_goodbye(const base::Refusal& why);
 
 /// Logs a refusal at Level::Debug. Logs nothing if the response is not a refusal.
 ///
-/// by  the client whose request is refused.
+/// by  the client that sent the request, as Session::by() returns it.
 void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response);
 void log_refusal(std::uint64_t session, const std::string& by, std::uint64_t request_id, const base::Refusal& refused);
 

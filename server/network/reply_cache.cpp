@@ -7,7 +7,7 @@
 namespace evod::network {
 namespace {
 
-/// A 128-bit hash of a request. It reveals whether the same id is used for a different request.
+/// A 128-bit hash of a request or a key. It shows whether a client reuses an id for a different request.
 base::StateHash fingerprint(std::string_view bytes) {
     base::EntityHash hash{0, bytes.size()};
     while (!bytes.empty()) {

@@ -45,10 +45,10 @@ class ReplyCache {
     enum class Verdict {
         New,       // the caller must apply the command, then call finish() or forget(); the cache keeps the waiter
         Known,     // the command is known: the cache has called the waiter, or will call it
-        Different, // another request has used this id; the cache drops the waiter
+        Different, // a different request has used this id; the cache drops the waiter
         TooOld,    // the answer is no longer cached; the cache drops the waiter
     };
-    /// The key for the other functions. Two users never have the same key.
+    /// Returns the value for the parameter `client_key` of the other functions. It differs between users.
     ///
     /// user  name of the session's token; empty: the session has no token.
     static std::string key_of(const std::string& user, const std::string& client_key);
@@ -80,7 +80,7 @@ class ReplyCache {
     };
     struct Key {
         std::map<std::uint64_t, Command> commands;
-        std::uint64_t forgotten_up_to = 0; // smaller ids are too old, too, unless `commands` contains them
+        std::uint64_t forgotten_up_to = 0; // ids up to this one are too old unless `commands` contains them
         std::size_t pending_count = 0;
         bool used_again = false;              // the key has sent more than one command
         std::list<std::string>::iterator use; // position of this key in used_once_ or used_again_
@@ -91,8 +91,8 @@ class ReplyCache {
     Key& touch(const std::string& client_key, std::uint64_t request_id);
     void trim(Key& key);
     void trim_keys();
-    /// Evicts the least recently used keys of a list until the limits hold. Does not evict `spared`, which was just
-    /// used.
+    /// Evicts the least recently used keys of a list until the cache is within its limits. Does not evict `spared`,
+    /// which was just used.
     void trim_keys(std::list<std::string>& used, const std::string& spared);
     bool too_much() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
     void remember_evicted(const std::string& client_key, const Key& key);

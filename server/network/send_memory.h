@@ -61,7 +61,7 @@ class SendMemory {
     };
 
     std::size_t bytes() const { return bytes_; }
-    /// Number of bytes above the limit.
+    /// Number of bytes by which the limit is exceeded.
     std::size_t excess() const { return bytes_ > bytes_max_ ? bytes_ - bytes_max_ : 0; }
     /// Allows `exceeded` to be called again.
     void rearm() { reported_ = false; }

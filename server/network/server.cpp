@@ -93,7 +93,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (auto opened = server->open_http(); !opened) {
         return opened.error();
     }
-    std::signal(SIGPIPE, SIG_IGN); // if the log's pipe is closed, writing to it must not end the server
+    std::signal(SIGPIPE, SIG_IGN); // writing the log to a closed pipe must not end the server
     return server;
 }
 
@@ -153,7 +153,7 @@ base::Result<void> Server::open_archive() {
     const run_file::RunIdentity* there = archive_->identity_of(wanted.name);
     const auto differs = [&](const std::string& in_what) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
-                             .message = path + " holds a world \"" + wanted.name + "\" with other " + in_what +
+                             .message = path + " contains a world \"" + wanted.name + "\" with other " + in_what +
                                         ": use another --data folder, or start without --experiment, --seed "
                                         "and --population, and reset or delete that world",
                              .violations = {}};
@@ -201,8 +201,8 @@ base::Result<std::string> Server::world_to_begin() const {
         all += (all.empty() ? "" : ", ") + name;
     }
     return refusal(base::RefusalCode::FailedPrecondition,
-                   "--speed and --start apply to one world, but " + options_.data_folder + " holds " + all +
-                       ": start without them, then use evoctl --world NAME speed and run");
+                   "--speed and --start apply to one world, but " + options_.data_folder + " contains the worlds " +
+                       all + ": start without them, then use evoctl --world NAME speed and run");
 }
 
 std::optional<base::Seed> Server::first_seed() const {
@@ -314,7 +314,7 @@ void Server::wait_for_signal() {
             log::info("{}: shutting down", name);
             go_away();
         } else {
-            log::warn("{} again: ending at once; after a restart worlds continue from what is on the disk", name);
+            log::warn("{} again: ending at once; after a restart the worlds continue from the state on the disk", name);
             signals_.remove(signal); // restores the default action: the next signal ends the process
             std::raise(signal);
         }
@@ -340,7 +340,7 @@ void Server::stop() {
 }
 
 void Server::start_housekeeping() {
-    looked_ = clock_.now();
+    checked_at_ = clock_.now();
     schedule_housekeeping();
 }
 
@@ -351,10 +351,10 @@ void Server::schedule_housekeeping() {
             return;
         }
         check_tokens();
-        // If the timer fired late, the server itself was busy. Clients must not be blamed for that time.
+        // If the timer fired late, the server itself was busy. That time does not count against the clients.
         const auto now = clock_.now();
         const auto watched =
-            std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * housekeeping_interval);
+            std::min<runtime::Clock::duration>(now - std::exchange(checked_at_, now), 2 * housekeeping_interval);
         for (const auto& [number, session] : sessions_) {
             session->check_progress(watched);
         }
@@ -380,13 +380,13 @@ void Server::check_tokens() {
     if (!gate_->refresh()) {
         return;
     }
-    if (gate_->trouble()) {
-        log::error("{}; new connections are refused until this is fixed", gate_->trouble()->message);
+    if (gate_->file_problem()) {
+        log::error("{}; new connections are refused until this is fixed", gate_->file_problem()->message);
     }
     // fail() may remove sessions from the table, so the loop iterates over a copy.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions) {
-        if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor())) {
+        if (session->greeted() && !gate_->file_problem() && !gate_->is_still_valid(session->visitor())) {
             session->fail(refusal(base::RefusalCode::Unauthenticated,
                                   "the token has been revoked: ask the operator of the server for a new one",
                                   base::Reason::TokenRevoked));
@@ -421,17 +421,17 @@ void Server::accepted(tcp::socket socket) {
                                       "the server is shutting down: connect again after the restart",
                                       base::Reason::ServerGoingAway));
     }
-    const auto is_neighbour = [&](const auto& other) {
-        return other.second->neighbourhood() == session->neighbourhood();
+    const auto has_same_address = [&](const auto& other) {
+        return other.second->address_prefix() == session->address_prefix();
     };
     const SessionBounds& bounds = options_.session_bounds;
     const bool all_full = sessions_.size() >= bounds.sessions_max;
-    const bool address_full = std::ranges::count_if(sessions_, is_neighbour) >= bounds.sessions_per_address_max;
+    const bool address_full = std::ranges::count_if(sessions_, has_same_address) >= bounds.sessions_per_address_max;
     if (all_full || address_full) {
         limit_counters_.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
         // A silent connection must not keep other clients out: the oldest session without a Hello is closed.
         const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
-            return !other.second->greeted() && (!address_full || is_neighbour(other));
+            return !other.second->greeted() && (!address_full || has_same_address(other));
         });
         const bool may_get_goodbye = connections_ - sessions_.size() <= farewells_max;
         if (silent == sessions_.end()) {
@@ -443,7 +443,7 @@ void Server::accepted(tcp::socket socket) {
                                                           " sessions: try again when one has ended",
                                        base::Reason::SessionsMax));
             } else {
-                --connections_; // the connection was closed without a Goodbye
+                --connections_; // the connection is closed without a Goodbye
             }
             return;
         }

@@ -47,17 +47,17 @@ struct ServerOptions {
     simulation::CreateWorld first_world; // created if no world has this name
     bool first_world_asked = false;      // false: first_world is created only if there is no world at all
     bool first_seed_asked = false;       // true: if the world is already stored, it must have the seed of first_world
-    // Applied to first_world before any other command. If the user did not ask for first_world, it is applied to the
+    // Speed that is set before any other command. It applies to first_world if the user asked for it, otherwise to the
     // only world, or to `default` if there are several worlds. If there are several and none is named `default`, the
     // server does not start.
     std::optional<simulation::Speed> first_speed;
-    bool first_run = false; // run the world without a goal
+    bool first_run = false; // run the same world without a goal
 };
 
 class Server {
   public:
-    /// Restores the worlds of the data folder and opens the port. A refusal is a sentence for the user who starts the
-    /// server.
+    /// Restores the worlds of the data folder and opens the port. The message of a refusal is written for the user who
+    /// starts the server.
     static base::Result<std::unique_ptr<Server>> open(ServerOptions options);
     ~Server();
 
@@ -84,7 +84,7 @@ class Server {
     explicit Server(ServerOptions options);
     base::Result<void> open_archive();
     base::Result<void> open_http();
-    /// Whether the options require that the first world is created.
+    /// Whether run() must create first_world.
     bool creates_first_world() const;
     /// Name of the world to which first_speed and first_run apply.
     base::Result<std::string> world_to_begin() const;
@@ -94,14 +94,14 @@ class Server {
     void schedule_housekeeping();
     void trim_heap(runtime::Clock::time_point now);
     void check_tokens();
-    /// Closes the sessions that use the most memory until the limit of SendMemory holds.
+    /// Closes the sessions that use the most memory until all sessions together are within the limit of SendMemory.
     void evict_sessions();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
     /// Sends the next islands of the newest snapshots, then lets the thread do other work.
     void send_snapshots();
     void wait_for_signal();
-    /// Reads the certificate again. If that fails, the server keeps the old one.
+    /// Reads the files of the certificate again. If that fails, the server keeps the old certificate.
     void reread_certificate();
     void go_away();
     v1::Metrics metrics();
@@ -132,7 +132,7 @@ class Server {
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
-    runtime::Clock::time_point looked_, trim_at_;
+    runtime::Clock::time_point checked_at_, trim_at_;
     std::size_t ended_since_trim_ = 0;   // number of sessions
     std::uint64_t answered_at_trim_ = 0; // number of bytes
     std::size_t connections_ = 0;        // sessions, and refused connections that are receiving a Goodbye

@@ -1,4 +1,4 @@
-// The part of Server that collects metrics and checks its health.
+// The part of Server that collects metrics, checks the server's health and serves both over HTTP.
 #include "server/metrics/exposition.h"
 #include "server/metrics/families.h"
 #include "server/metrics/process.h"
@@ -30,9 +30,9 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     const auto worlds = counted.list();
     add_gauge(to, "evod_worlds", "Worlds").add(number(worlds.size()));
     auto ticks = add_counter(to, "evod_ticks_total", "Simulated ticks");
-    auto rate =
-        add_gauge(to, "evod_ticks_per_second", "Ticks in the last second or so; 0 while the world does not run");
-    auto tick_time = add_histogram(to, "evod_tick_seconds", "Time per tick; at full speed with journal and snapshots");
+    auto rate = add_gauge(to, "evod_ticks_per_second",
+                          "Ticks per second, measured over about one second; 0 while the world does not run");
+    auto tick_time = add_histogram(to, "evod_tick_seconds", "Time per tick; at full speed, with journal and snapshots");
     auto snapshot_time = add_histogram(to, "evod_snapshot_seconds",
                                        "Time of the simulation thread to copy a snapshot, without encoding");
     for (const auto& world : worlds) {
@@ -45,11 +45,12 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
 
 void add_queues(v1::Metrics& to, const runtime::Mailbox::Fill& mailbox, const runtime::Outbox::Fill& outbox) {
     add_gauge(to, "evod_mailbox_requests", "Requests waiting for the simulation").add(number(mailbox.waiting));
-    add_gauge(to, "evod_mailbox_requests_max", "Capacity; further requests are refused").add(number(mailbox.capacity));
-    add_gauge(to, "evod_outbox_deliveries", "Answers and events between simulation and network")
+    add_gauge(to, "evod_mailbox_requests_max", "Capacity of the mailbox; further requests are refused")
+        .add(number(mailbox.capacity));
+    add_gauge(to, "evod_outbox_deliveries", "Answers and events that wait between simulation and network")
         .add(number(outbox.deliveries));
     add_gauge(to, "evod_outbox_events", "Events among the deliveries").add(number(outbox.events));
-    add_gauge(to, "evod_outbox_events_max", "Capacity for events; further ones are dropped")
+    add_gauge(to, "evod_outbox_events_max", "Capacity for events; further events are dropped")
         .add(number(outbox.events_max));
 }
 
@@ -65,7 +66,8 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
     for (const auto& [role, count] : by_role) {
         sessions.add(number(count), {{"role", role}});
     }
-    add_gauge(to, "evod_sessions_max", "Capacity; further clients are refused").add(number(sessions_max));
+    add_gauge(to, "evod_sessions_max", "Maximum number of sessions; further clients are refused")
+        .add(number(sessions_max));
     add_gauge(to, "evod_subscriptions", "Subscriptions of all clients")
         .add(number(snapshots), {{"to", "snapshots"}})
         .add(number(events), {{"to", "events"}});
@@ -75,17 +77,17 @@ void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
     add_counter(to, "evod_connections_total", "Accepted connections").add(number(traffic.connections.value()));
     add_counter(to, "evod_requests_total", "Readable requests, including refused ones")
         .add(number(traffic.requests.value()));
-    add_counter(to, "evod_received_bytes_total", "Bytes from clients, without the overhead of TLS")
+    add_counter(to, "evod_received_bytes_total", "Bytes received from clients, without the overhead of TLS")
         .add(number(traffic.received_bytes.value()));
     add_counter(to, "evod_sent_bytes_total",
-                "Bytes to clients, without the overhead of TLS; control: answers and events, stream: snapshots")
+                "Bytes sent to clients, without the overhead of TLS; control: answers and events, stream: snapshots")
         .add(number(traffic.sent_control_bytes.value()), {{"channel", "control"}})
         .add(number(traffic.sent_stream_bytes.value()), {{"channel", "stream"}});
-    add_counter(to, "evod_snapshots_sent_total", "Snapshots sent, each of one island to one subscription")
+    add_counter(to, "evod_snapshots_sent_total", "Snapshots sent, counted per island and subscription")
         .add(number(traffic.snapshots_sent.value()));
     add_counter(to, "evod_snapshots_dropped_total", "Snapshots replaced by newer ones before they were sent")
         .add(number(traffic.snapshots_dropped.value()));
-    add_counter(to, "evod_events_dropped_total", "Events not sent to slow clients")
+    add_counter(to, "evod_events_dropped_total", "Events that were not sent because a client was slow")
         .add(number(traffic.events_dropped.value()));
 }
 
@@ -106,7 +108,7 @@ void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::St
         since ? std::chrono::steady_clock::now() - *since : std::chrono::steady_clock::duration{0};
     add_gauge(to, "evod_journal_waiting_bytes", "Bytes waiting to be written to run files")
         .add(number(thread.waiting_bytes()));
-    add_gauge(to, "evod_journal_waiting_bytes_max", "Bound; beyond it worlds wait for the disk")
+    add_gauge(to, "evod_journal_waiting_bytes_max", "Limit of the waiting bytes; above it, worlds wait for the disk")
         .add(number(recording::StorageThread::waiting_bytes_max));
     add_gauge(to, "evod_journal_lag_seconds", "Age of the oldest waiting bytes; up to 0.2 s is normal")
         .add(std::max(lag.count(), 0.0));
@@ -127,9 +129,11 @@ v1::Metrics Server::metrics() {
     add_sessions(all, sessions_, options_.session_bounds.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
-    add_gauge(all, "evod_client_buffer_bytes", "Memory of all sessions: data to send and incomplete frames")
+    add_gauge(all, "evod_client_buffer_bytes",
+              "Memory of all sessions: data to send, answers in preparation, waiting requests, incomplete frames")
         .add(number(send_memory_.bytes()));
-    add_gauge(all, "evod_client_buffer_bytes_max", "Bound; beyond it the sessions with the most memory are closed")
+    add_gauge(all, "evod_client_buffer_bytes_max",
+              "Limit of that memory; above it, the sessions with the most memory are closed")
         .add(number(client_buffer_bytes_max));
     add_traffic(all, host_.traffic);
     add_limits(all, limit_counters_);
@@ -172,7 +176,7 @@ asio::awaitable<Http::Page> Server::health() {
         co_return ill("the server is shutting down");
     }
     if (!answers) {
-        co_return ill("the simulation has not answered for " + std::to_string(simulation_patience.count()) + " s");
+        co_return ill("the simulation has not responded for " + std::to_string(simulation_patience.count()) + " s");
     }
     const auto state = host_.storage ? host_.storage->state() : v1::STORAGE_STATE_KEEPS_UP;
     if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED) {

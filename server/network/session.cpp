@@ -35,7 +35,7 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , host_{host}
     , number_{number}
     , peer_{transport_.peer()}
-    , neighbourhood_{address_key(peer_.address())}
+    , address_prefix_{address_key(peer_.address())}
     , reader_bytes_{host.send_memory}
     , expected_bytes_{host.send_memory}
     , held_back_bytes_{host.send_memory}
@@ -195,7 +195,7 @@ void Session::update_frame_timer(bool one_came) {
 asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
-    // A frame cannot be late while the session does not read.
+    // The time limit of a frame does not apply while the session does not read.
     within_frame_ = false;
     frame_timer_.cancel();
     do {
@@ -274,7 +274,7 @@ void Session::on_hello(const v1::Hello& hello) {
     if (const auto refused = protocol::refusal_of(hello)) {
         return fail(*refused);
     }
-    auto visitor = host_.admit(hello.token(), neighbourhood_);
+    auto visitor = host_.admit(hello.token(), address_prefix_);
     if (!visitor) {
         return fail(visitor.error());
     }
@@ -310,7 +310,8 @@ void Session::on_hello(const v1::Hello& hello) {
 }
 
 void Session::log_connection(const std::string& what) const {
-    // On the server's own machine every call of evoctl opens a session. These are logged only at Debug.
+    // Every call of evoctl opens a session, usually on the server's own machine. Such sessions are logged only at
+    // Debug.
     const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
     if (log::wanted(level)) {
         log::write(level, {.session = number_, .client = by()},
@@ -332,7 +333,8 @@ void Session::log_closed(std::string_view code, const std::string& why) {
             return;
         }
         if (ungreeted.left_out > 0) {
-            left_out = "; " + std::to_string(std::exchange(ungreeted.left_out, 0)) + " earlier ones are not logged";
+            left_out =
+                "; " + std::to_string(std::exchange(ungreeted.left_out, 0)) + " earlier connections were not logged";
         }
     }
     log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} closed: {}{}", number_,
@@ -388,12 +390,13 @@ void Session::answer(SharedBytes frame) {
     }
     v1::ServerMessage too_large;
     too_large.ParseFromString(frame->substr(codec::header_bytes));
-    enqueue(encode_response(protocol::refusing(
-                too_large.response().request_id(),
-                refusal(base::RefusalCode::ResourceExhausted,
-                        "the answer is " + std::to_string(frame->size() - codec::header_bytes) +
-                            " bytes long, the client accepts " + std::to_string(frame_bytes_max_) + ": ask for less",
-                        base::Reason::AnswerTooLarge))),
+    enqueue(encode_response(
+                protocol::refusing(too_large.response().request_id(),
+                                   refusal(base::RefusalCode::ResourceExhausted,
+                                           "the answer is " + std::to_string(frame->size() - codec::header_bytes) +
+                                               " bytes long, but the client accepts only " +
+                                               std::to_string(frame_bytes_max_) + ": ask for less",
+                                           base::Reason::AnswerTooLarge))),
             Kind::Answer);
 }
 
@@ -410,7 +413,8 @@ void Session::send_unasked(const v1::Response& response) {
 }
 
 void Session::event(const SharedBytes& frame) {
-    // After an event was dropped, all further events are dropped until EventsDropped is sent. It thus marks the gap.
+    // After an event was dropped, all further events are dropped until EventsDropped is sent. The client thus knows
+    // where the gap is.
     if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size())) {
         return enqueue(frame, Kind::Event);
     }
@@ -433,8 +437,7 @@ void Session::send_snapshots() {
     if (!idle_ || !may_send_snapshots()) {
         return wake_writer();
     }
-    // The snapshots are sent directly. With many viewers, waking the writers would cost as much as the rest of the
-    // work.
+    // The snapshots are sent without waking the writer: with many viewers, waking the writers would double the cost.
     std::size_t sent = 0;
     for (; sent < snapshots_at_once && may_send_snapshots(); ++sent) {
         const streaming::OutgoingFrame* const frame = snapshots.next();
@@ -513,8 +516,8 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     queue_.push_back({{host_.send_memory, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
-        log::warn({.session = number_, .client = by()}, "session {}: {} closed: it does not read its answers", number_,
-                  by());
+        log::warn({.session = number_, .client = by()}, "session {}: {} closed: the client does not read its answers",
+                  number_, by());
         close();
         return;
     }
@@ -558,8 +561,8 @@ asio::awaitable<void> Session::write() {
         } else if (!queue_.empty()) {
             // Answers and events are sent first, because they are small and clients wait for them.
             while (!queue_.empty() && sending_.size() < batch_frames_max) {
-                // The request counts as answered now, because the client may send its next request before the write has
-                // completed.
+                // The request counts as answered before the write completes, because the client may send its next
+                // request as soon as it has received the answer.
                 in_flight_ -= queue_.front().kind == Kind::Answer;
                 sending_.push_back(std::move(queue_.front()));
                 queue_.pop_front();
@@ -618,8 +621,9 @@ void Session::check_progress(runtime::Clock::duration watched) {
         stalled_ = {};
     } else if (stalled_ += watched; stalled_ >= stalled_timeout) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        log::warn({.session = number_, .client = by()}, "session {}: {} closed: it has received nothing for {} s",
-                  number_, by(), stalled_timeout.count());
+        log::warn({.session = number_, .client = by()},
+                  "session {}: {} closed: the client has received nothing for {} s", number_, by(),
+                  stalled_timeout.count());
         close();
     }
 }
@@ -638,7 +642,7 @@ std::size_t Session::held_bytes() const {
 void Session::evict() {
     host_.limit_counters.met(Limit::ClientBufferBytes);
     log::warn({.session = number_, .client = by()},
-              "session {}: {} closed: more than {} MiB wait for all clients, {} KiB of them for this one", number_,
+              "session {}: {} closed: all sessions use more than {} MiB of memory, and this one uses {} KiB", number_,
               by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
     close();
 }

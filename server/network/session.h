@@ -6,9 +6,10 @@
 // Full         backpressure differs by kind of message.
 //              Requests: above requests_per_s_max the session pauses reading.
 //              Responses: if more than queued_response_bytes_max are unread, the session is closed.
-//              Events: they are dropped and counted, and EventsDropped reports their number.
-//              Snapshots: of each subscription and island only the newest waits, until earlier ones are acknowledged
-//              and the bandwidth limit allows it.
+//              Events: if more than queued_event_bytes_max are unread, further events are dropped, and EventsDropped
+//              reports their number.
+//              Snapshots: for each subscription and island, only the newest snapshot waits to be sent. It waits until
+//              earlier ones are acknowledged and the bandwidth limit allows it.
 //              A session whose client receives nothing for stalled_timeout is closed.
 #pragma once
 
@@ -76,7 +77,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     /// Starts reading and writing.
     ///
-    /// refusal  if set, the session only sends it as a Goodbye.
+    /// refusal  if set, the session only sends a Goodbye with this refusal.
     void start(const std::optional<base::Refusal>& refusal = {});
 
     std::uint64_t number() const { return number_; }
@@ -86,11 +87,11 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     const access::Visitor& visitor() const { return visitor_; }
-    /// The key for the limits per address: the IPv4 address, or the /64 prefix of the IPv6 address.
-    const std::string& neighbourhood() const { return neighbourhood_; }
+    /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count sessions by it.
+    const std::string& address_prefix() const { return address_prefix_; }
 
-    /// Counts one more unanswered request. Returns false if there are too many; the caller then refuses the request
-    /// with send_unasked().
+    /// Counts one more unanswered request. Returns false if there are already too many; the caller must then refuse the
+    /// request with send_unasked().
     bool admit_request();
     /// Reserves memory for answers in preparation. A negative number releases it when the answer is ready.
     void expect(std::ptrdiff_t bytes);
@@ -111,9 +112,9 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     /// Closes the session if its client has received nothing for stalled_timeout. Must be called periodically.
     ///
-    /// watched  time since the last call during which the server could observe the client.
+    /// watched  the part of the time since the last call in which the server was able to observe the client.
     void check_progress(runtime::Clock::duration watched);
-    /// Number of bytes that closing this session would release.
+    /// Number of bytes that would be released if this session were closed.
     std::size_t held_bytes() const;
     /// Closes the session because all sessions together use too much memory.
     void evict();
@@ -140,7 +141,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     asio::awaitable<void> read();
     /// Limits the time from the first to the last byte of a frame.
     ///
-    /// one_came  a frame was completed since the last call.
+    /// one_came  true: at least one frame was completed since the last call.
     void update_frame_timer(bool one_came);
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
@@ -164,7 +165,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void written(const Queued& queued);
     void wake_writer();
     void log_connection(const std::string& what) const;
-    /// code  may be empty.
+    /// code  name of the refusal's code; empty: the session was not refused.
     void log_closed(std::string_view code, const std::string& why);
     void end();
 
@@ -172,7 +173,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     SessionHost& host_;
     const std::uint64_t number_;
     const tcp::endpoint peer_;
-    const std::string neighbourhood_;
+    const std::string address_prefix_;
     std::string client_;
     access::Visitor visitor_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max(); // the largest body that the client accepts
@@ -187,9 +188,9 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a part of a frame has arrived
     bool begun_ = false;        // the transport is ready for writing
-    bool idle_ = false;         // the writer is waiting for data to send
+    bool idle_ = false;         // the writer waits for data to send
     bool greeted_ = false, finishing_ = false, ended_ = false;
-    bool input_over_ = false; // the client has closed its sending side
+    bool input_over_ = false; // nothing more is read, but pending answers are still sent
     int coroutines_ = 0;      // number of running coroutines
 
     std::deque<Queued> queue_;
@@ -202,7 +203,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in queue_ and sending_
     Transport::Progress progress_;
     runtime::Clock::duration stalled_{}; // time in which the client was observed and received nothing
-    std::size_t in_flight_ = 0;          // number of requests whose answer is not being written yet
+    std::size_t in_flight_ = 0;          // number of requests whose answers the writer has not taken yet
     std::uint64_t dropped_events_ = 0;   // number of dropped events that were not reported yet
     std::uint32_t subscription_id_ = 0;
 };

@@ -34,14 +34,14 @@ class Transport {
     static boost::system::error_code not_tls();
 
     asio::awaitable<Transferred> read_some(asio::mutable_buffer buffer);
-    /// Writes the bytes that the system accepts without waiting, which may be none. Accepts at most buffers_at_once
+    /// Writes as many bytes as the system accepts without waiting, possibly none. Accepts at most buffers_at_once
     /// buffers. With TLS it writes nothing.
     Transferred write_now(std::span<const asio::const_buffer> buffers);
     static constexpr std::size_t buffers_at_once = 16;
     /// Writes all buffers.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 
-    /// Differs from an earlier value if the peer has received data in between.
+    /// How much was sent. Two values differ if the peer has received data between them.
     struct Progress {
         std::uint64_t given = 0;     // number of bytes passed to the system
         std::uint64_t not_taken = 0; // number of these bytes that the peer's system has not acknowledged

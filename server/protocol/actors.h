@@ -1,4 +1,4 @@
-// Actors: converts the cause of a change from text to a message.
+// Actors: converts the cause of a change from a text to the message Actor.
 //
 // The simulation and run files store the cause as text: "user: client address", "client address" for a client without a
 // token, and "evod" for the server itself.
@@ -12,7 +12,7 @@ namespace evod::protocol {
 
 constexpr std::string_view by_the_server = "evod";
 
-/// by  the cause in the text form above.
+/// by  the cause, in the text form described above.
 v1::Actor actor_of(std::string_view by);
 v1::Actor actor_of_kind(v1::ActorKind kind);
 

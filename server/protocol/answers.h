@@ -15,7 +15,7 @@ namespace evod::protocol {
 /// Builds the answer to a command that was applied or refused.
 ///
 /// request_name  name of the field in the request: "set_parameters".
-/// laboratory    its state right after the command.
+/// laboratory    the laboratory in its state right after the command.
 v1::Response answer_of(std::uint64_t request_id, const std::string& request_name,
                        const simulation::Laboratory& laboratory, const base::Result<simulation::Applied>& applied);
 

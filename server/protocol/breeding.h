@@ -1,4 +1,4 @@
-// Converts records of a breeding into messages.
+// Breeding: converts the record of a breeding into a message.
 #pragma once
 
 #include "evod/v1/commands.pb.h"

@@ -24,8 +24,8 @@ using RequestCase = v1::Request::KindCase;
 
 constexpr const char* least_1 = "at least 1";
 
-/// Whether a request contains more assignments than there are parameters. It must then repeat a name, which is invalid
-/// anyway. Without this check, a very long request could block the simulation.
+/// Whether a request contains more assignments than parameters exist. It must then repeat a name, which is invalid.
+/// Without this early check, a very long request could block the simulation.
 bool too_many(int assignments, std::string field, Violations& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
@@ -64,7 +64,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
     return command;
 }
 
-/// Requires that a destructive command names its world, because a client may have forgotten the field.
+/// Requires that a destructive command names its world, because an empty name may be a mistake of the client.
 void need_world(const std::string& world, const char* field, Violations& violations) {
     if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});
@@ -255,11 +255,11 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
         violations.push_back({"export_run.format", "a value of TextFormat, from 1", std::to_string(request.format())});
     }
     if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION) {
-        violations.push_back(
-            {"export_run.generation", "absent except for the population", std::to_string(request.generation())});
+        violations.push_back({"export_run.generation", "absent unless table is RUN_TABLE_POPULATION",
+                              std::to_string(request.generation())});
     }
     if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE) {
-        violations.push_back({"export_run.of", "absent except for the lineage",
+        violations.push_back({"export_run.of", "absent unless table is RUN_TABLE_LINEAGE",
                               "generation " + std::to_string(request.of().generation())});
     }
 }
@@ -347,9 +347,9 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
     } else if (request.has_set_view()) {
         add_faults(request.set_view(), violations);
     } else if (request.has_seek() && !request.seek().has_to()) {
-        violations.push_back({"seek.to", "a moment of the run", "nothing"});
+        violations.push_back({"seek.to", "a RunMoment, which may be empty", "nothing"});
     } else if (request.has_close_replay() && request.close_replay().world().empty()) {
-        violations.push_back({"close_replay.world", "a world opened with open_replay", "nothing"});
+        violations.push_back({"close_replay.world", "the name of a replay opened with open_replay", "nothing"});
     } else if (request.has_export_run()) {
         add_faults(request.export_run(), violations);
     }

@@ -24,8 +24,8 @@ struct Draws {
     simulation::RunId run_id;
 };
 
-/// Returns the command, or a refusal that lists every error in the request. Laboratory::apply later checks what depends
-/// on the state of the world.
+/// Returns the command, or a refusal that lists every error in the request. Laboratory::apply() later checks everything
+/// that depends on the state of the world.
 ///
 /// request  its kind is REQUEST_KIND_COMMAND.
 base::Result<simulation::Command> to_command(const v1::Request& request, const Draws& draws);
@@ -34,12 +34,12 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
 /// command with an unknown field, because without that field the command might have a different effect.
 std::optional<std::string> unknown_field_of(const google::protobuf::Message& message);
 
-/// Returns the invalid fields of a query, subscription, replay or export request. Checks that need other data than the
-/// request are made elsewhere.
+/// Returns the invalid fields of a query, subscription, replay or export request, as far as the request alone shows
+/// them.
 std::vector<base::Violation> faults_of(const v1::Request& request);
 
-/// Returns a world name for a lookup. A text that is too long for a world name is shortened to the length that a
-/// message may contain.
+/// Returns the name by which the laboratory looks up a world. If the text is not a valid name, it is made safe for
+/// messages with quotable(), so that a refusal can contain it.
 std::string lookup_name(const std::string& world);
 
 /// Returns a refusal with INVALID_ARGUMENT that lists every invalid field.

@@ -23,7 +23,7 @@ void append(Violations& violations, const base::Refusal& refused, const std::str
 parameters::Experiment experiment_of_file(const v1::CreateWorld& request, Violations& violations) {
     const std::string field = prefix + "experiment_json";
     if (request.schedule_size() > 0) {
-        violations.push_back({prefix + "schedule", "nothing beside experiment_json",
+        violations.push_back({prefix + "schedule", "empty if experiment_json is set",
                               std::to_string(request.schedule_size()) + " values"});
     }
     auto experiment = parameters::parse_experiment(request.experiment_json());

@@ -39,7 +39,7 @@ std::optional<base::Refusal> refusal_of(const v1::Hello& hello) {
     if (codec::protocol_version < lowest || codec::protocol_version > highest) {
         return base::Refusal{
             .code = base::RefusalCode::FailedPrecondition,
-            .message = "this server has another protocol version: use a client of that version",
+            .message = "client and server support no common protocol version: use a client of the server's version",
             .violations = {{"hello.protocol_version", std::to_string(codec::protocol_version),
                             highest == lowest ? std::to_string(lowest)
                                               : std::to_string(lowest) + " to " + std::to_string(highest)}},

@@ -9,7 +9,7 @@
 
 namespace evod::protocol {
 
-/// Why the server cannot serve this client: invalid fields, or no common protocol version. nullopt: the Hello is valid.
+/// Returns a refusal if a field is invalid or if there is no common protocol version; nullopt if the Hello is valid.
 std::optional<base::Refusal> refusal_of(const v1::Hello& hello);
 
 /// The client's name for logs and actors. It is never empty. It does not contain ": ", because these characters

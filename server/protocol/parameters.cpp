@@ -141,7 +141,7 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
         if (assignment.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             const auto* description = parameters::find_parameter(assignment.name());
             violations.push_back({std::string{field_prefix} + assignment.name(),
-                                  description ? description->allowed() : "the name of a parameter, and a value",
+                                  description ? description->allowed() : "the name of a parameter and a value",
                                   "no value"});
             complete = false;
         } else {
@@ -149,8 +149,8 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
         }
     }
     if (!complete) {
-        // The request will be refused anyway. The other assignments are still checked, but without the state of the
-        // world.
+        // The request will be refused. The other assignments are checked, too, so that the refusal lists all errors
+        // that do not depend on the state of the world.
         for (const parameters::Assignment& assignment : made) {
             if (auto fault = parameters::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));
@@ -180,7 +180,7 @@ parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
         }
         if (!can_be_scheduled(*description)) {
             return base::Violation{
-                {}, "no scheduled values, because it only changes with a reset", "a scheduled value"};
+                {}, "without scheduled values, because it changes only at a reset", "a scheduled value"};
         }
         if (value.generation() < 2) {
             return base::Violation{{}, "a generation from 2", std::to_string(value.generation())};

@@ -27,8 +27,8 @@ v1::PlannedChange to_proto(const parameters::PlannedChange& change);
 /// Returns the current and the pending value of one parameter.
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);
 
-/// Returns the assignments that have a value. The assignments without a value are added to `violations`. If there are
-/// any, the other assignments are checked here, too. Otherwise parameters::assign checks them together with the world.
+/// Returns the assignments that have a value. Adds a violation for each assignment without a value; in this case it
+/// also checks the other assignments. Otherwise parameters::assign() checks them later, together with the world.
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations);

@@ -1,4 +1,4 @@
-// Converts the population of a first generation to a message and back.
+// Populations: converts the population of a first generation to a message and back.
 #pragma once
 
 #include "evod/v1/commands.pb.h"

@@ -1,4 +1,4 @@
-// Answers to queries. They read the laboratory between two ticks.
+// Queries: answers queries by reading the laboratory between two ticks.
 //
 // Threads      get_…() and find_…() run on the simulation thread, to_proto() on the network thread.
 #pragma once
@@ -57,7 +57,7 @@ using QueryRows = std::variant<std::monostate, HistoryPart, PopulationRows>;
 
 /// Answers a query that reads the laboratory. If the query is refused, the response contains the refusal.
 ///
-/// users_only  true: the client may not see the programs and addresses of other clients.
+/// users_only  true: the programs and addresses of other clients are removed from the response.
 QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
                        v1::Response& response);
 /// Converts the rows and adds them to the response.

@@ -5,7 +5,8 @@
 namespace evod::protocol {
 namespace {
 
-// Enough violations to correct a request. A hostile request must not cause an answer of megabytes.
+// Maximum number of violations in an answer. Without a limit, a hostile request could cause an answer of several
+// megabytes.
 constexpr std::size_t violations_listed_max = 200;
 
 /// Returns the reason of a refusal, or the default reason of its code.

@@ -1,4 +1,4 @@
-// Converts worlds, statistics and organisms into messages.
+// Worlds: converts worlds, statistics and organisms into messages.
 #pragma once
 
 #include "evod/v1/commands.pb.h"

@@ -32,8 +32,7 @@ void Bandwidth::raise_detail(v1::Detail detail, Clock::time_point now) {
 }
 
 void Bandwidth::lower_detail(Clock::time_point now) {
-    // If the higher detail could not be sustained, the next attempt comes later. After a sustained period the interval
-    // is reset.
+    // If the higher detail was not sustained, the interval until the next attempt is doubled, otherwise reset.
     const bool sustained = now - raised_ > 2 * retry_after_;
     retry_after_ = sustained ? Clock::duration{retry_min} : std::min<Clock::duration>(2 * retry_after_, retry_max);
     detail_ = less(detail_);

@@ -3,8 +3,8 @@
 //
 // Unspent bytes accumulate for a limited time, because keyframes are large. A snapshot that costs more than the
 // accumulated bytes is sent in less detail. If even the lowest detail costs too much, the snapshot is delayed. After a
-// while more detail is tried again. If no newer snapshot has arrived by then, the last one is sent again in more
-// detail. If the higher detail cannot be sustained, the next attempt comes later.
+// while, more detail is tried again. If no newer snapshot has arrived by then, the last snapshot is sent again in more
+// detail. If the higher detail cannot be sustained, the interval until the next attempt is doubled.
 //
 // Owner        a subscription.
 // Threads      the network thread.
@@ -26,7 +26,7 @@ class Bandwidth {
     static constexpr double accumulated_s_max = 2;                     // bytes accumulate for at most this many seconds
     static constexpr std::chrono::seconds retry_min{2}, retry_max{64}; // range of the time until more detail is tried
 
-    /// bytes_per_s  > 0.
+    /// bytes_per_s  the limit, > 0.
     /// most         the highest level of detail that the viewer wants.
     Bandwidth(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
 
@@ -36,7 +36,8 @@ class Bandwidth {
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
-        // Time of the next call; if the detail is lower than wanted, the time to call refine().
+        // If `detail` is nullopt, the time to call choose() again. If it is lower than wanted, the time to call
+        // refine().
         Clock::time_point again;
     };
     /// Chooses the level of detail of a snapshot and spends its cost.
@@ -45,8 +46,8 @@ class Bandwidth {
     template <class Cost>
     Choice choose(Clock::time_point now, const Cost& cost);
 
-    /// Chooses a higher level of detail for a snapshot that was already sent. The choice is empty if more is not
-    /// affordable.
+    /// Chooses a higher level of detail for a snapshot that was already sent. Choice::detail is nullopt if the
+    /// accumulated bytes do not suffice.
     ///
     /// shown  the detail in which the snapshot was sent; it is lower than wanted.
     template <class Cost>

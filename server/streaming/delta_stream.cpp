@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t organisms = 0, crates = 3; // indices in codec::Counts
 
-/// Returns the part of each long column that belongs to one tile.
+/// Returns the parts of the columns x and y that belong to one tile.
 template <class Part, class Displacements>
 Part part_of(Displacements& all, std::uint32_t begin, std::uint32_t count) {
     return {std::span{all.x}.subspan(begin, count), std::span{all.y}.subspan(begin, count)};
@@ -50,7 +50,7 @@ StreamedSnapshot::StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form f
     if (!previous) {
         return;
     }
-    previous->previous_ = nullptr; // free the snapshot before the previous one: sessions only send the newest snapshot
+    previous->previous_ = nullptr; // no session sends the snapshot before the previous one any more
     const auto ticks = ticks_between(previous->island_->about(), island_->about());
     if (!ticks || previous->layout_ != layout_) {
         return;
@@ -112,8 +112,8 @@ StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
     }
     const Tile& before = *previous_->tiles_[tile];
     const codec::QuantisedView here = view(tile);
-    // If waiting for the next snapshot would exceed the keyframe interval, this one is the keyframe for all viewers. It
-    // contains displacements of 0: real displacements would add more bytes to it than they save in the next delta.
+    // If the next snapshot would come after the keyframe interval, this one is the keyframe for all viewers. Its
+    // displacements are 0: real displacements would add more bytes than they save in the next delta.
     const bool keyframe_due = now_ + between_ > before.keyframe_made + keyframe_interval;
     if (keyframe_due || !codec::follows(here, previous_->view(tile))) {
         return of;

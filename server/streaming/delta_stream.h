@@ -40,7 +40,8 @@ enum class Form : std::uint8_t {
 /// One snapshot of an island, in all encodings that the viewers of one group need.
 class StreamedSnapshot {
   public:
-    /// previous  the previous snapshot in the stream; nullptr: there is none. It releases its own predecessor.
+    /// previous  the previous snapshot in the stream; nullptr: there is none. The constructor makes it release its own
+    ///           predecessor.
     /// between   the usual time between two snapshots.
     StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form form,
                      const std::shared_ptr<StreamedSnapshot>& previous, runtime::Clock::time_point now,

@@ -30,7 +30,7 @@ v1::SnapshotFrame frame_about(const runtime::Snapshot& snapshot, const runtime::
 class EncodedIsland {
   public:
     /// about       a frame with its sequence, but without entities and codec.
-    /// compressor  must exist until the last encoding was computed.
+    /// compressor  must exist until the last encoding is computed.
     EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor);
 
     const v1::SnapshotFrame& about() const { return about_; }

@@ -11,8 +11,7 @@ namespace {
 
 using codec::Column;
 
-/// Converts a column from fixed point to steps in place. A single loop, so that the compiler can use vector
-/// instructions.
+/// Converts a column of fixed-point positions to steps in place. The compiler can vectorise the loop.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
     const codec::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
                                           position_bytes};
@@ -21,7 +20,8 @@ void to_steps(Column& positions, std::uint32_t position_bytes) {
     }
 }
 
-/// Resizes the columns to `count` + 1 entities. A skipped entity is written to the next free row and then overwritten.
+/// Resizes the columns to `count` + 1 rows. The loops below also write each skipped entity to the next free row, which
+/// the next entity overwrites. The additional row receives entities that are skipped at the end.
 template <class... Columns>
 void make_room(std::size_t count, Columns&... columns) {
     (columns.resize(count + 1), ...);
@@ -36,7 +36,7 @@ codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posi
     codec::Entities to;
     make_room(items.present_count, to.id, to.x, to.y);
     std::size_t kept = 0;
-    // Without a branch, because the processor cannot predict which items are absent.
+    // The loop has no branch, because the processor could not predict which items are absent.
     for (std::size_t i = 0; i < items.all.size(); ++i) {
         const simulation::Items::Item& item = items.all[i];
         to.id[kept] = static_cast<std::uint32_t>(i);
@@ -75,7 +75,7 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
     Column indices;
     make_room(organisms.alive_count, to.id, indices);
     std::size_t kept = 0;
-    for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // no branch, for the same reason as above
+    for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // no branch, as in the loop over items
         to.id[kept] = static_cast<std::uint32_t>(id);
         indices[kept] = organisms.place_of[id];
         kept += organisms.place_of[id] != simulation::Island::no_body;

@@ -6,7 +6,7 @@
 //
 // Owner        the session, which sends the snapshots.
 // Threads      the network thread.
-// Full         a newer snapshot replaces the waiting one. The subscription counts the replaced one as dropped.
+// Full         a newer snapshot replaces the waiting snapshot, which the subscription counts as dropped.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -25,10 +25,10 @@
 
 namespace evod::streaming {
 
-/// The interface through which a queue makes its session send snapshots.
+/// The interface of a session through which its queue makes it send snapshots.
 class SnapshotSender {
   public:
-    /// Sends the snapshots that may be sent now, as far as the connection accepts them without waiting.
+    /// Sends the snapshots that may be sent now and that the connection accepts without waiting.
     virtual void send_snapshots() = 0;
     /// Sends the snapshots after the answers that are already queued.
     virtual void send_snapshots_later() = 0;
@@ -75,8 +75,7 @@ class SnapshotQueue {
     /// Chooses and encodes the next snapshot, which then counts as sent. Returns nullptr if none may be sent now. The
     /// result is valid until the next call.
     const OutgoingFrame* next();
-    /// The time at which the bandwidth limit may allow next() to succeed; max(): it will not succeed before another
-    /// event.
+    /// The earliest time at which the bandwidth limit may allow another snapshot; max(): it delays no snapshot.
     Clock::time_point retry_at() const { return retry_at_; }
     /// Releases the last snapshot that next() returned, because its memory is not counted by SendMemory.
     void release() { outgoing_.snapshot = {}; }
@@ -100,8 +99,9 @@ class SnapshotQueue {
     metrics::Counter& dropped_;
     SnapshotSender& sender_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max();
-    // A waiting snapshot has at most one valid turn, the newest. It has none while it waits for an acknowledgement.
-    // While the bandwidth limit delays it, its turn is in postponed_.
+    // A turn is the place of a waiting snapshot in the sending order. Only the newest turn of a snapshot is valid. A
+    // snapshot has no turn while it waits for an acknowledgement. While the bandwidth limit delays it, its turn is in
+    // postponed_.
     struct Turn {
         std::uint32_t subscription_id, island;
         std::uint64_t number; // invalid if it differs from SnapshotSubscription::Island::turn

@@ -9,18 +9,18 @@
 namespace evod::streaming {
 namespace {
 
-/// Number of steps before other clients are served. For small islands they take 1 to 5 ms together.
+/// Number of steps before other clients are served. With small islands, these steps take 1 to 5 ms together.
 constexpr std::size_t steps_at_once = 128;
 
 runtime::Clock::duration between_snapshots(double rate_hz) {
     return std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz});
 }
 
-/// Whether a group with this rate receives a snapshot now. If so, the time of the next one is set.
+/// Whether a group with this rate receives a snapshot now. If so, sets the time of the group's next snapshot.
 bool is_due(double rate_hz, runtime::Clock::time_point& next, bool after_change, runtime::Clock::time_point now) {
     const auto between = between_snapshots(rate_hz);
-    // It is better to send a snapshot early by a tenth of the interval than to wait for the next snapshot of the
-    // simulation.
+    // A snapshot may be sent a tenth of the interval too early. Otherwise the group might have to wait for the next
+    // snapshot of the simulation.
     if (!after_change && now + between / 10 < next) {
         return false;
     }
@@ -38,8 +38,8 @@ void SnapshotStreams::subscribe(std::uint64_t session, SnapshotQueue& queue, std
     queues_.emplace(session, &queue);
     Group& group = groups_[group_of(subscription)];
     ++group.subscription_count;
-    // For the first viewer of an island the simulation must copy a snapshot. Later viewers receive the newest existing
-    // one.
+    // If no snapshot exists yet, the simulation must copy one for this viewer. Otherwise the viewer receives the newest
+    // existing one.
     bool joins = false;
     each_newest(subscription, [&](std::uint32_t, const StreamedSnapshotPtr&) { joins = true; });
     if (!joins) {

@@ -96,13 +96,13 @@ class SnapshotStreams {
     std::vector<Viewer> viewers_of(const InProgress& of);
     /// Distributes islands until all are done or no step is left. Each island costs one step, plus one per viewer.
     void advance(InProgress& of, std::size_t& steps_left);
-    /// Calls what(island, snapshot) for each island of the subscription.
+    /// Calls what(island, snapshot) for the newest snapshot of each island that the subscription includes.
     template <class Do>
     void each_newest(const SnapshotSubscription& subscription, const Do& what) const;
 
     // Queues of the sessions that have subscriptions; key: number of the session.
     std::map<std::uint64_t, SnapshotQueue*> queues_;
-    std::uint64_t newcomers_ = 0, sequence_ = 0;
+    std::uint64_t newcomers_ = 0, sequence_ = 0; // the last SnapshotSubscription::newcomer, and the last sequence
     codec::Compressor compressor_;
     std::map<GroupName, Group> groups_;  // groups that have subscriptions
     std::deque<InProgress> in_progress_; // at most one snapshot of each world

@@ -23,7 +23,8 @@ struct SnapshotSubscription {
     std::optional<std::uint32_t> island; // index of the island; nullopt: all islands
     std::uint32_t island_count = 1;      // number of subscribed islands when the subscription began
     double rate_hz = 1;
-    // A rising number that identifies a subscription that began when no snapshot existed; 0: a snapshot existed.
+    // Number of a subscription that began before a snapshot for it existed; later subscriptions have higher numbers. 0:
+    // a snapshot already existed.
     std::uint64_t newcomer = 0;
     std::uint64_t dropped_count = 0;
     v1::Codec codec = v1::CODEC_PLAIN;
@@ -37,10 +38,10 @@ struct SnapshotSubscription {
     Form form() const;
 
     struct Island {
-        StreamedSnapshotPtr waiting;           // the newest snapshot, if it was not sent, or not in the wanted detail
-        std::optional<v1::Detail> shown;       // detail in which `waiting` was sent; nullopt: it was not sent
-        runtime::Clock::time_point not_before; // the bandwidth limit delays the snapshot until this time
-        SentState sent;                        // decides which tiles of the next snapshot can be deltas
+        StreamedSnapshotPtr waiting;              // the newest snapshot, until it is sent in the wanted detail
+        std::optional<v1::Detail> shown;          // detail in which `waiting` was sent; nullopt: it was not sent
+        runtime::Clock::time_point not_before;    // the bandwidth limit delays the snapshot until this time
+        SentState sent;                           // decides which tiles of the next snapshot can be deltas
         std::deque<std::uint64_t> unacknowledged; // sequences in rising order; empty without unacknowledged_max
         std::uint64_t turn = 0;                   // number of its turn to be sent; 0: it waits for an acknowledgement
     };

@@ -272,7 +272,7 @@ class Tokens(Access):
         self.assertNotIn(secret[5:], listed)
         self.assertIn("already", token_command("add", "anna", "--role", "admin", data=self.folder, status=1))
         self.assertIn("no token", token_command("revoke", "otto", data=self.folder, status=1))
-        self.assertIn("must be 1 to 64", token_command("add", "a b", "--role", "admin", data=self.folder, status=1))
+        self.assertIn("allowed 1 to 64", token_command("add", "a b", "--role", "admin", data=self.folder, status=1))
 
     def test_a_readable_or_damaged_token_file_is_refused(self):
         secret = self.token("anna", VIEWER)
@@ -382,7 +382,7 @@ class Tokens(Access):
                 stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")
                 while stranger.recv(1000):
                     pass
-            return "earlier ones are not logged" in server.output()
+            return "earlier connections were not logged" in server.output()
         plain.until(another, "how many were left out")
 
     def test_local_clients_are_logged_at_level_debug(self):

@@ -144,7 +144,7 @@ class Compare(Folder):
 
     def test_few_replicates_cause_a_warning(self):
         done = self.compare("--controls", "--replicates", "5", "--generations", "3", "--set", "fitness=gene_sum")
-        self.assertIn("--replicates: fewer than 20 can show large differences only", done.stderr)
+        self.assertIn("--replicates: fewer than 20 replicates can show only large differences", done.stderr)
         self.assertIn("There are too few replicates to answer", done.stdout)
         done = self.compare("--controls", "--replicates", "20", "--generations", "3", "--set", "fitness=gene_sum")
         self.assertEqual(done.stderr, "")
@@ -180,7 +180,7 @@ class Compare(Folder):
     def test_a_full_disk_is_reported(self):
         done = self.compare("--controls", "--replicates", "2", "--generations", "2", "--set", "fitness=gene_sum",
                             "--csv", "/dev/full", status=1)
-        self.assertIn("--csv: cannot write /dev/full, the disk may be full", done.stderr)
+        self.assertIn("--csv: cannot write /dev/full: the disk may be full", done.stderr)
 
     def test_an_interrupt_ends_it_without_results(self):
         table = f"{self.folder.name}/a.csv"

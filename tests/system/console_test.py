@@ -109,8 +109,8 @@ class Run(Folder):
 
     def test_a_server_checks_options_before_it_opens_files(self):
         data = pathlib.Path(self.folder.name) / "not made"
-        for options, words in ((["--bind", "300.1.1.1"], "give --bind the address of an interface"),
-                               (["--http-port", "0", "--http-bind", "x"], "give --http-bind the address of an interface"),
+        for options, words in ((["--bind", "300.1.1.1"], "--bind: got '300.1.1.1', allowed the IP address of an interface"),
+                               (["--http-port", "0", "--http-bind", "x"], "--http-bind: got 'x', allowed the IP address of an interface"),
                                (["--tls-cert", "a.crt"], "--tls-cert requires --tls-key")):
             self.assertIn(words, evod("--port", "0", "--data", data, *options, status=1).stderr)
             self.assertFalse(data.exists())

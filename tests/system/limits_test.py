@@ -516,13 +516,13 @@ class Unread(Case):
             for _ in range(fits - 2):
                 self.small(server).socket.sendall(asking)
                 other.call(list_worlds=c.ListWorlds())  # answered after the others
-            self.assertNotIn("wait for all clients", server.output())
+            self.assertNotIn("closed: all sessions use more than", server.output())
             for _ in range(6):
                 self.small(server).socket.sendall(asking)
-            plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
+            plain.until(lambda: "closed: all sessions use more than" in server.output(), "one is closed")
         if not SANITIZED:  # sanitizers keep freed memory
             self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
-        closed = re.findall(r"closed: more than 256 MiB wait for all clients, (\d+) KiB", server.output())
+        closed = re.findall(r"closed: all sessions use more than 256 MiB of memory, and this one uses (\d+) KiB", server.output())
         self.assertLess(len(closed), 10)
         self.assertGreater(min(map(int, closed)), 1024)
         self.assertEqual(modest.response(modest.request_id).status.code, OK)  # sessions with little memory continue
@@ -543,7 +543,7 @@ class Unread(Case):
             for client in clients:
                 with contextlib.suppress(OSError):  # it may be one of the closed sessions
                     client.socket.sendall(asking)
-            plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
+            plain.until(lambda: "closed: all sessions use more than" in server.output(), "one is closed")
         status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
         peak_mib = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) >> 10
         print(f"{peak_mib} MiB at the most", file=sys.stderr)
@@ -615,7 +615,7 @@ class Times(Case):
         def all_are_closed():
             nonlocal most
             most = max(most, memory_kib(server) - before)
-            return server.output().count("it has received nothing") >= deaf
+            return server.output().count("the client has received nothing") >= deaf
         with Attack(plain.messages_path, server.port, "deaf", deaf) as attack:
             plain.until(all_are_closed, "all are closed", pause_s=0.05)
             self.assertGreater(attack.end()["closed_after_s"][0], limits.stalled_timeout_s)
@@ -638,7 +638,7 @@ class Times(Case):
         client.call(run=c.Run())
         for _ in range(30):
             client.ask(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=120))
-        plain.until(lambda: "it has received nothing" in server.output(), "it is closed")
+        plain.until(lambda: "the client has received nothing" in server.output(), "it is closed")
 
     def an_abandoned_export(self, server):
         client = self.come(server)

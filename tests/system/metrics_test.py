@@ -328,7 +328,7 @@ class Health(Case):
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
         with stopped(threads["simulation"]):
             answer = self.get(server, "/healthz")
-            self.assertEqual((answer.status, answer.text), (503, f"the simulation has not answered for {SIMULATION_S} s\n"))
+            self.assertEqual((answer.status, answer.text), (503, f"the simulation has not responded for {SIMULATION_S} s\n"))
             self.assertEqual(self.get(server).status, 200)
         self.wait_well(server)
 
@@ -557,7 +557,7 @@ class Log(Case):
             client.call(plain.NOT_FOUND, pause=c.Pause(world="nowhere"))
             client.call(plain.INVALID, run=c.Run(generations=0))
         plain.until(lambda: "NOT_FOUND" in server.output() and "INVALID_ARGUMENT" in server.output(), "two refusals")
-        self.assertRegex(server.output(), r"debug session 1: plain 127\.0\.0\.1:\d+ is refused request 1: NOT_FOUND: ")
+        self.assertRegex(server.output(), r"debug session 1: plain 127\.0\.0\.1:\d+: request 1 is refused: NOT_FOUND: ")
 
 
 if __name__ == "__main__":

@@ -471,7 +471,7 @@ class Recovery(unittest.TestCase):
             server = Server(env={variable: self.data})
             self.servers.append(server)
             server.end()
-            self.assertIn(f"runs are kept in {folder}", server.output())
+            self.assertIn(f"runs are stored in {folder}", server.output())
             self.assertTrue(os.path.exists(f"{folder}/default.evod"))
         refused = waiting.run([evod, "--port", "0"], env={}, capture_output=True, text=True)
         self.assertEqual(refused.returncode, 1)

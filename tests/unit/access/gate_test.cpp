@@ -87,22 +87,22 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
     EXPECT_FALSE(gate.refresh());
     ASSERT_TRUE(revoke_token(folder, "anna"));
     EXPECT_TRUE(gate.refresh());
-    EXPECT_FALSE(gate.knows(visitor));
-    EXPECT_TRUE(gate.knows(*gate.admit(karl, "a", now)));
+    EXPECT_FALSE(gate.is_still_valid(visitor));
+    EXPECT_TRUE(gate.is_still_valid(*gate.admit(karl, "a", now)));
     // The name alone does not identify the token.
     ASSERT_TRUE(add_token(folder, "anna", Role::Viewer));
     EXPECT_TRUE(gate.refresh());
-    EXPECT_FALSE(gate.knows(visitor));
+    EXPECT_FALSE(gate.is_still_valid(visitor));
     std::filesystem::permissions(token_file_of(folder), std::filesystem::perms::others_read,
                                  std::filesystem::perm_options::add);
     EXPECT_TRUE(gate.refresh());
-    ASSERT_TRUE(gate.trouble());
+    ASSERT_TRUE(gate.file_problem());
     EXPECT_EQ(gate.admit(karl, "a", now).error().code, RefusalCode::Unavailable);
 }
 
 TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
     for (int i = 0; i < 300; ++i) {
-        ASSERT_TRUE(make_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
+        ASSERT_TRUE(create_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
         std::FILE* file = std::fopen((folder + "/evod.crt").c_str(), "r");
         X509* certificate = PEM_read_X509(file, nullptr, nullptr, nullptr);
         ASSERT_NE(certificate, nullptr);
@@ -111,7 +111,7 @@ TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
         std::filesystem::remove(folder + "/evod.crt");
         std::filesystem::remove(folder + "/evod.key");
     }
-    EXPECT_EQ(make_certificate({"not a host"}, folder).error().code, RefusalCode::InvalidArgument);
+    EXPECT_EQ(create_certificate({"not a host"}, folder).error().code, RefusalCode::InvalidArgument);
 }
 
 } // namespace

@@ -22,7 +22,7 @@ TEST(Bundle, OfAnotherModelReportsWhatIsLeftOut) {
     options.run = run;
     options.bundle = bundle;
     EXPECT_EQ(export_run(options), 0);
-    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are left out"));
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are omitted"));
     const auto text_of = [&](const char* name) {
         std::ifstream file{bundle + "/" + name};
         return std::string{std::istreambuf_iterator<char>{file}, {}};
@@ -44,7 +44,7 @@ TEST(Lineage, OfAnotherModelReportsWhatIsLeftOut) {
     options.what = "lineage";
     options.output = folder.path() + "/lineage.csv";
     EXPECT_EQ(export_run(options), 0);
-    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are left out"));
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are omitted"));
 }
 
 } // namespace

@@ -13,7 +13,7 @@ TEST(Limits, HaveOneRowEachInEnumOrder) {
         const LimitRow& row = limit_table()[i];
         EXPECT_EQ(static_cast<std::size_t>(row.limit), i) << row.name;
         EXPECT_GT(row.value, 0u) << row.name;
-        EXPECT_FALSE(row.of.empty() || row.then.empty()) << row.name;
+        EXPECT_FALSE(row.limited.empty() || row.effect.empty()) << row.name;
         names.insert(row.name);
     }
     EXPECT_EQ(names.size(), limit_table().size());
