@@ -121,12 +121,13 @@ class Top {
 } // namespace
 
 void add_top_command(command_line::Command& app, const Common& common) {
-    auto& top = app.add_command("top", "Metrics of the server: ticks, clients, bytes, disk, memory").group("Follow");
+    auto& top =
+        app.add_command("top", "Show metrics of the server: ticks, clients, bytes, disk, memory").group("Follow");
     auto& options = top.keep(Options{});
     top.add_option("--interval", &options.interval_s, "Seconds between two measurements")
         .check(command_line::RealNumber{0.1, 3600})
         .show_default();
-    top.add_flag("--once", &options.once, "Measure twice, print one page, and end");
+    top.add_flag("--once", &options.once, "Measure twice, print one page, then exit");
     top.footer(
         "Rates are averages since the previous measurement. With --json every measurement is one line; with --once\n"
         "too, the first one is printed immediately.\n\n"

@@ -368,18 +368,20 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
 
 void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
-    auto& watch = app.add_command("watch", "Live statistics; a line per generation when piped").group(group);
+    auto& watch =
+        app.add_command("watch", "Show live statistics; if the output is no terminal, print one line per generation")
+            .group(group);
     auto& generations = watch.keep(std::optional<std::uint64_t>{});
     watch
         .add_option("--generations", &generations,
-                    "Print one line for each of this many generations, then end; default: until Ctrl-C")
+                    "Print one line per generation for this many generations, then exit; default: until Ctrl-C")
         .check(at_least_one);
     watch.footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
     watch.action([&] { WatchDisplay{common, generations}.run(); });
 
     auto& events = app.add_command("events", "Print every event of one world or of all, one per line").group(group);
     auto& count = events.keep(std::optional<std::uint64_t>{});
-    events.add_option("--count", &count, "End after this many events; default: until Ctrl-C").check(at_least_one);
+    events.add_option("--count", &count, "Exit after this many events; default: until Ctrl-C").check(at_least_one);
     events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
     events.action([&] { follow_events(common, count); });
 }
