@@ -21,7 +21,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// The kinds of events that widgets use at present.
+/// Which events the widgets currently use: keyboard events, mouse events or both.
 struct Captured {
     bool keyboard = false, mouse = false;
 };

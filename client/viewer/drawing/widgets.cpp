@@ -53,7 +53,8 @@ const std::vector<std::string>* Spots::choices(const std::string& name) const {
 }
 
 bool Spots::lingers(Point corner, double now_s, bool clicked) {
-    constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws only four frames per second
+    constexpr double rest_s = 0.5,
+                     gap_s = 0.25; // gap_s is long, because a slow machine draws only four frames per second
     if (corner != hovered_ || now_s - hovered_last_s_ > gap_s) {
         hovered_ = corner;
         hovered_since_s_ = now_s;
@@ -107,7 +108,7 @@ bool checkbox(const char* label, bool& on) {
 }
 
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name) {
-    // After an open list is drawn, Dear ImGui's "last widget" is that list, so the position is read before.
+    // After an open list is drawn, Dear ImGui's "last widget" is the list. The position is therefore read before.
     const ImVec2 least = ImGui::GetCursorScreenPos();
     const ImVec2 most{least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()};
     if (Spots* spots = spots_of(least, most)) {

@@ -33,8 +33,8 @@ class Spots {
 
     /// name  the label "Apply", or "Parameters/Apply" with the panel
     std::optional<Point> find(const std::string& name) const;
-    /// The visible choices of the drop-down with this name. Empty while the drop-down is closed. Null if there is no
-    /// such drop-down.
+    /// Returns the visible choices of the drop-down with this name: an empty list while it is closed; null if there is
+    /// no such drop-down.
     const std::vector<std::string>* choices(const std::string& name) const;
 
     /// Whether the mouse has rested on the widget with this corner long enough to show its note. Must be called in

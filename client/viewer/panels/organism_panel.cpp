@@ -52,7 +52,7 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
     curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
                                   ? ("health over " + core::duration(points.back().s - points.front().s)).c_str()
-                                  : "health since the selection");
+                                  : "health since you selected the organism");
 }
 
 } // namespace

@@ -22,7 +22,7 @@ struct EffectWords {
 EffectWords words_of(evod::v1::ParameterEffect effect) {
     switch (effect) {
     case evod::v1::PARAMETER_EFFECT_NEXT_TICK:
-        return {"now", "Takes effect at once; for breeding, the next time it happens."};
+        return {"now", "Takes effect at the next tick; breeding parameters, at the next breeding."};
     case evod::v1::PARAMETER_EFFECT_NEXT_GENERATION:
         return {"generation", "Takes effect with the next generation."};
     case evod::v1::PARAMETER_EFFECT_RESET:
@@ -61,7 +61,7 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
 std::span<const Panel::Key> ParametersPanel::keys() const {
     static constexpr Key keys[] = {
         {.key = sf::Keyboard::Z, .help = "undo your last change", .control = true},
-        {.key = sf::Keyboard::Y, .help = "redo it", .control = true},
+        {.key = sf::Keyboard::Y, .help = "redo the last undone change", .control = true},
         {.key = sf::Keyboard::Z, .help = "", .control = true, .shift = true},
     };
     return keys;
@@ -218,7 +218,7 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
         send(context, edits_.redo(world.feed.name()));
     }
-    widgets::explain("Ctrl+Shift+Z");
+    widgets::explain("Ctrl+Shift+Z: applies the last undone change again.");
     ImGui::EndDisabled();
     ImGui::SameLine(0, 20 * scale);
     ImGui::Checkbox("apply on release", &apply_on_release_);

@@ -162,7 +162,7 @@ void RunPanel::build_speed(ViewedWorld& world) {
     }
     show_problem(problem_, {"speed"});
     if (world.feed.control().info().slowed()) {
-        widgets::say("The server cannot keep up: simulated time runs slower, no tick is skipped.");
+        widgets::say("The server cannot keep up: the world runs slower than requested, and no tick is skipped.");
     }
 }
 

@@ -132,7 +132,7 @@ void WorldsPanel::build_islands(ViewedWorld& world) {
     if (!ImGui::BeginTable("islands", 4, flags)) {
         return;
     }
-    for (const char* heading : {"Island", "Alive", "Mean health", "Best before"}) {
+    for (const char* heading : {"Island", "Alive", "Mean health", "Last best fitness"}) {
         ImGui::TableSetupColumn(heading);
     }
     ImGui::TableSetupScrollFreeze(0, 1);

@@ -66,7 +66,7 @@ void StartScreen::build(const Gui& gui) {
     ImGui::PushFont(&gui.title());
     ImGui::TextUnformatted("evoview");
     ImGui::PopFont();
-    widgets::say("A window into an evolution laboratory. Which server?");
+    widgets::say("Choose the evod server whose worlds you want to see.");
     ImGui::Dummy({0, 6 * scale});
     if (!reason_.empty()) {
         widgets::say(reason_, palette::warning);
@@ -117,7 +117,7 @@ bool StartScreen::build_fields(const Gui& gui) {
         label("CA file");
         entered |= ImGui::InputTextWithHint("##ca", "the system's certificates", ca_.data(), ca_.size(), on_enter);
         widgets::mark("CA file");
-        widgets::explain("PEM file with the certificate that signed the server's, such as its evod.crt.");
+        widgets::explain("PEM file with the certificate that signed the server's certificate, such as its evod.crt.");
     }
     return entered;
 }

@@ -19,7 +19,7 @@ using evod::v1::ParameterValue;
 constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
 constexpr std::size_t transactions_kept = 100;
 
-// A group of parameters and its first parameter. Groups are in the order of the registry.
+// The title of a group of parameters, and the first parameter of the group. Groups are in the order of the registry.
 struct Topic {
     std::string_view first, title;
 };
@@ -367,7 +367,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     } else if (response != nullptr) {
         take_refusal(response->status());
     } else {
-        problem_ = "No answer arrived: the change may or may not have been made";
+        problem_ = "No answer arrived: the change may or may not have been applied";
     }
     if (!done && sent_.kind != Kind::Apply) { // keep the transaction, so that the user can undo or redo it again
         for (Change& change : sent_.changes) {

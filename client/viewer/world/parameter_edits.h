@@ -85,7 +85,7 @@ class ParameterEdits {
     /// The client that last changed this parameter. Empty if no other client has changed it since the value was
     /// received or set here.
     const std::string& changed_by(std::size_t i) const { return states_[i].changed_by; }
-    /// Why the server rejected the value that was sent last; null if it did not.
+    /// Why the server rejected the value that was sent last; null if the server accepted it.
     const evod::v1::Violation* violation(std::size_t i) const;
 
     // Editing. Each of these functions clears the violations and the problem of the last refusal, because they are
@@ -113,7 +113,7 @@ class ParameterEdits {
     /// returns   whether the caller must request the complete set.
     bool answered(const evod::v1::Response* response);
 
-    /// Why the last transaction was refused; empty if it was not. A reason that concerns one parameter is in
+    /// Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is in
     /// violation().
     const std::string& problem() const { return problem_; }
 

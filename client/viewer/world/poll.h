@@ -64,7 +64,8 @@ class Poll {
     };
 
     Clock::duration interval_;
-    std::shared_ptr<State> state_ = std::make_shared<State>(); // weak in handlers, so it ends with the Poll
+    std::shared_ptr<State> state_ =
+        std::make_shared<State>(); // handlers hold weak references, so it is destroyed with the Poll
 };
 
 } // namespace evod::viewer

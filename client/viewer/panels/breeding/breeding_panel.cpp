@@ -15,8 +15,8 @@ namespace evod::viewer {
 
 namespace {
 
-// Minimum times that a breeding stays on the screen: while the panel follows a fast world, and after a breeding was
-// played to its end.
+// Minimum times for which a breeding stays on the screen: while the panel follows a fast world, and after the breeding
+// was played to its end.
 constexpr std::chrono::milliseconds shown_min{500}, shown_after_playing{1500};
 
 /// Reserves a rectangle of the panel's window to draw in, as wide as that window.
@@ -54,7 +54,7 @@ std::span<const Panel::Key> BreedingPanel::keys() const {
         {Keyboard::Space, "play, stop"},
         {Keyboard::Enter, ""},
         {Keyboard::Left, "one step back"},
-        {Keyboard::Right, "one step"},
+        {Keyboard::Right, "one step forward"},
         {Keyboard::PageUp, "to the previous stage"},
         {Keyboard::PageDown, "to the next stage"},
         {Keyboard::Home, "to the beginning"},
@@ -173,8 +173,8 @@ void BreedingPanel::receive(const evod::v1::Breeding& breeding) {
         if (next_->known()) {
             show_next();
         } else {
-            error_ = "The server answered with the breeding of another generation than " +
-                     with_separators(next_->key().generation);
+            error_ =
+                "The server sent the breeding of a generation other than " + with_separators(next_->key().generation);
         }
     } else if (shown_) {
         shown_->add(breeding);
@@ -227,7 +227,7 @@ void BreedingPanel::build_generation(const Context& context) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    widgets::explain("Of the parents: any generation that has bred");
+    widgets::explain("Generation of the parents; the panel shows any generation that has bred");
     ImGui::SameLine();
     ImGui::Checkbox("the newest", &follow_);
     widgets::mark("the newest");
@@ -250,7 +250,7 @@ void BreedingPanel::build_generation(const Context& context) {
     if (const auto selected = context.world.feed.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
         ImGui::SameLine();
-        if (widgets::button("birth of the selected")) {
+        if (widgets::button("birth of the selected organism")) {
             stepper_.go_to(1 + shown_->pick_count() + *selected);
         }
     }
@@ -279,7 +279,7 @@ void BreedingPanel::build_transport(const Gui& gui) {
     if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter)")) {
         stepper_.play_or_stop();
     }
-    if (button(">", "One step (right)")) {
+    if (button(">", "One step forward (right)")) {
         stepper_.step();
     }
     if (button(">>", "To the next stage (Page Down)")) {
@@ -350,15 +350,15 @@ void BreedingPanel::build_stage(const Context& context) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
-        widgets::say("the picks in order; light: the fittest, dark: the lowest rank");
+        widgets::say("picks in order; light: the fittest organism, dark: the lowest rank");
         break;
     }
     case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
         widgets::say("black: elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            widgets::say(
-                "blue: genes of the first parent, orange: of the second, dashed: cuts, framed: mutated or clamped");
+            widgets::say("blue: genes of the first parent, orange: genes of the second parent, dashed: cuts, "
+                         "framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
             ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }

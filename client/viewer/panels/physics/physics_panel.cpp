@@ -91,7 +91,7 @@ void PhysicsPanel::build_motion() {
                  [](const Motion& m) { return m.deepest_overlap_px(); });
     draw_measure("fastest body " + with_unit(now.fastest_px_s(), "px/s"), history_,
                  [](const Motion& m) { return m.fastest_px_s(); });
-    draw_measure("its movement per tick, in radii: " + shown_number(now.fastest_step_share()), history_,
+    draw_measure("movement of the fastest body per tick, in radii: " + shown_number(now.fastest_step_share()), history_,
                  [](const Motion& m) { return m.fastest_step_share(); });
     const double step_px = now.fastest_px_s() * now.tick_s();
     widgets::say(
@@ -176,7 +176,7 @@ void PhysicsPanel::build_demo() {
         for (const char* name : {"t, s", "x, px"}) {
             ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 1);
         }
-        for (const char* name : {"symplectic (error)", "explicit (error)"}) {
+        for (const char* name : {"symplectic Euler", "explicit Euler"}) {
             ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 2);
         }
         ImGui::TableHeadersRow();
@@ -197,19 +197,19 @@ void PhysicsPanel::build_demo() {
     }
     if (spring_) {
         widgets::say(
-            print("ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
-                  "short. Symplectic Euler, the default of a world, %s.",
+            print("Errors are in parentheses. ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = "
+                  "%.4g in every step, however short. Symplectic Euler, the default of a world, %s.",
                   rate * dt, demo.explicit_growth(dt),
-                  demo.symplectic_is_stable(dt) ? "keeps it near its start, as ω·dt is below 2"
-                                                : "keeps it only if ω·dt is below 2, so not here"),
+                  demo.symplectic_is_stable(dt)
+                      ? "keeps the energy near its initial value, because ω·dt is below 2"
+                      : "keeps the energy near its initial value only if ω·dt is below 2, which is not so here"),
             palette::text);
     } else {
         widgets::say(
-            print(
-                "c·dt is %.3g. Each step multiplies the velocity by 1 − c·dt, the exact solution by e^(−c·dt): for "
-                "c·dt above 1 the body reverses, above 2 it speeds up. The damping of a world multiplies by e^(−c·dt) "
-                "itself, at any tick length.",
-                rate * dt),
+            print("Errors are in parentheses. c·dt is %.3g. Each step multiplies the velocity by 1 − c·dt; the "
+                  "exact factor is e^(−c·dt). If c·dt is above 1, the body reverses its direction; above 2, it "
+                  "also becomes faster. The damping of a world uses the exact factor at any tick length.",
+                  rate * dt),
             palette::text);
     }
 }

@@ -14,7 +14,7 @@ namespace {
 
 // Indices of columns in core::history_columns().
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
-// Number of columns per gene. Behind them follow the columns of the selection account, again as many per gene.
+// Number of columns per gene. The columns of the selection account follow, with the same number per gene.
 constexpr std::size_t columns_of_gene = 4;
 
 std::size_t genes_in(std::size_t columns) {
@@ -137,7 +137,7 @@ void HistoryTable::Rows::put(std::span<const double> numbers) {
         columns.resize(numbers.size(), std::vector<double>(generations().size(), unknown));
     }
     const std::vector<double>& known = columns[generation_column];
-    // The row nearly always belongs at the end.
+    // The row is nearly always the last one.
     const auto found = known.empty() || known.back() < numbers[generation_column]
                            ? known.end()
                            : std::lower_bound(known.begin(), known.end(), numbers[generation_column]);
@@ -210,7 +210,7 @@ std::uint64_t HistoryTable::last_generation() const {
 std::uint64_t HistoryTable::last_without_gap(std::uint64_t generation) const {
     const std::vector<double>& known = all_.generations();
     const auto after = std::upper_bound(known.begin(), known.end(), static_cast<double>(generation));
-    // Without a gap, each generation exceeds the one before it by 1. A binary search therefore finds the first gap.
+    // Without a gap, each generation exceeds the previous one by 1. A binary search therefore finds the first gap.
     const auto steps = std::distance(after, known.end());
     std::ptrdiff_t low = 0, high = steps;
     while (low < high) {

@@ -263,10 +263,10 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     // Height of the export row and its message, which are below the plot.
     const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
-        build_gene_choice("all: their means");
+        build_gene_choice("means of all genes");
         update_histogram(context);
     } else if (quantity == Quantity::Selection) {
-        build_gene_choice("all: their selection");
+        build_gene_choice("selection of all genes");
     }
     const auto* other_table = other_world_ ? &other_world_->history.table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;
@@ -345,7 +345,8 @@ void PlotsPanel::update_histogram(Context& context) {
             histogram_ = histogram_of(gene_, gene_of(*population, index, *ids));
             return;
         }
-        population_note_ = ids ? ": none alive, all shown" : ": living ones unknown, all shown";
+        population_note_ =
+            ids ? ": no organism is alive, all are shown" : ": unknown which organisms live, all are shown";
     }
     const std::span<const float> of_all = population->gene(index);
     histogram_ = histogram_of(gene_, {of_all.begin(), of_all.end()});

@@ -83,7 +83,7 @@ class PlotsPanel : public Panel {
     } histogram_of_;
     std::string population_note_; // why the histogram includes dead organisms
 
-    std::array<char, 256> path_{}; // of the file to compare with
+    std::array<char, 256> path_{}; // path of the file to compare with
     std::array<int, 2> image_pixels_{1200, 700};
     std::string message_; // result of the last file operation
     bool message_is_error_ = false;
