@@ -172,7 +172,7 @@ std::string state_of(const v1::WorldInfo& world) {
     }
 }
 
-std::string trouble_of(const v1::Storage& storage) {
+std::string storage_problem(const v1::Storage& storage) {
     switch (storage.state()) {
     case v1::STORAGE_STATE_FAILING:
         return "commands are refused: " + storage.reason();
@@ -185,7 +185,7 @@ std::string trouble_of(const v1::Storage& storage) {
     }
 }
 
-std::string durability_of(const v1::Welcome& welcome) {
+std::string durability_warning(const v1::Welcome& welcome) {
     switch (welcome.durability()) {
     case v1::DURABILITY_NONE:
         return "runs are not recorded: worlds end with the server";

@@ -78,9 +78,9 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 std::string state_of(const v1::WorldInfo& world);
 /// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
 /// Empty if there is no problem.
-std::string trouble_of(const v1::Storage& storage);
+std::string storage_problem(const v1::Storage& storage);
 /// Returns a warning if acknowledged commands may be lost, for example when the machine fails; empty otherwise.
-std::string durability_of(const v1::Welcome& welcome);
+std::string durability_warning(const v1::Welcome& welcome);
 /// Returns the requested speed, and whether the world is slower than requested: "2x", "max", "100x (slower)".
 std::string speed_of(const v1::WorldInfo& world);
 /// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".

@@ -45,7 +45,8 @@ void status(const Common& common) {
         }
         std::string text = "evod " + caller.welcome().server_version() + " at " +
                            core::to_text(*core::parse_endpoint(common.server)) + "\n";
-        for (const std::string& line : {durability_of(caller.welcome()), trouble_of(caller.welcome().storage())}) {
+        for (const std::string& line :
+             {durability_warning(caller.welcome()), storage_problem(caller.welcome().storage())}) {
             text += line.empty() ? "" : line + "\n";
         }
         return text + (worlds.worlds().empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
@@ -153,7 +154,7 @@ void statistics(const Common& common, const MomentOptions& moment) {
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
         std::string text = (moment.is_replay() ? replay_sentence : sentence)(statistics.world()) + "\n";
-        if (const std::string trouble = trouble_of(statistics.world().storage()); !trouble.empty()) {
+        if (const std::string trouble = storage_problem(statistics.world().storage()); !trouble.empty()) {
             text += trouble + "\n";
         }
         if (statistics.live_size() > 0) {

@@ -30,7 +30,7 @@ class Drawing {
 };
 
 /// Reports a lost connection on stderr; throws Stop if the client will not reconnect.
-class ConnectionNews {
+class ConnectionReporter {
   public:
     /// drawing  the text on the terminal; it stays there, and the message is printed below it.
     void report(const core::Connection& connection, Drawing& drawing);

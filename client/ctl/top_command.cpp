@@ -62,7 +62,7 @@ class Top {
             return true;
         }
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        news_.report(caller_.connection(), drawing_);
+        reporter_.report(caller_.connection(), drawing_);
         if (!response) {
             return false;
         }
@@ -82,7 +82,7 @@ class Top {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
-            news_.report(caller_.connection(), drawing_);
+            reporter_.report(caller_.connection(), drawing_);
         }
     }
 
@@ -114,7 +114,7 @@ class Top {
     const bool redraw_;
     std::optional<Look> before_, last_;
     Drawing drawing_;
-    ConnectionNews news_;
+    ConnectionReporter reporter_;
     bool printed_ = false;
 };
 

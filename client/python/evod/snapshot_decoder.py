@@ -109,7 +109,7 @@ class SnapshotDecoder:
                 raise DamagedData(f"a tile's detail is {tile.detail}, allowed: 1 to 3")
             tiles.append(Tile(tile.tile, tile.detail, left, top, side, counts, dots, density))
         self._tiles = full
-        return _together(contents), tuple(tiles)
+        return _merged_tiles(contents), tuple(tiles)
 
 
 # ---- bodies -----------------------------------------------------------------------------------------------------------
@@ -374,7 +374,7 @@ def _density(body: _Body) -> Mapping[str, Array]:
     return density
 
 
-def _together(contents: Sequence[Content]) -> Content:
+def _merged_tiles(contents: Sequence[Content]) -> Content:
     """Returns the entities of several tiles, in ascending order of ids."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():

@@ -75,10 +75,10 @@ class ParameterEdits {
 
     // Data of one parameter, by its index in the registry.
 
-    const evod::v1::ParameterValue& holds(std::size_t i) const { return states_[i].value; }
+    const evod::v1::ParameterValue& current_value(std::size_t i) const { return states_[i].value; }
     /// The pending value; without one, the current value.
-    const evod::v1::ParameterValue& asked_for(std::size_t i) const;
-    /// The edited value; without an edit, asked_for().
+    const evod::v1::ParameterValue& requested_value(std::size_t i) const;
+    /// The edited value; without an edit, requested_value().
     const evod::v1::ParameterValue& shown(std::size_t i) const;
     bool is_pending(std::size_t i) const { return states_[i].pending.has_value(); }
     bool is_edited(std::size_t i) const { return states_[i].edit.has_value(); }
@@ -91,7 +91,7 @@ class ParameterEdits {
     // Editing. Each of these functions clears the violations and the problem of the last refusal, because they are
     // about earlier values.
 
-    /// Edits a value. A value equal to asked_for() removes the edit.
+    /// Edits a value. A value equal to requested_value() removes the edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
     void revert(std::size_t i);
     void revert_all();

@@ -73,16 +73,16 @@ void BreedingPanel::build(Context& context) {
     hold_world(context.world);
     build_generation(context);
     if (!error_.empty()) {
-        widgets::say(error_, palette::text);
+        widgets::small_text(error_, palette::text);
         if (widgets::button("Retry")) {
             error_.clear();
-            poll_.hurry();
+            poll_.make_due();
         }
     }
     if (!shown_) {
         if (newest_ == 0) {
-            widgets::say("No generation has bred yet. The first one breeds when it ends and the next begins.",
-                         palette::text);
+            widgets::small_text("No generation has bred yet. The first one breeds when it ends and the next begins.",
+                                palette::text);
         } else if (error_.empty()) {
             ImGui::TextUnformatted("Loading …");
         }
@@ -255,7 +255,8 @@ void BreedingPanel::build_generation(const Context& context) {
         }
     }
     if (shown_) {
-        widgets::say("Generation " + with_separators(shown_->key().generation) + ": " + breeding_summary(*shown_));
+        widgets::small_text("Generation " + with_separators(shown_->key().generation) + ": " +
+                            breeding_summary(*shown_));
     }
 }
 
@@ -329,7 +330,7 @@ void BreedingPanel::build_stage(const Context& context) {
     const Gui& gui = context.gui;
     const Moment moment = stepper_.moment();
     ImGui::BeginChild("caption", {0, 3 * ImGui::GetTextLineHeightWithSpacing()});
-    widgets::say(caption(*shown_, moment), palette::text);
+    widgets::small_text(caption(*shown_, moment), palette::text);
     ImGui::EndChild();
     const float height = ImGui::GetContentRegionAvail().y - 8;
     const float strip = 14 * gui.scale();
@@ -350,22 +351,22 @@ void BreedingPanel::build_stage(const Context& context) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
-        widgets::say("picks in order; light: the fittest organism, dark: the lowest rank");
+        widgets::small_text("picks in order; light: the fittest organism, dark: the lowest rank");
         break;
     }
     case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
-        widgets::say("black: elite, dark: survivors, light: children");
+        widgets::small_text("black: elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            widgets::say("blue: genes of the first parent, orange: genes of the second parent, dashed: cuts, "
-                         "framed: mutated or clamped");
+            widgets::small_text("blue: genes of the first parent, orange: genes of the second parent, dashed: cuts, "
+                                "framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
             ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }
         break;
     case BreedingStage::Done:
         draw_descendants(sheet_of(gui, strip), *shown_, nullptr);
-        widgets::say("black: elite, dark: survivors, light: children");
+        widgets::small_text("black: elite, dark: survivors, light: children");
         if (comparison_) {
             draw_ranking(sheet_of(gui, height - 50 * gui.scale()), *shown_, *comparison_, comparison_->copies, nullptr);
         }
@@ -377,11 +378,11 @@ void BreedingPanel::build_theory(const Gui& gui) {
     ImGui::TextUnformatted("Theory");
     if (!comparison_) {
         const evod::v1::Breeding& breeding = shown_->breeding();
-        widgets::say(breeding.contender_count() > BreedingRecord::rows_kept_max
-                         ? "Theory needs all organisms; only the first " +
-                               with_separators(BreedingRecord::rows_kept_max) + " are requested."
-                         : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
-                               with_separators(breeding.contender_count()) + " organisms received …");
+        widgets::small_text(breeding.contender_count() > BreedingRecord::rows_kept_max
+                                ? "Theory needs all organisms; only the first " +
+                                      with_separators(BreedingRecord::rows_kept_max) + " are requested."
+                                : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
+                                      with_separators(breeding.contender_count()) + " organisms received …");
         return;
     }
     const Moment moment = stepper_.moment();
@@ -391,19 +392,19 @@ void BreedingPanel::build_theory(const Gui& gui) {
     draw_copies(sheet_of(gui, std::min(300.f * gui.scale(), ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
                 picking || made == 0 ? copies_after(*shown_, made) : comparison_->copies,
                 picking ? double(made) / picks : 1);
-    widgets::say(print("%zu of %zu ranks deviate by more than two standard errors", comparison_->beyond_two,
-                       comparison_->organisms.size()),
-                 palette::text);
+    widgets::small_text(print("%zu of %zu ranks deviate by more than two standard errors", comparison_->beyond_two,
+                              comparison_->organisms.size()),
+                        palette::text);
     for (const Prediction& prediction : comparison_->predictions) {
         ImGui::Separator();
-        widgets::say(print("%.*s: expected %s, observed %s", static_cast<int>(prediction.name.size()),
-                           prediction.name.data(), shown(prediction.expected, prediction.unit).c_str(),
-                           shown(prediction.observed, prediction.unit).c_str()),
-                     palette::text);
+        widgets::small_text(print("%.*s: expected %s, observed %s", static_cast<int>(prediction.name.size()),
+                                  prediction.name.data(), shown(prediction.expected, prediction.unit).c_str(),
+                                  shown(prediction.observed, prediction.unit).c_str()),
+                            palette::text);
         if (const auto off = prediction.deviation()) {
-            widgets::say(print("%+.2f standard errors", *off), palette::text);
+            widgets::small_text(print("%+.2f standard errors", *off), palette::text);
         }
-        widgets::say(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
+        widgets::small_text(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
     }
 }
 

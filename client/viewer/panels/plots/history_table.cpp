@@ -25,12 +25,12 @@ constexpr std::size_t islands_max = 65'536; // more than any world can have
 
 /// How the numbers of several islands are combined. Deviation also uses the means, which are in the preceding column;
 /// for fitness_deviation they are in fitness_mean.
-enum class Together { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
+enum class Combination { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
 /// columns  total number of columns.
-Together together(std::size_t column, std::size_t columns) {
-    using enum Together;
-    constexpr Together of_all[gene_begin] = {
+Combination combination_of(std::size_t column, std::size_t columns) {
+    using enum Combination;
+    constexpr Combination of_all[gene_begin] = {
         First,     // generation
         First,     // island
         Greatest,  // end_tick
@@ -52,7 +52,7 @@ Together together(std::size_t column, std::size_t columns) {
         Sum,       // speed_limit_count
         Unknown,   // best_organism
     };
-    constexpr Together of_gene[columns_of_gene] = {Mean, Deviation, Least, Greatest};
+    constexpr Combination of_gene[columns_of_gene] = {Mean, Deviation, Least, Greatest};
     if (column < gene_begin) {
         return of_all[column];
     }
@@ -85,29 +85,29 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             return sum;
         };
         double& number = all[column];
-        switch (together(column, all.size())) {
-        case Together::First:
+        switch (combination_of(column, all.size())) {
+        case Combination::First:
             break;
-        case Together::Greatest:
+        case Combination::Greatest:
             for (const std::vector<double>& row : rows) {
                 number = std::max(number, row[column]);
             }
             break;
-        case Together::Least:
+        case Combination::Least:
             for (const std::vector<double>& row : rows) {
                 number = std::min(number, row[column]);
             }
             break;
-        case Together::Sum:
+        case Combination::Sum:
             number = 0;
             for (const std::vector<double>& row : rows) {
                 number += row[column];
             }
             break;
-        case Together::Mean:
+        case Combination::Mean:
             number = mean_of([&](const auto& row) { return row[column]; });
             break;
-        case Together::Deviation: { // variance within islands plus variance between their means
+        case Combination::Deviation: { // variance within islands plus variance between their means
             const std::size_t mean_column = mean_of_deviation(column);
             const double mean = mean_of([&](const auto& row) { return row[mean_column]; });
             number = std::sqrt(mean_of([&](const auto& row) {
@@ -116,7 +116,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             }));
             break;
         }
-        case Together::Unknown:
+        case Combination::Unknown:
             number = std::numeric_limits<double>::quiet_NaN();
             break;
         }
