@@ -29,7 +29,7 @@ class Drawing {
     TerminalSize size_;
 };
 
-/// Reports a lost connection on stderr; throws Stop if the client will not reconnect.
+/// Reports on stderr that the connection was lost; throws Stop if the client will not reconnect.
 class ConnectionReporter {
   public:
     /// drawing  the text on the terminal; it stays there, and the message is printed below it.

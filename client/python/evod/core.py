@@ -28,8 +28,8 @@ from evod.version import __version__
 
 PROTOCOL_VERSION = 1
 EVENTS_KEPT = 10_000
-UNACKNOWLEDGED_MAX = 8  # number of snapshots of each island
-_KEYFRAME_REQUESTS_MAX = 3  # number of keyframe requests without a decoded snapshot in between
+UNACKNOWLEDGED_MAX = 8  # unacknowledged snapshots of each island
+_KEYFRAME_REQUESTS_MAX = 3  # consecutive keyframe requests without a decoded snapshot in between
 
 #: Requests for which the server may have to simulate generations again; their timeout is longer.
 _REPLAY_REQUESTS = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))

@@ -24,7 +24,7 @@ namespace evod::viewer {
 class WidgetPositions {
   public:
     void begin_frame();
-    /// Assigns the widgets registered after this call to the panel with this title. Empty: they belong to no panel.
+    /// Assigns the widgets registered after this call to the panel with this title, or to no panel if `title` is empty.
     void begin_panel(std::string_view title) { panel_ = title; }
     void add(std::string_view name, Point centre);
     void add_drop_down(std::string_view name, Point centre);
@@ -45,7 +45,7 @@ class WidgetPositions {
   private:
     struct Widget {
         Point centre;
-        std::optional<std::vector<std::string>> choices; // nullopt: not a drop-down
+        std::optional<std::vector<std::string>> choices; // nullopt: the widget is not a drop-down
     };
     template <class Do>
     void each_name(std::string_view name, Do act);

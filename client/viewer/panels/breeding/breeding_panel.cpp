@@ -131,8 +131,8 @@ void BreedingPanel::choose(const Context& context) {
     if (stepper_.playing()) {
         next_change_ = context.now + shown_after_playing;
     }
-    // Wait for a pending answer before requesting a newer generation. A fast world has always bred a newer one, so the
-    // panel would never show any.
+    // Wait for a pending answer before requesting a newer generation. In a fast world there is always a newer one, so
+    // the panel would never show a generation.
     const bool idle = !next_ || !error_.empty();
     const bool settled = !stepper_.playing() && (stepper_.at_begin() || stepper_.at_end());
     if (follow_ && idle && settled && context.now >= next_change_) {

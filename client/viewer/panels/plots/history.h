@@ -66,7 +66,7 @@ class History {
 
     std::string world_, run_id_;
     HistoryTable table_;
-    std::uint64_t whole_until_ = 0; // up to this generation, the table contains all that the server keeps
+    std::uint64_t whole_until_ = 0; // up to this generation, the table contains every generation that the server keeps
     bool missing_ = true;
     bool again_ = false;                     // generations may have been missed since the last query
     std::uint64_t asked_ = 0, answered_ = 0; // numbers of the last queries sent and answered

@@ -26,7 +26,7 @@ class PlotsPanel : public Panel {
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{
-        100}; // a world may finish more generations per second than a user can see
+        100}; // a fast world finishes more generations per second than a user can see
     static constexpr std::chrono::seconds population_interval{1}; // between requests for the living organisms
 
     struct TrackedHistory {
