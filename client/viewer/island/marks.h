@@ -42,8 +42,9 @@ class FamilyColours {
     Colour of(std::uint8_t family) const;
 
   private:
-    std::array<std::optional<std::uint32_t>, palette::kinds.size()> places_{}; // index: colour; value: the founder of its family
-    std::array<std::uint8_t, Population::shown_families_max> colours_{};       // index: family; value: its colour
+    std::array<std::optional<std::uint32_t>, palette::kinds.size()>
+        places_{};                                                       // index: colour; value: founder of the family
+    std::array<std::uint8_t, Population::shown_families_max> colours_{}; // index: family; value: its colour
 };
 
 void add_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);
