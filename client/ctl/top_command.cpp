@@ -93,12 +93,12 @@ class Top {
         }
         const std::chrono::duration<double> between = last_->at - before_->at;
         const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-        const std::string farewell = redraw_ ? "\nCtrl-C ends evoctl, not the server\n" : "";
+        const std::string last_line = redraw_ ? "\nCtrl-C ends evoctl, not the server\n" : "";
         const std::size_t lines = redraw_ ? terminal_size().lines : all_lines;
         const std::string text =
             top_text({before_->metrics, last_->metrics, std::max(between.count(), 1e-3)}, common_.server, now.count(),
                      lines - std::min<std::size_t>(lines, 3)) + // space for the last line and the cursor
-            farewell;
+            last_line;
         if (redraw_) {
             drawing_.draw(text);
         } else {

@@ -21,7 +21,7 @@ std::size_t genes_in(std::size_t columns) {
     return (columns - gene_begin) / (2 * columns_of_gene);
 }
 
-constexpr std::size_t islands_max = 65'536; // more than any world can have
+constexpr std::size_t islands_max = 65'536; // no world can have as many islands
 
 /// How the numbers of several islands are combined. Deviation also uses the means, which are in the preceding column;
 /// for fitness_deviation they are in fitness_mean.
