@@ -15,19 +15,20 @@ void add_options(command_line::Command& app, Credentials& credentials) {
     app.add_option("--token-file", &credentials.token_file,
                    "File with the token; default: the environment variable EVOD_TOKEN");
     app.add_option("--ca", &credentials.files.ca,
-                   "TLS; PEM file of the server's certificate authority, or the server's own evod.crt")
+                   "PEM file with the certificate authority of the server, or the server's own evod.crt; turns TLS on")
         .environment("EVOD_CA");
-    app.add_flag("--tls", &credentials.tls, "TLS with a server whose certificate this system trusts");
+    app.add_flag("--tls", &credentials.tls, "Use TLS; this system must trust the certificate of the server");
     app.add_option("--cert", &credentials.files.certificate,
-                   "PEM file of the client's certificate, if the server requires one");
+                   "PEM file with the client's certificate, if the server requires one");
     app.add_option("--key", &credentials.files.key,
-                   "PEM file with the private key for --cert, if it is not in that file");
+                   "PEM file with the private key for --cert, if it is not in the --cert file itself");
 }
 
 Result<void> apply(const Credentials& credentials, Options& options) {
     if (!credentials.files.key.empty() && credentials.files.certificate.empty()) {
         return Error{.kind = Error::Kind::Usage,
-                     .what = "--key: " + credentials.files.key + " needs its certificate: give --cert too"};
+                     .what =
+                         "--key: " + credentials.files.key + " requires the certificate of this key: give --cert too"};
     }
     if (credentials.tls || !credentials.files.ca.empty() || !credentials.files.certificate.empty()) {
         options.tls = credentials.files;
@@ -47,11 +48,11 @@ Result<void> apply(const Credentials& credentials, Options& options) {
         return refused(std::strerror(errno));
     }
     if ((about.st_mode & 077) != 0) {
-        return refused("other users can read it: chmod 600 it");
+        return refused("other users can read the file: run chmod 600 on it");
     }
     file >> options.token;
     if (options.token.empty()) {
-        return refused("it contains no token");
+        return refused("the file contains no token");
     }
     return {};
 }

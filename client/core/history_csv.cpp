@@ -140,7 +140,7 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
     }
     const std::vector<std::string> columns = history_columns(read.gene_names);
     const std::size_t account_begin = columns.size() - read.gene_names.size() * std::size(account_parts);
-    std::vector<std::size_t> places; // index in the file; past the end: an older file without this column
+    std::vector<std::size_t> places; // index of each column in the file; past the end if an older file lacks the column
     for (const std::string& column : columns) {
         const auto found = std::find(heading.begin(), heading.end(), column);
         if (found == heading.end() && places.size() < account_begin) {

@@ -26,12 +26,12 @@ std::string heading(const v1::Breeding& bred) {
     const auto count = [](std::uint32_t number, const char* one, const char* many) {
         return std::to_string(number) + " " + (number == 1 ? one : many);
     };
-    std::string text =
-        "generation " + std::to_string(bred.generation()) + " of island " + std::to_string(bred.island()) + ": of " +
-        count(bred.contender_count(), "organism", "organisms") + ", " + count(bred.pick_count(), "pick", "picks") +
-        " were made; then came " + std::to_string(bred.elite_count()) + " elite, " +
-        count(bred.survivor_count() - bred.elite_count(), "other survivor", "other survivors") + ", " +
-        count(bred.descendant_count() - bred.survivor_count(), "child", "children") + "\n";
+    std::string text = "generation " + std::to_string(bred.generation()) + " of island " +
+                       std::to_string(bred.island()) + ": " + count(bred.contender_count(), "organism", "organisms") +
+                       ", " + count(bred.pick_count(), "pick", "picks") +
+                       "; the next generation: " + std::to_string(bred.elite_count()) + " elite, " +
+                       count(bred.survivor_count() - bred.elite_count(), "other survivor", "other survivors") + ", " +
+                       count(bred.descendant_count() - bred.survivor_count(), "child", "children") + "\n";
     std::string choices; // the values of the parameters that applied
     for (const auto& parameter : bred.parameters()) {
         if (parameter.value().has_choice() && parameter.name() != "emigrants" &&
@@ -183,15 +183,18 @@ void breeding(const Common& common, const BreedingOptions& options) {
 } // namespace
 
 void add_breeding_command(command_line::Command& app, const Common& common) {
-    auto& command = app.add_command("breeding", "How a generation was bred: selections, pairs, crossover and mutation")
-                        .group("Look");
+    auto& command =
+        app.add_command("breeding", "Show how a generation was bred: selections, pairs, crossover and mutation")
+            .group("Look");
     auto& options = command.keep(BreedingOptions{});
     command
         .add_option("--generation", &options.generation,
-                    "Generation of the parents; default: the last one that has descendants")
+                    "Generation of the parents; default: the last generation that has descendants")
         .check(at_least_one);
-    command.add_option("--island", &options.island, "Island, from 0").check(index_number);
-    command.add_option("--from", &options.from, "First row of each list").check(index_number).show_default();
+    command.add_option("--island", &options.island, "Island, numbered from 0").check(index_number);
+    command.add_option("--from", &options.from, "First row of each list, numbered from 0")
+        .check(index_number)
+        .show_default();
     command.add_option("--rows", &options.rows, "Rows of each list, at most 1000; with --json, all rows of the reply")
         .check(command_line::WholeNumber{1, 1000})
         .show_default();

@@ -25,8 +25,8 @@ core::Endpoint endpoint_of(const std::string& text) {
 /// Switches the terminal's echo off during the lifetime of this object. Restores it even if a signal ends the program.
 class EchoOff {
   public:
-    explicit EchoOff(const termios& as_it_was) {
-        echoing = as_it_was;
+    explicit EchoOff(const termios& original) {
+        echoing = original;
         struct sigaction restore {};
         restore.sa_handler = [](int number) {
             ::tcsetattr(STDIN_FILENO, TCSANOW, &echoing);
@@ -36,7 +36,7 @@ class EchoOff {
         for (std::size_t i = 0; i < signals.size(); ++i) {
             ::sigaction(signals[i], &restore, &before_[i]);
         }
-        termios silent = as_it_was;
+        termios silent = original;
         silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
         ::tcsetattr(STDIN_FILENO, TCSADRAIN, &silent);
     }
@@ -56,14 +56,14 @@ class EchoOff {
 
 /// Asks for the token on the terminal and returns it. Does not show what the user types. Empty if there is no terminal.
 std::string prompt_for_token(const std::string& server) {
-    termios as_it_was{};
-    if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &as_it_was) != 0) {
+    termios original{};
+    if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &original) != 0) {
         return {};
     }
     std::string token;
     {
         // Echo is switched off before the prompt, so that text that is typed or pasted early is neither shown nor lost.
-        const EchoOff echo_off{as_it_was};
+        const EchoOff echo_off{original};
         std::cerr << "token for " << server << ": " << std::flush;
         std::cin >> token;
     }
@@ -172,7 +172,7 @@ std::string state_of(const v1::WorldInfo& world) {
     }
 }
 
-std::string trouble_of(const v1::Storage& storage) {
+std::string storage_problem(const v1::Storage& storage) {
     switch (storage.state()) {
     case v1::STORAGE_STATE_FAILING:
         return "commands are refused: " + storage.reason();
@@ -185,7 +185,7 @@ std::string trouble_of(const v1::Storage& storage) {
     }
 }
 
-std::string durability_of(const v1::Welcome& welcome) {
+std::string durability_warning(const v1::Welcome& welcome) {
     switch (welcome.durability()) {
     case v1::DURABILITY_NONE:
         return "runs are not recorded: worlds end with the server";

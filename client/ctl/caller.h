@@ -78,15 +78,15 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 std::string state_of(const v1::WorldInfo& world);
 /// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
 /// Empty if there is no problem.
-std::string trouble_of(const v1::Storage& storage);
+std::string storage_problem(const v1::Storage& storage);
 /// Returns a warning if acknowledged commands may be lost, for example when the machine fails; empty otherwise.
-std::string durability_of(const v1::Welcome& welcome);
+std::string durability_warning(const v1::Welcome& welcome);
 /// Returns the requested speed, and whether the world is slower than requested: "2x", "max", "100x (slower)".
 std::string speed_of(const v1::WorldInfo& world);
 /// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
-/// Throws Stop with `what` and then the mistakes, one per line.
+/// Throws Stop with a text that contains `what` and then one line for each mistake.
 [[noreturn]] void stop_for(const std::string& what, const Mistakes& mistakes);
 
 /// From now on Ctrl-C sets a flag instead of ending the program.
@@ -95,7 +95,7 @@ bool interrupted();
 /// Returns whether stdout is a terminal.
 bool on_terminal();
 
-/// Checks for the values of options.
+/// Rules for whole numbers given as options.
 inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1},
     index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // an index of an island or organism
 

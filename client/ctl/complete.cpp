@@ -1,4 +1,4 @@
-// Completion: `evoctl complete bash` prints the script for bash; the script asks `evoctl complete -- words…`.
+// Completion: `evoctl complete bash` prints a script for bash; the script calls `evoctl complete -- words…`.
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
 
@@ -12,8 +12,8 @@ namespace {
 
 using command_line::Command;
 
-// Bash splits COMP_WORDS at '=' and ':', so the script itself splits the line at blanks. Readline replaces only the
-// text after the last '=', so the script removes the text before it from each completion.
+// Bash splits COMP_WORDS at '=' and ':'. The script therefore ignores COMP_WORDS and splits the line at blanks. Readline
+// replaces only the text after the last '=', so the script removes the text before it from each completion.
 constexpr const char* bash_script = R"(# Completion of evoctl for bash. Use it: source <(evoctl complete bash)
 _evoctl() {
     local line=${COMP_LINE:0:COMP_POINT} words word current
@@ -142,9 +142,12 @@ void complete(const Command& app, const std::vector<std::string>& words) {
 }
 
 void add_complete_command(Command& app) {
-    auto& command = app.add_command("complete", "Shell completion: source <(evoctl complete bash)");
+    auto& command =
+        app.add_command("complete", "Print the completion script of a shell; use it: source <(evoctl complete bash)");
     command.group("Shell");
-    command.add_option("SHELL", &command.keep(std::string{}), "bash").required().choices({"bash"});
+    command.add_option("SHELL", &command.keep(std::string{}), "The shell; only bash is supported")
+        .required()
+        .choices({"bash"});
     command.action([] { std::cout << bash_script; });
 }
 

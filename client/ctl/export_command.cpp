@@ -92,9 +92,8 @@ void export_run(const Common& common, const ExportOptions& options) {
     std::ostream& out = options.output.empty() ? std::cout : file;
     if (part.generations_left_out() > 0) {
         std::cerr << "evoctl: " << part.generations_left_out()
-                  << " generations are missing: they were purged, and the server has another version of the model, so "
-                     "that it "
-                     "cannot simulate them again\n";
+                  << " generations are missing: they were purged, and the server cannot simulate them again because "
+                     "its version of the model differs\n";
     }
     while (out.write(part.text().data(), static_cast<std::streamsize>(part.text().size())) && !part.last()) {
         v1::Request next;
@@ -120,26 +119,29 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
 } // namespace
 
 void add_export_command(command_line::Command& app, const Common& common) {
-    auto& command = app.add_command("export", "Write a table of a world's run, up to now").group("Look");
+    auto& command = app.add_command("export", "Write a table of a world's run up to the current tick").group("Look");
     auto& options = command.keep(ExportOptions{});
     command
         .add_option(
             "--what", &options.what,
             "generations: statistics; organisms: parents, genes and fate of each; lineage: parents and children; "
-            "population: the genes of one generation, for `create --population`; events: the commands")
+            "population: the genes of one generation, for `create --population`; events: the journaled commands")
         .required()
         .choices(names_of(tables));
-    command.add_option("--of", &options.of, "GENERATION:ISLAND:ORGANISM: only the lineage of this organism");
-    command.add_option("--generation", &options.generation, "Generation of the population; default: the current one")
+    command.add_option("--of", &options.of,
+                       "Write only the lineage of this organism, given as GENERATION:ISLAND:ORGANISM");
+    command
+        .add_option("--generation", &options.generation,
+                    "Generation of the population; default: the current generation")
         .check(whole_number);
-    command.add_option("--format", &options.format, "csv, or jsonl: one JSON object per line")
+    command.add_option("--format", &options.format, "csv, or jsonl with one JSON object per line")
         .choices(names_of(formats))
         .show_default();
-    command.add_option("--output", &options.output, "File; default: standard output");
-    command.footer("Examples:\n  evoctl export --what organisms --output organisms.csv\n"
-                   "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
-                   "A folder with all tables, for other people: run this beside the run file: evod export RUN.evod "
-                   "--bundle FOLDER");
+    command.add_option("--output", &options.output, "Output file; default: standard output");
+    command.footer(
+        "Examples:\n  evoctl export --what organisms --output organisms.csv\n"
+        "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
+        "To write a folder with all tables, run on the server's machine: evod export RUN.evod --bundle FOLDER");
     command.action([&] { export_run(common, options); });
 }
 

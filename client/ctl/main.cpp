@@ -47,7 +47,9 @@ int main(int argc, char** argv) {
     evod::command_line::Command app{"evoctl", "evoctl: sends one command to an evod server", "evoctl " EVOD_VERSION};
     app.add_option("--server", &common.server, "HOST:PORT of the server").environment("EVOD_SERVER").show_default();
     add_options(app, common.credentials);
-    app.add_option("--world", &common.world, "World; default: the only one, or 'default'").environment("EVOD_WORLD");
+    app.add_option("--world", &common.world,
+                   "Name of the world; default: the server's only world, or the world 'default'")
+        .environment("EVOD_WORLD");
     app.add_option("--timeout", &common.timeout_s, "Seconds to wait for a reply")
         .show_default()
         .check(evod::command_line::RealNumber{0.001, 86400});

@@ -214,10 +214,11 @@ void params(const Common& common, const std::string& name) {
 
 void add_parameter_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Parameters";
-    auto& set_command = app.add_command("set", "Change parameters: all of them, or none").group(group);
+    auto& set_command =
+        app.add_command("set", "Change parameters; if one value is refused, none is changed").group(group);
     auto& options = set_command.keep(SetOptions{});
     set_command.add_option("NAME=VALUE", &options.words, "Parameters with their new values").required();
-    set_command.add_flag("--dry-run", &options.dry_run, "Only check; change nothing");
+    set_command.add_flag("--dry-run", &options.dry_run, "Only check the values; change nothing");
     set_command
         .add_option("--if-revision", &options.expected_revision,
                     "Refuse if a parameter was changed after this revision")
@@ -239,7 +240,9 @@ void add_parameter_commands(command_line::Command& app, const Common& common) {
 
     auto& cancel_command = app.add_command("cancel", "Cancel a planned change").group(group);
     auto& id = cancel_command.keep(std::uint64_t{0});
-    cancel_command.add_option("ID", &id, "Number printed by evoctl changes").required().check(whole_number);
+    cancel_command.add_option("ID", &id, "Number of the change, printed by `evoctl changes`")
+        .required()
+        .check(whole_number);
     cancel_command.action([&] { cancel(common, id); });
 
     auto& get_command = app.add_command("get", "Print values of parameters in the format of `set`").group(group);
@@ -248,9 +251,9 @@ void add_parameter_commands(command_line::Command& app, const Common& common) {
     get_command.footer("Examples:\n  evoctl get selection mutation_chance\n  evoctl get --json | jq .revision");
     get_command.action([&] { get(common, names); });
 
-    auto& params_command = app.add_command("params", "List the parameters, or describe one").group(group);
+    auto& params_command = app.add_command("params", "List all parameters, or describe one parameter").group(group);
     auto& name = params_command.keep(std::string{});
-    params_command.add_option("NAME", &name, "Describe this parameter in full");
+    params_command.add_option("NAME", &name, "Name of a parameter to describe; default: list all parameters");
     params_command.action([&] { params(common, name); });
 }
 

@@ -45,7 +45,8 @@ void status(const Common& common) {
         }
         std::string text = "evod " + caller.welcome().server_version() + " at " +
                            core::to_text(*core::parse_endpoint(common.server)) + "\n";
-        for (const std::string& line : {durability_of(caller.welcome()), trouble_of(caller.welcome().storage())}) {
+        for (const std::string& line :
+             {durability_warning(caller.welcome()), storage_problem(caller.welcome().storage())}) {
             text += line.empty() ? "" : line + "\n";
         }
         return text + (worlds.worlds().empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
@@ -106,7 +107,7 @@ void add_generation(Table& table, const v1::GenerationStatistics& g) {
                std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
 }
 
-/// Options for a generation and a tick of a world's run. Without them the current moment is used.
+/// Options that select a moment of a run by generation and tick; by default the current moment.
 struct MomentOptions {
     std::optional<std::uint64_t> generation, tick;
     bool is_replay() const { return generation || tick; }
@@ -114,9 +115,11 @@ struct MomentOptions {
 
 void add_options(command_line::Command& command, MomentOptions& options) {
     command
-        .add_option("--at-generation", &options.generation, "Show an earlier generation, at its start or at --at-tick")
+        .add_option("--at-generation", &options.generation, "Show this generation at its first tick, or at --at-tick")
         .check(at_least_one);
-    command.add_option("--at-tick", &options.tick, "Show the state after this tick of --at-generation, or of the run")
+    command
+        .add_option("--at-tick", &options.tick,
+                    "Show the state after this tick, counted from the start of --at-generation or of the run")
         .check(whole_number);
 }
 
@@ -151,7 +154,7 @@ void statistics(const Common& common, const MomentOptions& moment) {
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
         std::string text = (moment.is_replay() ? replay_sentence : sentence)(statistics.world()) + "\n";
-        if (const std::string trouble = trouble_of(statistics.world().storage()); !trouble.empty()) {
+        if (const std::string trouble = storage_problem(statistics.world().storage()); !trouble.empty()) {
             text += trouble + "\n";
         }
         if (statistics.live_size() > 0) {
@@ -332,35 +335,45 @@ void describe(const Common& common) {
 
 void add_query_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Look";
-    app.add_command("status", "The server and its worlds in short").group(group).action([&] { status(common); });
-    app.add_command("worlds", "The names of all worlds, a line each").group(group).action([&] { list_worlds(common); });
+    app.add_command("status", "Show a summary of the server and its worlds").group(group).action([&] {
+        status(common);
+    });
+    app.add_command("worlds", "List the names of all worlds, one per line").group(group).action([&] {
+        list_worlds(common);
+    });
 
-    auto& stats = app.add_command("stats", "Statistics of a world: current, and of the last generation").group(group);
+    auto& stats =
+        app.add_command("stats", "Show statistics of a world: its current state and its last generation").group(group);
     auto& moment = stats.keep(MomentOptions{});
     add_options(stats, moment);
     stats.footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
     stats.action([&] { statistics(common, moment); });
 
-    auto& history_command = app.add_command("history", "The statistics of ended generations").group(group);
+    auto& history_command = app.add_command("history", "Show the statistics of ended generations").group(group);
     auto& options = history_command.keep(HistoryOptions{});
     history_command.add_flag("--csv", &options.csv, "Comma-separated values, with every column and the genes");
-    history_command.add_option("--from", &options.from, "First generation; default: the oldest one available")
+    history_command.add_option("--from", &options.from, "First generation; default: the oldest available generation")
         .check(whole_number);
-    history_command.add_option("--to", &options.to, "Last generation; default: the last one that has ended")
+    history_command.add_option("--to", &options.to, "Last generation; default: the last generation that has ended")
         .check(whole_number);
-    history_command.add_option("--island", &options.island, "One island only, from 0").check(index_number);
+    history_command.add_option("--island", &options.island, "Show only this island, numbered from 0")
+        .check(index_number);
     history_command.footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
     history_command.action([&] { history(common, options); });
 
-    auto& one = app.add_command("organism", "One organism, its genes, life and parents").group(group);
+    auto& one = app.add_command("organism", "Show an organism: its genes, life and parents").group(group);
     auto& wanted = one.keep(OrganismOptions{});
-    one.add_option("ID", &wanted.id, "Birth order within the generation, from 0").required().check(index_number);
-    one.add_option("--island", &wanted.island, "Island, from 0").check(index_number);
+    one.add_option("ID", &wanted.id, "Number of the organism in its generation, from 0, in order of birth")
+        .required()
+        .check(index_number);
+    one.add_option("--island", &wanted.island, "Island, numbered from 0").check(index_number);
     add_options(one, wanted.moment);
     one.footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
     one.action([&] { organism(common, wanted); });
 
-    app.add_command("describe", "The server: version, features, limits").group(group).action([&] { describe(common); });
+    app.add_command("describe", "Show the server's version, features and limits").group(group).action([&] {
+        describe(common);
+    });
 }
 
 } // namespace evod::ctl

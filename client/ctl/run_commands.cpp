@@ -68,7 +68,7 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file = open_file("population", path);
     const auto islands = codec::read_population(file);
     if (!islands) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " is wrong: " + islands.error().what};
+        throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + islands.error().what};
     }
     for (const std::vector<float>& genes : *islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
@@ -153,7 +153,7 @@ void fork(const Common& common, const ForkOptions& options) {
         const bool kept = caller.welcome().durability() != v1::DURABILITY_NONE;
         return "forked " + response.world().name() + ": " + sentence(response.world()) + "\n" +
                (kept ? ""
-                     : "it is not recorded, and ends with this server; `evod fork` makes a world from a run file\n");
+                     : "it is not recorded, and ends with this server; `evod fork` creates a world from a run file\n");
     });
 }
 
@@ -209,7 +209,7 @@ class Progress {
 
     /// Prints the state of the storage if it differs from the state printed before.
     void show(const v1::Storage& storage) {
-        const std::string trouble = trouble_of(storage);
+        const std::string trouble = storage_problem(storage);
         if (trouble != trouble_) {
             std::cerr << (live_ && shown_ ? "\n" : "") << (trouble.empty() ? "run files can be written again" : trouble)
                       << '\n'
@@ -296,7 +296,7 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
 }
 
-/// Pauses the world, so that it stays paused after the step. Without this it would run on when the lease of the step
+/// Pauses the world, so that it stays paused after a step. A running world would continue when the lease of the step
 /// ends.
 v1::WorldInfo pause_world(const Common& common, Caller& caller) {
     v1::Request request;
@@ -392,31 +392,36 @@ void set_speed(const Common& common, const std::string& word) {
 
 void add_world_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Worlds";
-    auto& create_command = app.add_command("create", "Create a world; it waits until it is run").group(group);
+    auto& create_command = app.add_command("create", "Create a world; `run` starts it").group(group);
     auto& options = create_command.keep(CreateOptions{});
-    create_command.add_option("NAME", &options.name, "1 to 64 of a-z A-Z 0-9 _ -").required();
-    create_command.add_option("--seed", &options.seed, "Default: that of the file, or drawn by the server")
+    create_command.add_option("NAME", &options.name, "Name of the world: 1 to 64 characters of a-z A-Z 0-9 _ -")
+        .required();
+    create_command
+        .add_option("--seed", &options.seed,
+                    "Seed; default: the seed in the --experiment file, otherwise a random seed")
         .check(whole_number);
-    create_command.add_option("--set", &options.words, "Parameters as NAME=VALUE; others keep their defaults");
+    create_command.add_option("--set", &options.words,
+                              "Parameters as NAME=VALUE; all other parameters keep their defaults");
     create_command.add_option("--experiment", &options.experiment,
                               "JSON file of parameters and optionally a seed; --set and --seed override it");
     create_command.add_option("--population", &options.population,
-                              "First population: CSV file from `evod export --what population`");
+                              "CSV file with the first population, from `evod export --what population`");
     create_command.footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
                           "  evoctl create big --set population_size=10000 scale_with_population=true");
     create_command.action([&] { create(common, options); });
 
     auto& delete_command = app.add_command("delete", "Remove a world and its history").group(group);
     auto& name = delete_command.keep(std::string{});
-    delete_command.add_option("NAME", &name, "The world").required();
+    delete_command.add_option("NAME", &name, "Name of the world").required();
     delete_command.action([&] { remove(common, name); });
 
     auto& fork_command =
-        app.add_command("fork", "Start a second world from a generation, or from the current tick; it waits")
+        app.add_command("fork", "Create a copy of a world at a generation or at the current tick; `run` starts it")
             .group(group);
     auto& fork_options = fork_command.keep(ForkOptions{});
-    fork_command.add_option("WORLD", &fork_options.origin, "The original world; default: that of --world");
-    fork_command.add_option("--name", &fork_options.name, "Name of the new world: 1 to 64 of a-z A-Z 0-9 _ -")
+    fork_command.add_option("WORLD", &fork_options.origin, "Name of the original world; default: the world of --world");
+    fork_command
+        .add_option("--name", &fork_options.name, "Name of the new world: 1 to 64 characters of a-z A-Z 0-9 _ -")
         .required();
     fork_command
         .add_option("--at-generation", &fork_options.at_generation,
@@ -428,18 +433,23 @@ void add_world_commands(command_line::Command& app, const Common& common) {
     fork_command.action([&] { fork(common, fork_options); });
 
     auto& seek_command =
-        app.add_command("seek", "Move a replay (evod replay) to another tick; default: its last").group(group);
+        app.add_command("seek", "Move a replay (see `evod replay`) to another tick; default: its last tick")
+            .group(group);
     auto& seek_options = seek_command.keep(SeekOptions{});
-    seek_command.add_option("--generation", &seek_options.generation, "Generation; its first tick, or --tick")
+    seek_command
+        .add_option("--generation", &seek_options.generation,
+                    "Generation to move to: its first tick, or the tick given by --tick")
         .check(whole_number);
-    seek_command.add_option("--tick", &seek_options.tick, "Tick of the generation; without --generation, of the run")
+    seek_command
+        .add_option("--tick", &seek_options.tick,
+                    "Tick to move to, counted from the start of --generation or of the run")
         .check(whole_number);
     seek_command.action([&] { seek(common, seek_options); });
 
     auto& reset_command =
         app.add_command("reset", "Start again at generation 1, with the current parameters").group(group);
     auto& seed = reset_command.keep(std::optional<std::uint64_t>{});
-    reset_command.add_option("--seed", &seed, "Default: the same seed").check(whole_number);
+    reset_command.add_option("--seed", &seed, "Seed of the new run; default: the same seed").check(whole_number);
     reset_command.action([&] { reset(common, seed); });
 }
 
@@ -453,21 +463,24 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     auto& run_command = app.add_command("run", "Run N more generations, or until paused").group(group);
     auto& generations = run_command.keep(std::optional<std::uint64_t>{});
     auto& run_wait = run_command.keep(false);
-    run_command.add_option("N", &generations, "Generations; default: until paused or a termination criterion holds")
+    run_command
+        .add_option("N", &generations,
+                    "Number of generations; default: until the world is paused or meets a termination criterion")
         .check(at_least_one);
-    run_command.add_flag("--wait", &run_wait, "Return when they have ended; Ctrl-C stops waiting, not the run");
+    run_command.add_flag("--wait", &run_wait,
+                         "Return when the generations have ended; Ctrl-C stops waiting, not the run");
     run_command.footer("Examples:\n  evoctl run 100 --wait && evoctl history --csv > fitness.csv\n"
                        "  evoctl run --world lesson");
     run_command.action([&] { run(common, generations, run_wait); });
 
-    app.add_command("shutdown", "End the server, as SIGTERM does").group("Worlds").action([&] { shut_down(common); });
+    app.add_command("shutdown", "Stop the server, as SIGTERM does").group("Worlds").action([&] { shut_down(common); });
     app.add_command("pause", "Pause a world").group(group).action([&] { pause(common); });
     app.add_command("resume", "Continue after a pause").group(group).action([&] { resume(common); });
 
-    auto& step_command = app.add_command("step", "Run N ticks, then pause; returns when they have run").group(group);
+    auto& step_command = app.add_command("step", "Run N ticks, then pause; returns after the last tick").group(group);
     auto& ticks = step_command.keep(std::uint64_t{1});
     auto& no_wait = step_command.keep(false);
-    step_command.add_option("N", &ticks, "Ticks; default: 1").check(at_least_one);
+    step_command.add_option("N", &ticks, "Number of ticks; default: 1").check(at_least_one);
     step_command.add_flag("--no-wait", &no_wait, "Return immediately");
     step_command.action([&] { step(common, ticks, !no_wait); });
 
@@ -483,7 +496,8 @@ void add_run_commands(command_line::Command& app, const Common& common) {
 
     auto& speed_command = app.add_command("speed", "Set the speed of a world").group(group);
     auto& word = speed_command.keep(std::string{});
-    speed_command.add_option("SPEED", &word, "Simulated seconds per second, 0.001 to 10000, or max").required();
+    speed_command.add_option("SPEED", &word, "Simulated seconds per second of real time, 0.001 to 10000, or max")
+        .required();
     speed_command.footer("Examples:\n  evoctl speed 2\n  evoctl speed max");
     speed_command.action([&] { set_speed(common, word); });
 }

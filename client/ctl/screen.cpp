@@ -42,7 +42,7 @@ void Drawing::leave() {
     lines_ = 0;
 }
 
-void ConnectionNews::report(const core::Connection& connection, Drawing& drawing) {
+void ConnectionReporter::report(const core::Connection& connection, Drawing& drawing) {
     const auto status = connection.status();
     if (status.state == core::State::Failed) {
         drawing.leave();

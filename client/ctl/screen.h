@@ -29,8 +29,8 @@ class Drawing {
     TerminalSize size_;
 };
 
-/// Reports a lost connection on stderr; throws Stop if the client will not reconnect.
-class ConnectionNews {
+/// Reports on stderr that the connection was lost; throws Stop if the client will not reconnect.
+class ConnectionReporter {
   public:
     /// drawing  the text on the terminal; it stays there, and the message is printed below it.
     void report(const core::Connection& connection, Drawing& drawing);

@@ -62,7 +62,7 @@ class Top {
             return true;
         }
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        news_.report(caller_.connection(), drawing_);
+        reporter_.report(caller_.connection(), drawing_);
         if (!response) {
             return false;
         }
@@ -82,7 +82,7 @@ class Top {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
-            news_.report(caller_.connection(), drawing_);
+            reporter_.report(caller_.connection(), drawing_);
         }
     }
 
@@ -93,12 +93,12 @@ class Top {
         }
         const std::chrono::duration<double> between = last_->at - before_->at;
         const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-        const std::string farewell = redraw_ ? "\nCtrl-C ends evoctl, not the server\n" : "";
+        const std::string last_line = redraw_ ? "\nCtrl-C ends evoctl, not the server\n" : "";
         const std::size_t lines = redraw_ ? terminal_size().lines : all_lines;
         const std::string text =
             top_text({before_->metrics, last_->metrics, std::max(between.count(), 1e-3)}, common_.server, now.count(),
                      lines - std::min<std::size_t>(lines, 3)) + // space for the last line and the cursor
-            farewell;
+            last_line;
         if (redraw_) {
             drawing_.draw(text);
         } else {
@@ -114,19 +114,20 @@ class Top {
     const bool redraw_;
     std::optional<Look> before_, last_;
     Drawing drawing_;
-    ConnectionNews news_;
+    ConnectionReporter reporter_;
     bool printed_ = false;
 };
 
 } // namespace
 
 void add_top_command(command_line::Command& app, const Common& common) {
-    auto& top = app.add_command("top", "Metrics of the server: ticks, clients, bytes, disk, memory").group("Follow");
+    auto& top =
+        app.add_command("top", "Show metrics of the server: ticks, clients, bytes, disk, memory").group("Follow");
     auto& options = top.keep(Options{});
     top.add_option("--interval", &options.interval_s, "Seconds between two measurements")
         .check(command_line::RealNumber{0.1, 3600})
         .show_default();
-    top.add_flag("--once", &options.once, "Measure twice, print one page, and end");
+    top.add_flag("--once", &options.once, "Measure twice, print one page, then exit");
     top.footer(
         "Rates are averages since the previous measurement. With --json every measurement is one line; with --once\n"
         "too, the first one is printed immediately.\n\n"

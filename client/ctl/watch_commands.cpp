@@ -69,7 +69,7 @@ class WatchDisplay {
         if (redraw_) {
             load_past();
         } else {
-            say(caller_.storage());
+            print_storage(caller_.storage());
         }
         while (!interrupted() && !ended_) {
             if (redraw_ && Clock::now() >= draw_at_) {
@@ -80,7 +80,7 @@ class WatchDisplay {
             if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
                 take(*event);
             }
-            news_.report(caller_.connection(), drawing_);
+            reporter_.report(caller_.connection(), drawing_);
         }
         if (redraw_ && !ended_) {
             draw();
@@ -117,8 +117,8 @@ class WatchDisplay {
     }
 
     /// Prints the state of the storage on stderr, because programs read stdout. It explains why no generation ends.
-    void say(const v1::Storage& storage) {
-        const std::string trouble = trouble_of(storage);
+    void print_storage(const v1::Storage& storage) {
+        const std::string trouble = storage_problem(storage);
         if (!redraw_ && trouble != trouble_) {
             std::cerr << (trouble.empty() ? "run files can be written again" : trouble) << '\n';
         }
@@ -127,10 +127,10 @@ class WatchDisplay {
 
     void take(const v1::Event& event) {
         if (event.has_storage_changed()) {
-            say(event.storage_changed().storage());
+            print_storage(event.storage_changed().storage());
             draw_at_ = {};
         } else if (event.has_events_dropped() && !redraw_) {
-            say(caller_.storage());
+            print_storage(caller_.storage());
         } else if (event.has_generation_finished()) {
             lines_.push_back(line_of(event.generation_finished().statistics()));
             if (lines_.size() > width) {
@@ -179,7 +179,7 @@ class WatchDisplay {
 
     void draw() {
         std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n";
-        const std::string trouble = trouble_of(world_.storage());
+        const std::string trouble = storage_problem(world_.storage());
         text += (trouble.empty() ? "" : trouble + "\n") + "\n";
         std::uint64_t alive = 0, born = 0, starved = 0, poisoned = 0;
         double health = 0;
@@ -241,7 +241,7 @@ class WatchDisplay {
     std::deque<GenerationLine> lines_; // the newest generations, at most `width`
     std::uint64_t seen_ = 0;           // number of generations that ended while this command ran
     Drawing drawing_;
-    ConnectionNews news_;
+    ConnectionReporter reporter_;
     std::string trouble_; // the problem of the storage that was printed last; empty: none
     Clock::time_point draw_at_{};
     bool ended_ = false;
@@ -325,7 +325,7 @@ std::string text_of(const v1::Event& event) {
     case v1::Event::kServerGoingAway:
         return "the server is shutting down";
     case v1::Event::kStorageChanged: {
-        const std::string trouble = trouble_of(event.storage_changed().storage());
+        const std::string trouble = storage_problem(event.storage_changed().storage());
         return trouble.empty() ? "run files can be written again" : trouble;
     }
     case v1::Event::kEventsDropped:
@@ -350,17 +350,17 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     if (!core::accepted(*answer)) {
         throw Stop{ExitCode::Refused, core::to_text(answer->status())};
     }
-    if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
+    if (const std::string trouble = storage_problem(caller.storage()); !trouble.empty()) {
         std::cerr << trouble << '\n'; // the problem began before this command
     }
-    ConnectionNews news;
+    ConnectionReporter reporter;
     Drawing none;
     for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
             std::cout << (common.json ? to_json(*event, false) : visible(text_of(*event)) + "\n") << std::flush;
             ++seen;
         }
-        news.report(caller.connection(), none);
+        reporter.report(caller.connection(), none);
     }
 }
 
@@ -368,18 +368,20 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
 
 void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
-    auto& watch = app.add_command("watch", "Live statistics; a line per generation when piped").group(group);
+    auto& watch =
+        app.add_command("watch", "Show live statistics; if the output is no terminal, print one line per generation")
+            .group(group);
     auto& generations = watch.keep(std::optional<std::uint64_t>{});
     watch
         .add_option("--generations", &generations,
-                    "Print one line for each of this many generations, then end; default: until Ctrl-C")
+                    "Print one line per generation for this many generations, then exit; default: until Ctrl-C")
         .check(at_least_one);
     watch.footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
     watch.action([&] { WatchDisplay{common, generations}.run(); });
 
     auto& events = app.add_command("events", "Print every event of one world or of all, one per line").group(group);
     auto& count = events.keep(std::optional<std::uint64_t>{});
-    events.add_option("--count", &count, "End after this many events; default: until Ctrl-C").check(at_least_one);
+    events.add_option("--count", &count, "Exit after this many events; default: until Ctrl-C").check(at_least_one);
     events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
     events.action([&] { follow_events(common, count); });
 }

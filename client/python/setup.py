@@ -35,7 +35,7 @@ def generate_messages(folder: pathlib.Path) -> None:
         raise SystemExit(f"there are no .proto files in {sources / 'proto'}: build this package inside evod's source tree")
     protoc = os.environ.get("PROTOC") or shutil.which("protoc")
     if not protoc:
-        raise SystemExit("protoc is missing: install protobuf-compiler, or name it in the environment variable PROTOC")
+        raise SystemExit("protoc is missing: install protobuf-compiler, or set the environment variable PROTOC to its path")
     (folder / "evod" / "v1").mkdir(parents=True, exist_ok=True)
     subprocess.run([protoc, f"--proto_path={sources / 'proto'}", f"--python_out={folder}", f"--pyi_out={folder}",
                     *map(str, protos)], check=True)

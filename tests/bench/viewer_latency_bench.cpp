@@ -115,8 +115,8 @@ class Viewer {
         renderer().gui().handle(event);
     }
     Point find(const std::string& widget) {
-        frames_until([&] { return renderer().gui().spots().find(widget).has_value(); });
-        return *renderer().gui().spots().find(widget);
+        frames_until([&] { return renderer().gui().widget_positions().find(widget).has_value(); });
+        return *renderer().gui().widget_positions().find(widget);
     }
     void click(const std::string& widget) {
         const Point at = find(widget);

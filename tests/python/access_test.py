@@ -38,7 +38,7 @@ class Access(unittest.TestCase):
         file.chmod(0o600)
         evod.connect(address, token_file=str(file)).close()
         file.chmod(0o644)
-        with self.assertRaisesRegex(evod.Error, "other users can read it: chmod 600 it"):
+        with self.assertRaisesRegex(evod.Error, "other users can read the file: run chmod 600 on it"):
             evod.connect(address, token_file=str(file))
         os.environ["EVOD_TOKEN"] = viewer
         self.addCleanup(os.environ.pop, "EVOD_TOKEN")
@@ -74,7 +74,7 @@ class Access(unittest.TestCase):
             evod.connect(address, tls=True)
         with self.assertRaisesRegex(evod.Error, "no-such.pem cannot be used for TLS: No such file"):
             evod.connect(address, ca="no-such.pem")
-        with self.assertRaisesRegex(evod.Error, "key is given without cert"):
+        with self.assertRaisesRegex(evod.Error, "key requires cert"):
             evod.connect(address, key=key)
         with self.assertRaises(evod.NoConnection):
             evod.connect(address)

@@ -24,7 +24,7 @@ class Connect(unittest.TestCase):
     def test_missing_servers_and_programs_are_reported(self):
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1:1: start one with `evod`"):
             evod.connect("127.0.0.1:1")
-        with self.assertRaisesRegex(evod.Error, "there is no program no-such-evod"):
+        with self.assertRaisesRegex(evod.Error, "the program no-such-evod was not found"):
             evod.local(program="no-such-evod")
         with self.assertRaisesRegex(evod.Error, "evod did not start: .*population_size"):
             evod.local(experiment={"population_size": 0})

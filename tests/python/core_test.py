@@ -85,7 +85,7 @@ class CoreTest(CoreTestCase):
 
     def test_a_request_that_is_too_long_is_not_sent(self):
         core = self.core()
-        with self.assertRaisesRegex(evod.Error, "bytes long, allowed 500"):
+        with self.assertRaisesRegex(evod.Error, "bytes long, allowed at most 500"):
             core.request(c.Request(pause=c.Pause(world="x" * 500)))
         self.assertEqual(core.outgoing(), b"")
 

@@ -92,13 +92,13 @@ class RunFiles(unittest.TestCase):
             evod.open_run(self.folder / "no.evod")
         for name, content in (("empty.evod", b""), ("text.evod", b"generation,island\n" * 1000), ("zero.evod", bytes(8192))):
             (self.folder / name).write_bytes(content)
-            with self.assertRaisesRegex(evod.DamagedData, f"{name} is no run file"):
+            with self.assertRaisesRegex(evod.DamagedData, f"{name} is not a run file"):
                 evod.open_run(self.folder / name)
         other = self.folder / "other.evod"
         with sqlite3.connect(other) as file:
             file.execute("CREATE TABLE run (key TEXT, value TEXT)")
         file.close()
-        with self.assertRaisesRegex(evod.DamagedData, "is no run file"):
+        with self.assertRaisesRegex(evod.DamagedData, "is not a run file"):
             evod.open_run(other)
 
     def test_a_view_in_place_of_a_table_is_refused(self):

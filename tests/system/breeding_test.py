@@ -242,7 +242,7 @@ class Breeding(export_test.Runs):
 
         bred = self.breeding(client, island=1)
         text = evoctl("breeding", "--island", "1", "--rows", "12")
-        self.assertIn("generation 2 of island 1: of 12 organisms, 6 picks were made; then came 0 elite, 6 other survivors, "
+        self.assertIn("generation 2 of island 1: 12 organisms, 6 picks; the next generation: 0 elite, 6 other survivors, "
                       "6 children", text)
         self.assertIn("selection=tournament", text)
         for pick in bred.picks:

@@ -235,7 +235,7 @@ class Commands(WithServer):
                 for path, why in (folder, "Is a directory"), (folder + "/none", "No such file or directory"):
                     self.assertIn(f"the {what} file {path} cannot be read: {why}",
                                   self.evoctl("create", "x", option, path, status=2))
-        self.assertIn("--key: mine.key needs its certificate: give --cert",
+        self.assertIn("--key: mine.key requires the certificate of this key: give --cert",
                       self.evoctl("--key", "mine.key", "status", status=2))
         with open("/dev/full", "w") as full:
             for words in (["params"], ["--json", "describe"], ["worlds"]):

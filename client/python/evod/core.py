@@ -28,8 +28,8 @@ from evod.version import __version__
 
 PROTOCOL_VERSION = 1
 EVENTS_KEPT = 10_000
-UNACKNOWLEDGED_MAX = 8  # number of snapshots of each island
-_KEYFRAME_REQUESTS_MAX = 3  # number of keyframe requests without a decoded snapshot in between
+UNACKNOWLEDGED_MAX = 8  # unacknowledged snapshots of each island
+_KEYFRAME_REQUESTS_MAX = 3  # consecutive keyframe requests without a decoded snapshot in between
 
 #: Requests for which the server may have to simulate generations again; their timeout is longer.
 _REPLAY_REQUESTS = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
@@ -59,7 +59,7 @@ class Pending:
         return self.response is not None or self.error is not None
 
     def timeout_s(self, usual_s: float) -> float:
-        """Returns the timeout of this request. usual_s is the timeout of requests that need no replay."""
+        """Returns the timeout of this request. usual_s is the timeout if the server need not replay a run."""
         return usual_s * _REPLAY_TIMEOUT_FACTOR if self.kind in _REPLAY_REQUESTS else usual_s
 
 
@@ -69,7 +69,7 @@ class Subscription:
     def __init__(self, request: commands_pb2.Request) -> None:
         self.request = request
         self.world: str = getattr(request, request.WhichOneof("kind") or "").world
-        self.server_id: int | None = None  # its id in this session; None: the server has not accepted it yet
+        self.server_id: int | None = None  # id of the subscription in this session; None: not accepted yet
         self.pending: Pending | None = None
         self.refused: Error | None = None  # the error if the server has refused the subscription
         self.sessions = 0  # number of sessions in which the server accepted it
@@ -120,7 +120,7 @@ class Core:
         self.client_key = secrets.token_hex(16)
         self.welcome: session_pb2.Welcome | None = None  # received in the current or the last session
         self.connected = False  # whether the server has sent its Welcome on the current connection
-        self.failed: Error | None = None  # why reconnecting is pointless; None: it is not
+        self.failed: Error | None = None  # why reconnecting is pointless; None: the client may reconnect
         self.loss: Error | None = None  # why there is no session at present
         self.damaged_snapshot_count = 0  # snapshots dropped because they could not be decoded
         self._outgoing = bytearray()
@@ -152,7 +152,7 @@ class Core:
                 elif self.connected:
                     self._take_snapshot(stream_pb2.SnapshotFrame.FromString(body))
                 else:
-                    raise DamagedData("its first frame is a snapshot, not a Welcome")
+                    raise DamagedData("the first frame is a snapshot, not a Welcome")
         except (google.protobuf.message.DecodeError, DamagedData) as error:
             what = error.message if isinstance(error, DamagedData) else "a message cannot be read"
             if self.connected:
@@ -181,7 +181,7 @@ class Core:
             pending.sent = False
 
     def close(self) -> None:
-        """Makes all requests fail. The client cannot be used again."""
+        """All pending requests fail. The client cannot be used again."""
         self.failed = NoConnection("the connection was closed here")
         self.lost(self.failed)
 
@@ -206,7 +206,7 @@ class Core:
         limits = self.welcome.limits if self.welcome else None
         limit = limits.control_frame_bytes_max if limits else 1 << 20
         if len(body) > limit:
-            raise Error(f"the request is {len(body)} bytes long, allowed {limit}")
+            raise Error(f"the request is {len(body)} bytes long, allowed at most {limit}")
         self._last_request_id = request_id
         pending = self._pending[request_id] = Pending(request, framing.encode(body))
         if first:
@@ -215,7 +215,7 @@ class Core:
         return pending
 
     def forget(self, pending: Pending) -> None:
-        """Call it when the caller no longer waits. If the request opens a replay, the answer makes the core close it."""
+        """Call it when the caller no longer waits. The core closes a replay that the request opens."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
         if pending.kind == "open_replay" and pending.sent and not pending.done:
@@ -296,10 +296,10 @@ class Core:
                 self.failed = refused
             raise refused
         if kind != "welcome":
-            raise DamagedData("its first message is not a Welcome")
+            raise DamagedData("the first message is not a Welcome")
         if message.welcome.protocol_version != PROTOCOL_VERSION:
             self.failed = NoConnection(
-                f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, this package version "
+                f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, but this package uses "
                 f"{PROTOCOL_VERSION}: install the package of the server's version"
             )
             raise self.failed

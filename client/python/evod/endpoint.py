@@ -33,14 +33,14 @@ class Endpoint:
         if text.startswith("["):
             host, bracket, rest = text[1:].partition("]")
             if not bracket:
-                raise _malformed(text, "there is no ']'")
+                raise _malformed(text, "']' is missing")
             if rest and not rest.startswith(":"):
-                raise _malformed(text, "after ']' there is no ':' and port")
+                raise _malformed(text, "']' must be followed by ':' and a port")
             port = rest[1:] if rest else None
         elif text.count(":") == 1:
             host, port = text.split(":")
         if not host:
-            raise _malformed(text, "there is no host")
+            raise _malformed(text, "the host is missing")
         if port is None:
             return cls(host)
         if not (port.isascii() and port.isdigit() and len(port) <= 5 and 1 <= int(port) <= 65535):
@@ -56,7 +56,7 @@ def _malformed(text: str, why: str) -> Error:
 
 
 def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
-    """Returns `token`, or else the first word of the file, or else the environment variable EVOD_TOKEN, or else "".
+    """Returns `token`; by default the first word of the file; without a file the value of EVOD_TOKEN, or "" if it is unset.
 
     Raises Error if users other than the owner can read the file.
     """
@@ -69,7 +69,7 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
     try:
         with open(token_file, encoding="utf-8") as file:
             if os.fstat(file.fileno()).st_mode & 0o077:
-                raise Error(f"token_file: {os.fspath(token_file)}: other users can read it: chmod 600 it")
+                raise Error(f"token_file: {os.fspath(token_file)}: other users can read the file: run chmod 600 on it")
             words = file.read(4096).split()
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "the file is not text"
@@ -89,7 +89,7 @@ def tls_context(
     cert, key  PEM files with the client certificate and its private key. One file may contain both.
     """
     if key is not None and cert is None:
-        raise Error("key is given without cert: name the file of the certificate, too")
+        raise Error("key requires cert: give the PEM file of the certificate, too")
     ca = (os.environ.get("EVOD_CA") if ca is None else ca) or None
     if not tls and ca is None and cert is None:
         return None

@@ -1,4 +1,4 @@
-"""Exceptions. Each has a message for the user, a code for programs, and a list of all fields with wrong values."""
+"""Exceptions. Each has a message for the user, a code for programs, and a list of all fields with invalid values."""
 from __future__ import annotations
 
 from typing import Iterable, NamedTuple, TypeVar
@@ -92,5 +92,5 @@ def copy_of(error: E) -> E:
 
 
 def wrong_argument(field: str, allowed: str, got: object, message: str = "the request is wrong") -> Error:
-    """Returns the error for a wrong argument. It has the same code as the server's answer would have."""
+    """Returns the error for an invalid argument. It has the code with which the server would have answered."""
     return Error(message, commands_pb2.CODE_INVALID_ARGUMENT, [Violation(field, allowed, str(got))])

@@ -7,7 +7,7 @@ from typing import Iterator
 from evod.errors import DamagedData
 
 CONTROL, STREAM = 1, 2
-BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # size of the largest body that a client accepts
+BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # the largest body that a client accepts, by channel
 HEADER_BYTES = 8
 
 _header = struct.Struct("<2sBBI")
@@ -23,7 +23,7 @@ class FrameReader:
 
     def __init__(self) -> None:
         self._data = bytearray()
-        self._offset = 0  # offset of the first byte that was not yet returned in a frame
+        self._offset = 0  # offset in the buffer of the first byte that no returned frame contains
 
     def feed(self, data: bytes | bytearray | memoryview) -> None:
         """Appends the bytes that arrived next."""

@@ -54,7 +54,7 @@ class Link:
             change()
 
     def open(self) -> None:
-        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is no evod server."""
+        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is not an evod server."""
         try:
             self._run(self._inner.open())
         except BaseException:

@@ -1,4 +1,4 @@
-"""A private server, which is started by this program and stops when this program ends."""
+"""A private server, which this program starts and which stops when this program ends."""
 from __future__ import annotations
 
 import collections

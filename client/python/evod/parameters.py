@@ -51,7 +51,7 @@ class Description:
         return "true or false" if self.kind == "flag" else ", ".join(self.choices)
 
     def got(self, value: object) -> str:
-        """Formats a refused value for an error message: as the server does if the type is right, otherwise as Python does."""
+        """Formats a refused value for an error message: as the server does if its type is correct, otherwise as Python does."""
         kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
         right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
         return text_of(value) if right_kind else repr(value)

@@ -1,7 +1,7 @@
 """Plans: operations of a client that may consist of several requests. This module does no I/O.
 
-A plan is a generator. It yields a request and receives the response. Or it yields an Until, and continues when the condition
-is true. Its return value is the result of the operation. Link.perform() (aio/link.py) executes plans.
+A plan is a generator. It yields a request and receives the response, or yields an Until and continues when the condition is
+true. Its return value is the result of the operation. Link.perform() (aio/link.py) executes plans.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ M = TypeVar("M", bound=google.protobuf.message.Message)
 
 @dataclasses.dataclass(frozen=True)
 class Until:
-    """Waits until a condition is true: at most for the timeout of an answer, or for as long as the server can be reached."""
+    """Makes the plan wait until `condition()` is true: as long as the server can be reached, or also at most the timeout."""
 
     condition: Callable[[], object]
     within_timeout: bool = False
@@ -521,7 +521,7 @@ def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
         try:
             message(**{name: value})
         except (TypeError, ValueError):
-            allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "a value of another type")
+            allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "a value of the type of the field")
             violations.append(Violation(field_prefix + name, allowed, str(value)))
     raise Error("the request is wrong", c.CODE_INVALID_ARGUMENT, violations)
 

@@ -8,9 +8,9 @@ from evod.errors import Error
 
 
 def find_program(program: str | os.PathLike[str] | None) -> str:
-    """Returns `program`, or else the path in the environment variable EVOD, or else the path of the evod found in PATH."""
+    """Returns the path of `program`; by default the path in the environment variable EVOD, or of the evod found in PATH."""
     name = os.fspath(program) if program is not None else os.environ.get("EVOD") or "evod"
     found = shutil.which(name)
     if found is None:
-        raise Error(f"there is no program {name}: put evod on the path, or name it in the environment variable EVOD")
+        raise Error(f"the program {name} was not found: add its folder to PATH, or set the variable EVOD to its path")
     return found

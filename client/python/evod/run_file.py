@@ -32,7 +32,7 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
     path
         The run file.
     program
-        Path of the program evod, which `RunFile.lineage` runs. By default the program that `evod.local` would start.
+        Path of the program evod, which `RunFile.lineage` runs. By default the program that `evod.local` starts.
 
     Raises
     ------
@@ -83,7 +83,7 @@ class RunFile:
             self.seed = int(self.about["seed"])
         except (DamagedData, KeyError, ValueError):
             self._database.close()
-            why = f"not as evod wrote it: it contains the {foreign[0]} {foreign[1]!r}" if foreign else "no run file"
+            why = f"not as evod wrote it: it contains the {foreign[0]} {foreign[1]!r}" if foreign else "not a run file"
             raise DamagedData(f"{self.path} is {why}") from None
 
     def __repr__(self) -> str:

@@ -29,7 +29,7 @@ _SIZES: dict[str, tuple[str, ...]] = {
 _HAVE_IDS = frozenset(("organisms", "food", "poison"))
 _MOVE = frozenset(("organisms", "crates"))
 _COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
-_LENGTH_PX_MAX = 1e7  # largest width or height of an island; the parameters of evod have lower limits
+_LENGTH_PX_MAX = 1e7  # largest accepted width or height of an island; the limits of evod's parameters are lower
 _DENSITY_CELLS = (1, 2, 4, 8, 16)
 can_unpack = zstandard is not None  #: whether this client can decode compressed snapshots
 
@@ -109,7 +109,7 @@ class SnapshotDecoder:
                 raise DamagedData(f"a tile's detail is {tile.detail}, allowed: 1 to 3")
             tiles.append(Tile(tile.tile, tile.detail, left, top, side, counts, dots, density))
         self._tiles = full
-        return _together(contents), tuple(tiles)
+        return _merged_tiles(contents), tuple(tiles)
 
 
 # ---- bodies -----------------------------------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ def _counts_of(message: Any) -> list[int]:
 def _body_of(message: Any, position_bytes: int, checked_before: bytes, bytes_max: int) -> _Body:
     """Verifies the checksum of a SnapshotFrame or a SnapshotTile and returns its uncompressed body.
 
-    checked_before  the bytes before the body that the checksum also covers.
+    checked_before  bytes that the checksum covers in addition to the body, before it.
     bytes_max       the largest allowed size of the uncompressed body; a larger one raises DamagedData.
     """
     data = message.body
@@ -374,7 +374,7 @@ def _density(body: _Body) -> Mapping[str, Array]:
     return density
 
 
-def _together(contents: Sequence[Content]) -> Content:
+def _merged_tiles(contents: Sequence[Content]) -> Content:
     """Returns the entities of several tiles, in ascending order of ids."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():

@@ -96,9 +96,9 @@ class Tile:
     top_px: float
     side_px: int
     counts: Mapping[str, int]  #: number of entities of each kind: "organisms", "food", "poison", "crates", "obstacles"
-    #: At DETAIL_DOTS, the positions for each kind: shape (2, count), x and y in px, rounded to 1/256 of the tile's side.
+    #: At DETAIL_DOTS, the positions by kind of entity: shape (2, count), x and y in px, rounded to 1/256 of the tile's side.
     dots: Mapping[str, Array] | None = None
-    #: At DETAIL_DENSITY, the number of entities in each cell for each kind: shape (cells, cells), indexed by row and column.
+    #: At DETAIL_DENSITY, the number of entities per cell, by kind of entity: shape (cells, cells), indexed by row and column.
     density: Mapping[str, Array] | None = None
 
 

@@ -9,7 +9,7 @@ import time
 from evod.endpoint import Endpoint
 from evod.errors import DamagedData, NoConnection
 
-CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for receiving the Welcome
+CONNECT_TIMEOUT_S = 5.0  # limit for connecting, and another such limit for receiving the Welcome
 READ_BYTES = 256 << 10
 _BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before reconnecting; each failed attempt doubles it
 

@@ -1,6 +1,6 @@
 """While a world runs, prints the number of living organisms, the distance to their food, and each generation's results.
 
-    watch_a_run.py [HOST:PORT] [--generations N]      without an address, on a private server
+    watch_a_run.py [HOST:PORT] [--generations N]      without HOST:PORT, starts a private server
 """
 import argparse
 
@@ -9,7 +9,7 @@ import numpy
 import evod
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("server", nargs="?", help="HOST:PORT of a server; needs the role controller")
+parser.add_argument("server", nargs="?", help="HOST:PORT of a server that grants the role controller; default: a private server")
 parser.add_argument("--generations", type=int, default=3)
 options = parser.parse_args()
 

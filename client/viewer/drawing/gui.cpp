@@ -75,7 +75,7 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     style.ScaleAllSizes(scale_);
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // prevents Dear ImGui from writing a settings file
-    io.UserData = spots_.get();
+    io.UserData = widget_positions_.get();
     for (const NamedKey& named : named_keys) {
         io.KeyMap[named.name] = named.key;
     }
@@ -210,7 +210,7 @@ void Gui::begin(unsigned width_pixels, unsigned height_pixels, double seconds) {
     while (!waiting_.empty() && pass_on(waiting_.front(), received)) {
         waiting_.pop_front();
     }
-    spots_->begin_frame();
+    widget_positions_->begin_frame();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
 }

@@ -21,7 +21,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// The kinds of events that widgets use at present.
+/// Which events the widgets currently use: keyboard events, mouse events or both.
 struct Captured {
     bool keyboard = false, mouse = false;
 };
@@ -48,7 +48,7 @@ class Gui {
     void draw(); // renders everything built since begin() to the current framebuffer
 
     float scale() const { return scale_; }
-    Spots& spots() const { return *spots_; }
+    WidgetPositions& widget_positions() const { return *widget_positions_; }
     ImFont& text() const { return *text_; }
     ImFont& title() const { return *title_; }
     ImFont& label() const { return *label_; }
@@ -67,7 +67,7 @@ class Gui {
     ImFont* title_ = nullptr;
     ImFont* label_ = nullptr;
     std::deque<sf::Event> waiting_;
-    std::unique_ptr<Spots> spots_ = std::make_unique<Spots>();
+    std::unique_ptr<WidgetPositions> widget_positions_ = std::make_unique<WidgetPositions>();
     std::string clipboard_; // the last text that Dear ImGui read from the clipboard
 };
 

@@ -24,8 +24,8 @@ constexpr Colour faint(Colour colour, std::uint8_t alpha) {
 /// wrap_width  maximum line width in pixels; 0: lines end only at the line breaks of the text
 ImVec2 size_of(std::string_view text, const ImFont& font, float wrap_width = 0);
 
-/// Draws text. Rounds the upper left corner down to whole pixels, which keeps letters sharp. Returns the x at which the
-/// text ends.
+/// Draws text. Rounds the upper left corner down to whole pixels, which keeps letters sharp. Returns the x coordinate
+/// of the end of the text.
 float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, std::string_view text,
             float wrap_width = 0);
 void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text);

@@ -7,33 +7,33 @@
 
 namespace evod::viewer {
 
-void Spots::begin_frame() {
+void WidgetPositions::begin_frame() {
     shown_ = std::exchange(building_, {});
     panel_.clear();
 }
 
 /// Calls `act` for both names of a widget: "Panel/name" and "name".
 template <class Do>
-void Spots::each_name(std::string_view name, Do act) {
+void WidgetPositions::each_name(std::string_view name, Do act) {
     if (!panel_.empty()) {
         act(panel_ + "/" + std::string{name});
     }
     act(std::string{name});
 }
 
-void Spots::add(std::string_view name, Point centre) {
+void WidgetPositions::add(std::string_view name, Point centre) {
     each_name(name, [&](std::string full) {
-        building_.insert_or_assign(std::move(full), Spot{.centre = centre, .choices = {}});
+        building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {}});
     });
 }
 
-void Spots::add_drop_down(std::string_view name, Point centre) {
+void WidgetPositions::add_drop_down(std::string_view name, Point centre) {
     each_name(name, [&](std::string full) {
-        building_.insert_or_assign(std::move(full), Spot{.centre = centre, .choices = {{}}});
+        building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {{}}});
     });
 }
 
-void Spots::add_choice(std::string_view drop_down, std::string_view choice, Point centre) {
+void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, Point centre) {
     add(std::string{drop_down} + ": " + std::string{choice}, centre);
     each_name(drop_down, [&](const std::string& full) {
         if (const auto spot = building_.find(full); spot != building_.end() && spot->second.choices) {
@@ -42,18 +42,19 @@ void Spots::add_choice(std::string_view drop_down, std::string_view choice, Poin
     });
 }
 
-std::optional<Point> Spots::find(const std::string& name) const {
+std::optional<Point> WidgetPositions::find(const std::string& name) const {
     const auto found = shown_.find(name);
     return found == shown_.end() ? std::nullopt : std::optional{found->second.centre};
 }
 
-const std::vector<std::string>* Spots::choices(const std::string& name) const {
+const std::vector<std::string>* WidgetPositions::choices(const std::string& name) const {
     const auto found = shown_.find(name);
     return found == shown_.end() || !found->second.choices ? nullptr : &*found->second.choices;
 }
 
-bool Spots::lingers(Point corner, double now_s, bool clicked) {
-    constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws only four frames per second
+bool WidgetPositions::mouse_rests(Point corner, double now_s, bool clicked) {
+    constexpr double rest_s = 0.5,
+                     gap_s = 0.25; // gap_s is long, because a slow machine draws only four frames per second
     if (corner != hovered_ || now_s - hovered_last_s_ > gap_s) {
         hovered_ = corner;
         hovered_since_s_ = now_s;
@@ -77,8 +78,8 @@ void write_lines(std::string_view text, float width_max) {
 }
 
 /// The register of widgets; null if no part of this rectangle is visible.
-Spots* spots_of(ImVec2 least, ImVec2 most) {
-    return ImGui::IsRectVisible(least, most) ? static_cast<Spots*>(ImGui::GetIO().UserData) : nullptr;
+WidgetPositions* positions_of(ImVec2 least, ImVec2 most) {
+    return ImGui::IsRectVisible(least, most) ? static_cast<WidgetPositions*>(ImGui::GetIO().UserData) : nullptr;
 }
 
 Point middle(ImVec2 least, ImVec2 most) {
@@ -89,8 +90,8 @@ Point middle(ImVec2 least, ImVec2 most) {
 
 void mark(std::string_view name) {
     const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-    if (Spots* spots = spots_of(least, most)) {
-        spots->add(name, middle(least, most));
+    if (WidgetPositions* positions = positions_of(least, most)) {
+        positions->add(name, middle(least, most));
     }
 }
 
@@ -107,11 +108,11 @@ bool checkbox(const char* label, bool& on) {
 }
 
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name) {
-    // After an open list is drawn, Dear ImGui's "last widget" is that list, so the position is read before.
+    // After an open list is drawn, Dear ImGui's "last widget" is the list. The position is therefore read before.
     const ImVec2 least = ImGui::GetCursorScreenPos();
     const ImVec2 most{least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()};
-    if (Spots* spots = spots_of(least, most)) {
-        spots->add_drop_down(name.empty() ? label : name, middle(least, most));
+    if (WidgetPositions* positions = positions_of(least, most)) {
+        positions->add_drop_down(name.empty() ? label : name, middle(least, most));
     }
     return ImGui::BeginCombo(label, chosen, ImGuiComboFlags_HeightLargest);
 }
@@ -119,8 +120,8 @@ bool begin_drop_down(const char* label, const char* chosen, std::string_view nam
 bool choice(std::string_view drop_down, const std::string& name, bool chosen) {
     const bool taken = ImGui::Selectable(name.c_str(), chosen);
     const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-    if (Spots* spots = spots_of(least, most)) {
-        spots->add_choice(drop_down, name, middle(least, most));
+    if (WidgetPositions* positions = positions_of(least, most)) {
+        positions->add_choice(drop_down, name, middle(least, most));
     }
     return taken;
 }
@@ -131,20 +132,20 @@ bool window_pressed() {
     return ImGui::IsWindowHovered(in_any_case) && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1));
 }
 
-void say(std::string_view text, Colour colour) {
+void small_text(std::string_view text, Colour colour) {
     ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
     write_lines(text, ImGui::GetContentRegionAvail().x);
     ImGui::PopStyleColor();
 }
 
 bool wants_note() {
-    auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
+    auto* positions = static_cast<WidgetPositions*>(ImGui::GetIO().UserData);
     const ImVec2 corner = ImGui::GetItemRectMin();
     const auto clicked = [](ImGuiMouseButton button) {
         return ImGui::IsMouseDown(button) || ImGui::IsMouseReleased(button);
     };
-    return spots != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
-           spots->lingers({corner.x, corner.y}, ImGui::GetTime(), clicked(0) || clicked(1));
+    return positions != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
+           positions->mouse_rests({corner.x, corner.y}, ImGui::GetTime(), clicked(0) || clicked(1));
 }
 
 void note(std::string_view text) {

@@ -4,7 +4,7 @@
 // label that users read. If two panels have widgets with the same label, "Panel/name" is unique. A choice of an open
 // drop-down has the name "drop-down: choice".
 //
-// Owner        Spots belongs to the Gui; the rest are functions.
+// Owner        WidgetPositions belongs to the Gui; the rest are functions.
 // Needs        called between Gui::begin() and Gui::draw().
 // Threads      none; used on the drawing thread.
 #pragma once
@@ -21,10 +21,10 @@
 namespace evod::viewer {
 
 /// Stores the positions of the widgets of the last complete frame, and the widget on which the mouse rests.
-class Spots {
+class WidgetPositions {
   public:
     void begin_frame();
-    /// Assigns the widgets registered after this call to the panel with this title. Empty: they belong to no panel.
+    /// Assigns the widgets registered after this call to the panel with this title, or to no panel if `title` is empty.
     void begin_panel(std::string_view title) { panel_ = title; }
     void add(std::string_view name, Point centre);
     void add_drop_down(std::string_view name, Point centre);
@@ -33,25 +33,25 @@ class Spots {
 
     /// name  the label "Apply", or "Parameters/Apply" with the panel
     std::optional<Point> find(const std::string& name) const;
-    /// The visible choices of the drop-down with this name. Empty while the drop-down is closed. Null if there is no
-    /// such drop-down.
+    /// Returns the visible choices of the drop-down with this name: an empty list while it is closed; null if there is
+    /// no such drop-down.
     const std::vector<std::string>* choices(const std::string& name) const;
 
     /// Whether the mouse has rested on the widget with this corner long enough to show its note. Must be called in
     /// every frame in which the mouse is on the widget. After a click, returns false until the mouse has left the
     /// widget, so that the note does not cover the effect of the click.
-    bool lingers(Point corner, double now_s, bool clicked);
+    bool mouse_rests(Point corner, double now_s, bool clicked);
 
   private:
-    struct Spot {
+    struct Widget {
         Point centre;
-        std::optional<std::vector<std::string>> choices; // nullopt: not a drop-down
+        std::optional<std::vector<std::string>> choices; // nullopt: the widget is not a drop-down
     };
     template <class Do>
     void each_name(std::string_view name, Do act);
 
     std::string panel_;
-    std::map<std::string, Spot> shown_, building_;
+    std::map<std::string, Widget> shown_, building_;
     Point hovered_;
     double hovered_since_s_ = 0, hovered_last_s_ = -1;
     bool clicked_ = false; // a click happened since hovered_since_s_
@@ -79,7 +79,7 @@ bool choice(std::string_view drop_down, const std::string& name, bool chosen);
 bool window_pressed();
 
 /// Writes small text in `colour`, wrapped at the edge of the panel.
-void say(std::string_view text, Colour colour = palette::text_quiet);
+void small_text(std::string_view text, Colour colour = palette::text_quiet);
 
 /// Whether the mouse has rested on the last widget long enough to show its note.
 bool wants_note();

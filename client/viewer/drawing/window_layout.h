@@ -20,7 +20,7 @@ constexpr float panel_strip = 26, top_strip = 38, bottom_strip = 30;
 
 /// The strip at the top of an interactive window, with the names of the panels.
 Rectangle panel_strip_of(unsigned width_pixels, double scale = 1);
-/// The part of the window below that strip, which shows the worlds.
+/// The part of the window below the strip of panel names; it shows the worlds.
 Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale = 1);
 
 /// The part of `place` in which the island is drawn: `place` without the title and statistics strips of its world.

@@ -1,5 +1,5 @@
 // IslandRenderer: draws an island: walls, food, poison, crates, obstacles, organisms with their health above them, and
-// whatever the view options switch on: colours, radii, forces, trails and densities.
+// everything that the view options enable: colours, radii, forces, trails and densities.
 //
 // Pure functions (marks.h) compute the shapes. IslandRenderer keeps the shapes in graphics memory and draws all shapes
 // of one kind in one call. Items are uploaded once per snapshot. Organisms and crates are uploaded in each frame,

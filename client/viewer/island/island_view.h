@@ -19,7 +19,7 @@
 
 namespace evod::viewer {
 
-/// The switches of the View panel: which parts of an island are drawn, and how.
+/// The settings of the View panel: which parts of an island are drawn, and how.
 struct ViewOptions {
     ColourBy colour_by = ColourBy::Nothing;
     std::size_t gene = 0; // index of the gene that colours organisms, in the world's list of genes
@@ -89,7 +89,7 @@ class IslandView {
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
 
-    /// The place and run that are shown. When one of them changes, all data about the old ones is cleared.
+    /// The place (world and island) and the run that are shown. When one changes, all older data are cleared.
     struct Shown {
         std::uint64_t number = 0; // WorldFeed::place_number()
         std::string run_id;       // empty until the first snapshot arrives

@@ -14,14 +14,14 @@ namespace {
 
 void add_families(const IslandView& island_view, const Population& population, Legend& legend) {
     if (population.families().empty()) {
-        legend.entries.push_back({palette::unknown, "lineages unknown: not sent by the server"});
+        legend.entries.push_back({palette::unknown, "lineages unknown: the server does not send them"});
         return;
     }
     std::size_t others = population.size();
     for (std::uint8_t family = 0; family < population.families().size(); ++family) {
         const auto& [founder, size] = population.families()[family];
         legend.entries.push_back({island_view.family_colours().of(family),
-                                  "of organism " + std::to_string(founder) + ": " + with_separators(size)});
+                                  "descendants of organism " + std::to_string(founder) + ": " + with_separators(size)});
         others -= size;
     }
     if (others > 0) {

@@ -42,8 +42,10 @@ class FamilyColours {
     Colour of(std::uint8_t family) const;
 
   private:
-    std::array<std::optional<std::uint32_t>, palette::kinds.size()> places_{}; // by colour: the family's founder
-    std::array<std::uint8_t, Population::shown_families_max> colours_{};       // by family: the index of its colour
+    /// For each colour, the founder of the family that has it.
+    std::array<std::optional<std::uint32_t>, palette::kinds.size()> places_{};
+    /// For each family, the index of its colour.
+    std::array<std::uint8_t, Population::shown_families_max> colours_{};
 };
 
 void add_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);

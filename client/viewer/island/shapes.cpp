@@ -16,16 +16,16 @@ namespace {
 // The shader subtracts the camera's centre from a position before it multiplies by the zoom. The difference of nearby
 // positions is exact in floats, but each product would be rounded.
 constexpr const char* vertex_source = R"(#version 330 core
-uniform samplerBuffer shapes;        // centre, half size; of lines and arrows: begin and end
+uniform samplerBuffer shapes;        // centre and half size; for lines and arrows, begin and end
 uniform samplerBuffer colours;
 uniform int form;                    // Form
-uniform bool coloured;               // each shape has a colour of its own
-uniform vec2 pixel_size;             // of one pixel, in units of the clip space
-uniform vec2 origin;                 // of the viewport's middle, in pixels
+uniform bool coloured;               // whether each shape has its own colour
+uniform vec2 pixel_size;             // size of one pixel in clip space
+uniform vec2 origin;                 // centre of the viewport, in pixels
 uniform vec2 centre;
 uniform float zoom, half_pixels_min, line_pixels;
 uniform vec4 fill;
-out vec2 place;                      // from the shape's centre, in pixels, along its own axes
+out vec2 place;                      // offset from the shape's centre, in pixels, along the shape's axes
 flat out vec2 half_size;
 flat out vec4 own_fill;
 void main() {
@@ -42,7 +42,7 @@ void main() {
         half_size = vec2(pixels, line_pixels) / 2.0;
         around += form == 3 ? vec2(line_pixels, 5.0) : vec2(line_pixels);
     }
-    int corner_index = gl_VertexID % 3; // of one triangle that covers the rectangle around the shape
+    int corner_index = gl_VertexID % 3; // one triangle covers the rectangle around the shape
     vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
     place = corner * (half_size + around);
     vec2 pixel = origin + middle + along * place.x + vec2(-along.y, along.x) * place.y;
@@ -58,7 +58,7 @@ flat in vec4 own_fill;
 uniform int form;
 uniform vec4 edge;
 uniform float edge_pixels;
-out vec4 colour;                     // its alpha multiplied in
+out vec4 colour;                     // with premultiplied alpha
 float outside_of() {
     vec2 beyond = abs(place) - half_size;
     if (form == 0) {

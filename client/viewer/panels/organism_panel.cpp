@@ -52,7 +52,7 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
     curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
                                   ? ("health over " + core::duration(points.back().s - points.front().s)).c_str()
-                                  : "health since the selection");
+                                  : "health since you selected the organism");
 }
 
 } // namespace
@@ -68,17 +68,17 @@ std::string shown_parents(const evod::v1::OrganismInfo& info) {
     return print("Parents: %u and %u (generation %s)", info.parents(0), info.parents(1), generation.c_str());
 }
 
-std::string shown_fate(const OrganismHistory& story) {
-    if (!story.info()) {
+std::string shown_fate(const OrganismHistory& history) {
+    if (!history.info()) {
         return "";
     }
-    const evod::v1::OrganismInfo& info = *story.info();
+    const evod::v1::OrganismInfo& info = *history.info();
     if (!info.alive()) {
         return print("died of %s after %.1f s",
                      info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
     }
-    return story.ended() ? print("alive when last seen after %.1f s; its generation has ended", info.lived_s())
-                         : print("alive for %.1f s, health %.1f", info.lived_s(), info.health());
+    return history.ended() ? print("alive when last seen after %.1f s; its generation has ended", info.lived_s())
+                           : print("alive for %.1f s, health %.1f", info.lived_s(), info.health());
 }
 
 std::string shown_choice(const evod::v1::OrganismInfo& info) {
@@ -112,20 +112,20 @@ std::string shown_children(const std::vector<OrganismHistory::Child>& children) 
 }
 
 void OrganismPanel::build(Context& context) {
-    const OrganismHistory* story = context.island_view.organism_history();
-    if (story == nullptr) {
-        widgets::say("Click an organism to select it.", palette::text);
+    const OrganismHistory* history = context.island_view.organism_history();
+    if (history == nullptr) {
+        widgets::small_text("Click an organism to select it.", palette::text);
         return;
     }
-    ImGui::Text("Organism %u of generation %s", story->id(), with_separators(story->generation()).c_str());
-    if (!story->info()) {
+    ImGui::Text("Organism %u of generation %s", history->id(), with_separators(history->generation()).c_str());
+    if (!history->info()) {
         ImGui::TextDisabled("…");
         return;
     }
-    const evod::v1::OrganismInfo& info = *story->info();
-    widgets::say(shown_fate(*story), palette::text);
-    if (!story->dead() && !story->ended()) {
-        widgets::say(shown_choice(info), palette::text);
+    const evod::v1::OrganismInfo& info = *history->info();
+    widgets::small_text(shown_fate(*history), palette::text);
+    if (!history->dead() && !history->ended()) {
+        widgets::small_text(shown_choice(info), palette::text);
         bool following = context.island_view.following();
         if (widgets::checkbox("keep it centred (L)", following)) {
             context.island_view.toggle_following(context.world);
@@ -134,29 +134,29 @@ void OrganismPanel::build(Context& context) {
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
     ImGui::Separator();
-    build_health(story->health());
+    build_health(history->health());
     ImGui::Separator();
     const auto& names = context.island_view.gene_names();
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
         const float value = info.genes(static_cast<int>(gene));
-        if (gene < story->ranges().size()) {
-            build_gene(names[gene], value, story->ranges()[gene], context.gui.scale());
+        if (gene < history->ranges().size()) {
+            build_gene(names[gene], value, history->ranges()[gene], context.gui.scale());
         } else {
             ImGui::Text("%s %.1f", names[gene].c_str(), double{value});
         }
     }
-    if (story->ranges().empty() && !context.island_view.problem().empty()) {
-        widgets::say(context.island_view.problem() + ".", palette::text);
+    if (history->ranges().empty() && !context.island_view.problem().empty()) {
+        widgets::small_text(context.island_view.problem() + ".", palette::text);
     }
     ImGui::Separator();
-    widgets::say(shown_parents(info), palette::text);
-    if (story->children()) {
-        widgets::say(print("Offspring in generation %s: %s", with_separators(story->generation() + 1).c_str(),
-                           shown_children(*story->children()).c_str()),
-                     palette::text);
-    } else if (!story->ended()) {
+    widgets::small_text(shown_parents(info), palette::text);
+    if (history->children()) {
+        widgets::small_text(print("Offspring in generation %s: %s", with_separators(history->generation() + 1).c_str(),
+                                  shown_children(*history->children()).c_str()),
+                            palette::text);
+    } else if (!history->ended()) {
         ImGui::TextDisabled("Offspring appear when the next generation starts");
-    } else if (!story->waits_for_children()) {
+    } else if (!history->waits_for_children()) {
         ImGui::TextDisabled("Offspring unknown: the world ran too fast to be observed");
     }
 }

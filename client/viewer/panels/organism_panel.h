@@ -18,7 +18,7 @@ class OrganismPanel : public Panel {
 
 /// The organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its generation has
 /// ended", "alive for 12.3 s, …".
-std::string shown_fate(const OrganismHistory& story);
+std::string shown_fate(const OrganismHistory& history);
 /// The organism's choice as text: "about to seek food at (120, 40)".
 std::string shown_choice(const evod::v1::OrganismInfo& info);
 /// The parents as text: "Parents: 12 and 45 (generation 35)". A survivor has one parent.

@@ -176,9 +176,9 @@ void Panels::build(Panel::Context context, Rectangle room) {
         }
         if (ImGui::Begin(title.c_str(), &place.shown, ImGuiWindowFlags_NoCollapse)) {
             context.just_shown = !was_shown;
-            context.gui.spots().begin_panel(title);
+            context.gui.widget_positions().begin_panel(title);
             place.panel->build(context);
-            context.gui.spots().begin_panel({});
+            context.gui.widget_positions().begin_panel({});
             place.built = ImGui::GetFrameCount();
         }
         const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();

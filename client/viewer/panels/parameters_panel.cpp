@@ -22,7 +22,7 @@ struct EffectWords {
 EffectWords words_of(evod::v1::ParameterEffect effect) {
     switch (effect) {
     case evod::v1::PARAMETER_EFFECT_NEXT_TICK:
-        return {"now", "Takes effect at once; for breeding, the next time it happens."};
+        return {"now", "Takes effect at the next tick; breeding parameters, at the next breeding."};
     case evod::v1::PARAMETER_EFFECT_NEXT_GENERATION:
         return {"generation", "Takes effect with the next generation."};
     case evod::v1::PARAMETER_EFFECT_RESET:
@@ -49,9 +49,9 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
     }
     std::string text = about.help() + "\n\nAllowed: " + allowed_text(about) +
                        (about.unit().empty() ? "" : " " + about.unit()) +
-                       "\nDefault: " + to_text(about.default_value()) + "\nNow: " + to_text(edits.holds(i));
+                       "\nDefault: " + to_text(about.default_value()) + "\nNow: " + to_text(edits.current_value(i));
     if (edits.is_pending(i)) {
-        text += ", then " + to_text(edits.asked_for(i));
+        text += ", then " + to_text(edits.requested_value(i));
     }
     widgets::note(text + "\n" + words_of(about.effect()).sentence + std::string{more});
 }
@@ -61,7 +61,7 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
 std::span<const Panel::Key> ParametersPanel::keys() const {
     static constexpr Key keys[] = {
         {.key = sf::Keyboard::Z, .help = "undo your last change", .control = true},
-        {.key = sf::Keyboard::Y, .help = "redo it", .control = true},
+        {.key = sf::Keyboard::Y, .help = "redo the last undone change", .control = true},
         {.key = sf::Keyboard::Z, .help = "", .control = true, .shift = true},
     };
     return keys;
@@ -77,16 +77,16 @@ void ParametersPanel::build(Context& context) {
     const bool may = why.empty();
     for (const Poll* poll : {&registry_poll_, &values_poll_}) {
         if (!poll->problem().empty()) {
-            widgets::say(poll->problem(), palette::warning);
+            widgets::small_text(poll->problem(), palette::warning);
         }
     }
     if (!edits_.known()) {
-        widgets::say("Loading the parameters …");
+        widgets::small_text("Loading the parameters …");
         return;
     }
     const float scale = context.gui.scale();
     if (!why.empty()) {
-        widgets::say(why, palette::stopped);
+        widgets::small_text(why, palette::stopped);
     }
     ImGui::BeginDisabled(!may);
     build_head(context, may);
@@ -218,21 +218,21 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
         send(context, edits_.redo(world.feed.name()));
     }
-    widgets::explain("Ctrl+Shift+Z");
+    widgets::explain("Ctrl+Shift+Z: applies the last undone change again.");
     ImGui::EndDisabled();
     ImGui::SameLine(0, 20 * scale);
     ImGui::Checkbox("apply on release", &apply_on_release_);
     widgets::mark("apply on release");
     widgets::explain("Sends a value as soon as you release the mouse button.");
     if (!edits_.problem().empty()) {
-        widgets::say(edits_.problem(), palette::warning);
+        widgets::small_text(edits_.problem(), palette::warning);
         widgets::mark("problem");
         return;
     }
     const std::string revision = "Revision " + std::to_string(edits_.revision());
-    widgets::say(edits_.busy() ? "Sending …"
-                 : count == 0  ? revision + "; no edits"
-                               : std::to_string(count) + (count == 1 ? " edit" : " edits") + " not applied yet");
+    widgets::small_text(edits_.busy() ? "Sending …"
+                        : count == 0  ? revision + "; no edits"
+                                      : std::to_string(count) + (count == 1 ? " edit" : " edits") + " not applied yet");
     if (!edits_.busy()) {
         widgets::mark(count == 0 ? revision : std::to_string(count) + " edited");
     }
@@ -277,7 +277,7 @@ void ParametersPanel::build_rows(float scale) {
         ImGui::EndTable();
     }
     if (!any) {
-        widgets::say("No parameter matches.");
+        widgets::small_text("No parameter matches.");
     }
 }
 
@@ -391,18 +391,18 @@ void ParametersPanel::build_menu(std::size_t i) {
 
 void ParametersPanel::build_remarks(std::size_t i) {
     if (const evod::v1::Violation* violation = edits_.violation(i)) {
-        widgets::say((violation->got().empty() ? "" : "got " + violation->got() + ", ") + "allowed " +
-                         violation->allowed(),
-                     palette::warning);
+        widgets::small_text((violation->got().empty() ? "" : "got " + violation->got() + ", ") + "allowed " +
+                                violation->allowed(),
+                            palette::warning);
         widgets::mark(edits_.registry()[i].name() + " is refused");
     }
     if (edits_.is_edited(i)) {
-        widgets::say("was " + to_text(edits_.asked_for(i)), palette::stopped);
+        widgets::small_text("was " + to_text(edits_.requested_value(i)), palette::stopped);
     } else if (edits_.is_pending(i)) {
-        widgets::say("still " + to_text(edits_.holds(i)));
+        widgets::small_text("still " + to_text(edits_.current_value(i)));
     }
     if (!edits_.changed_by(i).empty()) {
-        widgets::say("set by " + edits_.changed_by(i));
+        widgets::small_text("set by " + edits_.changed_by(i));
     }
 }
 

@@ -44,7 +44,7 @@ void number_field(const char* name, std::array<char, size>& field, float width, 
 void show_problem(const std::string& problem, std::initializer_list<std::string_view> fields) {
     const std::string_view field = std::string_view{problem}.substr(0, problem.find(':'));
     if (!problem.empty() && std::ranges::find(fields, field) != fields.end()) {
-        widgets::say(problem, palette::warning);
+        widgets::small_text(problem, palette::warning);
         widgets::mark(std::string{field} + " is refused");
     }
 }
@@ -55,14 +55,14 @@ void RunPanel::build(Context& context) {
     ViewedWorld& world = context.world;
     const RunControl& control = world.feed.control();
     if (!control.known()) {
-        widgets::say("No world is open yet.");
+        widgets::small_text("No world is open yet.");
         return;
     }
     const float scale = context.gui.scale();
     build_state(world);
     const std::string_view why = world.commands.read_only_reason();
     if (!why.empty()) {
-        widgets::say(why, palette::stopped);
+        widgets::small_text(why, palette::stopped);
     }
     ImGui::BeginDisabled(!why.empty());
     ImGui::Separator();
@@ -83,13 +83,13 @@ void RunPanel::build_state(const ViewedWorld& world) {
     } else if (info.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
         state += " until generation " + with_separators(info.run_until_generation());
     }
-    widgets::say(control.world() + ": " + state, palette::text);
+    widgets::small_text(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
     if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
         where = "generation " + with_separators(snapshot->about.generation()) + ", " + where;
     }
     const std::string seed = "seed " + std::to_string(info.seed());
-    widgets::say(where + (info.name().empty() ? "" : ", " + seed));
+    widgets::small_text(where + (info.name().empty() ? "" : ", " + seed));
     widgets::mark(seed);
 }
 
@@ -162,13 +162,13 @@ void RunPanel::build_speed(ViewedWorld& world) {
     }
     show_problem(problem_, {"speed"});
     if (world.feed.control().info().slowed()) {
-        widgets::say("The server cannot keep up: simulated time runs slower, no tick is skipped.");
+        widgets::small_text("The server cannot keep up: the world runs slower than requested, and no tick is skipped.");
     }
 }
 
 void RunPanel::build_reset(ViewedWorld& world, float scale) {
     if (world.replay.info() != nullptr) {
-        widgets::say("This world is a replay and cannot be changed.");
+        widgets::small_text("This world is a replay and cannot be changed.");
         return;
     }
     number_field("seed", seed_, 200 * scale, "empty: the same seed");

@@ -72,11 +72,11 @@ void ViewPanel::build(Context& context) {
             island_view.toggle_following(context.world);
         }
     } else {
-        widgets::say("Click an organism to select it.", palette::text);
+        widgets::small_text("Click an organism to select it.", palette::text);
     }
     if (!island_view.problem().empty()) {
         ImGui::Separator();
-        widgets::say(island_view.problem() + ".", palette::text);
+        widgets::small_text(island_view.problem() + ".", palette::text);
     }
 }
 

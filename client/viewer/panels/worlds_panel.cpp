@@ -37,15 +37,15 @@ void WorldsPanel::build(Context& context) {
     process_events(world);
     poll(world, context.now);
     if (!list_poll_.problem().empty()) {
-        widgets::say(list_poll_.problem(), palette::warning);
+        widgets::small_text(list_poll_.problem(), palette::warning);
     }
     build_worlds(world);
     build_islands(world);
 }
 
 void WorldsPanel::refresh() {
-    list_poll_.hurry();
-    statistics_poll_.hurry();
+    list_poll_.make_due();
+    statistics_poll_.make_due();
 }
 
 void WorldsPanel::poll(ViewedWorld& world, Clock::time_point now) {
@@ -126,13 +126,13 @@ void WorldsPanel::build_islands(ViewedWorld& world) {
     if (count == 0) {
         return;
     }
-    widgets::say("Islands of " + statistics_.world().name());
+    widgets::small_text("Islands of " + statistics_.world().name());
     constexpr ImGuiTableFlags flags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_ScrollY;
     if (!ImGui::BeginTable("islands", 4, flags)) {
         return;
     }
-    for (const char* heading : {"Island", "Alive", "Mean health", "Best before"}) {
+    for (const char* heading : {"Island", "Alive", "Mean health", "Last best fitness"}) {
         ImGui::TableSetupColumn(heading);
     }
     ImGui::TableSetupScrollFreeze(0, 1);

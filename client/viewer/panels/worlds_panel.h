@@ -33,7 +33,7 @@ class WorldsPanel : public Panel {
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
-    evod::v1::Statistics statistics_; // of the viewed world
+    evod::v1::Statistics statistics_; // statistics of the viewed world
     std::uint64_t place_number_ = 0;  // the place that statistics_ describes
     Poll list_poll_{poll_interval};
     Poll statistics_poll_{poll_interval};

@@ -46,7 +46,7 @@ enum class Action {
     Follow,
     StartScreen,
     Help,
-    Close, // closes a menu, or else the help, or else the front panel; pressed twice without these: the window
+    Close, // closes a menu, or else the help, or else the front panel; if none is open, pressed twice: the window
     Quit,
     FirstPanel, // FirstPanel + index shows or hides the panel with this index
 };

@@ -19,8 +19,8 @@ namespace evod::viewer {
 namespace {
 
 // All lengths here are in pixels at scale 1.
-constexpr float edge = 14;         // between text and the window's edge
-constexpr float help_width = 1060; // of the help with its two columns: keys of the window, keys of the panels
+constexpr float edge = 14;         // distance between text and the window's edge
+constexpr float help_width = 1060; // width of the help with two columns: keys of the window, keys of the panels
 constexpr std::size_t notices_max = 4;
 
 /// Draws a rounded box with text, horizontally centred in `place` with its upper edge at `top`. Returns its lower edge.

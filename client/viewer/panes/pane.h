@@ -49,7 +49,7 @@ class Pane {
     ///
     /// with_timeline  if the world is a replay, reserve the bottom of the pane for its time line
     void lay_out(Rectangle place, bool with_timeline, double scale);
-    const Rectangle& place() const { return place_; }                   // excludes the time line
+    const Rectangle& place() const { return place_; }                   // without the time line
     const Rectangle& timeline_place() const { return timeline_place_; } // height 0: no time line
 
   private:

@@ -18,7 +18,7 @@ namespace {
 // All lengths here are in pixels at scale 1.
 constexpr float line_height = 26, label_height = 13;
 constexpr float timeline_edge = 12,
-                line_edge = 6;  // from the window to the widgets; from the widgets to the ends of the line
+                line_edge = 6;  // distance from the window to the widgets; from the widgets to the ends of the line
 constexpr float mark_room = 70; // minimum distance between marks
 
 evod::v1::RunMoment moment_of_generation(std::uint64_t generation) {
@@ -178,7 +178,7 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     if (widgets::button("-")) {
         world.commands.slower();
     }
-    widgets::explain("half as fast");
+    widgets::explain("halve the speed");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(speed_text(world.feed.control().speed()).c_str());
@@ -186,7 +186,7 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     if (widgets::button("+")) {
         world.commands.faster();
     }
-    widgets::explain("twice as fast");
+    widgets::explain("double the speed");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
@@ -220,15 +220,15 @@ void Timeline::build_fork(ViewedWorld& world) {
         ImGui::OpenPopup("fork");
     }
     ImGui::EndDisabled();
-    widgets::explain(may ? "makes a new world from this moment" : "only the role admin may make worlds");
+    widgets::explain(may ? "create a world that starts from this tick" : "only the role admin may create worlds");
     if (ImGui::BeginPopup("fork")) {
-        ImGui::TextUnformatted("Makes a new world from the shown moment. Its name:");
+        ImGui::TextUnformatted("Create a world that starts from the tick shown. Name of the new world:");
         if (ImGui::IsWindowAppearing()) {
             ImGui::SetKeyboardFocusHere();
         }
         const bool entered =
             ImGui::InputText("##name", fork_name_.data(), fork_name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-        widgets::mark("Its name");
+        widgets::mark("Name of the new world");
         ImGui::SameLine();
         const bool named = fork_name_[0] != '\0';
         ImGui::BeginDisabled(!named);

@@ -32,7 +32,7 @@ struct Label {
 /// Selects labels that do not overlap: the first label, and then each label that begins at least `gap` pixels after the
 /// end of the last selected one.
 ///
-/// returns  indices of the selected labels, rising.
+/// returns  indices of the selected labels, in increasing order.
 std::vector<std::size_t> separate_labels(std::span<const Label> labels, double gap);
 
 } // namespace evod::viewer

@@ -65,7 +65,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
     std::size_t renderer_index = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         Pane& pane = panes[i];
-        gui_.spots().begin_panel(i == 0 ? "left" : "right");
+        gui_.widget_positions().begin_panel(i == 0 ? "left" : "right");
         for (const Tile& tile : pane.tiles()) {
             if (island_renderers_.size() <= renderer_index) {
                 island_renderers_.push_back(std::make_unique<IslandRenderer>());
@@ -74,7 +74,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
         }
         overlay_.build_world(pane.world, gui_, pane.place(), frame.interactive && panes.has_focus(pane));
         pane.timeline.build(pane.world, gui_, pane.timeline_place(), static_cast<int>(i));
-        gui_.spots().begin_panel({});
+        gui_.widget_positions().begin_panel({});
         const bool timeline_pressed = pane.timeline.take_press(), minimap_pressed = pane.minimap.take_press();
         if (timeline_pressed || minimap_pressed) {
             panes.focus(i);

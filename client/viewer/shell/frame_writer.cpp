@@ -29,13 +29,13 @@ class FolderWriter final : public FrameWriter {
         std::error_code error;
         std::filesystem::create_directories(path_, error);
         if (error) {
-            throw std::runtime_error{"could not make the folder " + path + ": " + error.message()};
+            throw std::runtime_error{"could not create the folder " + path + ": " + error.message()};
         }
         for (const auto& entry : std::filesystem::directory_iterator{path_, error}) {
             const std::string name = entry.path().filename().string();
             if (name.starts_with("frame-") && name.ends_with(".png")) {
                 throw std::runtime_error{path + " contains frames of an earlier recording, such as " + name +
-                                         ": name another folder"};
+                                         ": choose another folder"};
             }
         }
         if (error) {
@@ -64,16 +64,17 @@ class FilmWriter final : public FrameWriter {
             throw std::runtime_error{std::string{"could not start ffmpeg: "} + std::strerror(errno)};
         }
         std::signal(SIGPIPE, SIG_IGN); // if ffmpeg ends early, writing fails instead of ending evoview
-        std::vector<std::string> words{"ffmpeg",    "-y",
-                                       "-loglevel", "error",
-                                       "-f",        "rawvideo",
-                                       "-pix_fmt",  "rgba",
-                                       "-s",        std::to_string(width_pixels) + "x" + std::to_string(height_pixels),
-                                       "-r",        std::to_string(fps),
-                                       "-i",        "-",
-                                       "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2"}; // codecs need even sizes
+        std::vector<std::string> words{
+            "ffmpeg",    "-y",
+            "-loglevel", "error",
+            "-f",        "rawvideo",
+            "-pix_fmt",  "rgba",
+            "-s",        std::to_string(width_pixels) + "x" + std::to_string(height_pixels),
+            "-r",        std::to_string(fps),
+            "-i",        "-",
+            "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2"}; // codecs require an even width and height
         if (!path_.ends_with(".gif")) {
-            words.insert(words.end(), {"-pix_fmt", "yuv420p"}); // every player supports it
+            words.insert(words.end(), {"-pix_fmt", "yuv420p"}); // every player supports this pixel format
         }
         words.push_back("file:" + path_);
         std::vector<char*> arguments;
@@ -99,8 +100,8 @@ class FilmWriter final : public FrameWriter {
         if (error != 0) {
             process_ = 0;
             stop();
-            throw std::runtime_error{"could not start ffmpeg to make " + path_ + " (" + std::strerror(error) +
-                                     "): install ffmpeg, or name a folder for single frames"};
+            throw std::runtime_error{"could not start ffmpeg to create " + path_ + " (" + std::strerror(error) +
+                                     "): install ffmpeg, or choose a folder for single frames"};
         }
     }
     ~FilmWriter() override { stop(); }
@@ -117,7 +118,7 @@ class FilmWriter final : public FrameWriter {
             }
             if (written < 0) {
                 finish(); // throws, with the message that ffmpeg printed
-                throw std::runtime_error{"could not write " + path_ + ": ffmpeg ended too early"};
+                throw std::runtime_error{"could not write " + path_ + ": ffmpeg exited before the film was complete"};
             }
             pixels += written;
             left -= static_cast<std::size_t>(written);

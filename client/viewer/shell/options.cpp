@@ -21,11 +21,12 @@ using command_line::Command;
 using command_line::RealNumber;
 using command_line::WholeNumber;
 
-constexpr const char* footer = R"(Keys: H in the window lists them. Q closes the window; the worlds continue.
+constexpr const char* footer =
+    R"(Keys: press H in the window to list them. Q closes the window; the worlds continue to run.
 
 A screenshot sends no command, so the world must be running or have reached the tick already. A
 recording steps the world from frame to frame if the role allows it, so that no tick is missed;
-a world that ran before runs again afterwards. Both work without a display under xvfb-run.
+a world that was running resumes afterwards. Without a display, run both under xvfb-run.
 
   evoview lab.example:7744 --world default
   evoview --start
@@ -98,53 +99,59 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options::Screenshot screenshot;
     Options::Record record;
     std::string server = "localhost", size;
-    Command app{"evoview", "evoview: a window into an evolution laboratory.", "evoview " EVOD_VERSION};
+    Command app{"evoview", "evoview: shows the worlds of an evod server in a window", "evoview " EVOD_VERSION};
     app.footer(footer + std::string{"\n\nActions of a script, one per line:\n"} + Script::reference());
-    const auto where = app.add_option("server,--server", &server, "address of evod: HOST, HOST:PORT, [IPV6]:PORT")
-                           .environment("EVOD_SERVER")
-                           .show_default();
+    const auto where =
+        app.add_option("server,--server", &server, "address of the server: HOST, HOST:PORT or [IPV6]:PORT")
+            .environment("EVOD_SERVER")
+            .show_default();
     core::Credentials credentials;
     add_options(app, credentials);
-    app.add_option("--world", &options.world, "the world to show; else the only one, or \"default\"")
+    app.add_option("--world", &options.world,
+                   "name of the world to show; default: the server's only world, or the world \"default\"")
         .environment("EVOD_WORLD");
-    app.add_option("--island", &options.island, "the island to show, from 0")
+    app.add_option("--island", &options.island, "island to show, numbered from 0")
         .show_default()
         .check(WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
     app.add_flag("--all-islands", &options.all_islands, "show all islands as tiles");
-    app.add_option("--beside", &options.beside, "show a second world in the right half");
-    app.add_option("--past", &options.replay_generation, "replay the world's past from this generation")
+    app.add_option("--beside", &options.beside, "name of a second world to show in the right half");
+    app.add_option("--past", &options.replay_generation, "start with a replay of the world at this generation")
         .check(WholeNumber{.min = 1});
-    app.add_option("--size", &size, "size of the window or image in pixels; else 1280x720 times the scale");
-    app.add_option("--scale", &options.scale, "scale of text and widgets; else chosen by the display, 1 for files")
+    app.add_option("--size", &size,
+                   "size of the window or image in pixels, WIDTHxHEIGHT; default: 1280x720 times the scale");
+    app.add_option("--scale", &options.scale,
+                   "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
-    const auto start = app.add_flag("--start", &options.start, "begin with the start screen");
-    const auto script =
-        app.add_option("--script", &options.script_path, "file with actions to carry out in the window");
+    const auto start = app.add_flag("--start", &options.start, "show the start screen first");
+    const auto script = app.add_option("--script", &options.script_path, "file with actions to perform in the window");
     const auto shot =
         app.add_option("--screenshot", &screenshot.path, "save one frame as this PNG file, without a window")
             .excludes(start)
             .excludes(script);
-    app.add_option("--at-tick", &screenshot.tick, "take the screenshot at this tick or the first later one")
+    app.add_option("--at-tick", &screenshot.tick,
+                   "tick of the screenshot; the first snapshot of this tick or a later one is saved")
         .needs(shot)
         .check(WholeNumber{});
     const auto recording =
-        app.add_option("--record", &record.path,
-                       "save frame after frame, without a window: as PNG files in this folder, or as a "
-                       "film\nby ffmpeg if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
+        app.add_option(
+               "--record", &record.path,
+               "save a sequence of frames without a window: as PNG files in this folder, or, if the path\nends in "
+               ".mp4, .mkv, .webm, .mov, .avi or .gif, as a film created by ffmpeg")
             .excludes(shot)
             .excludes(start)
             .excludes(script);
-    app.add_option("--record-ticks", &record.ticks, "stop after this many ticks; else with the run, or Ctrl+C")
+    app.add_option("--record-ticks", &record.ticks,
+                   "stop after this many ticks; default: at the end of the run, or with Ctrl+C")
         .needs(recording)
         .check(WholeNumber{});
     app.add_option("--record-generations", &record.generations, "stop when this many more generations have ended")
         .needs(recording)
         .check(WholeNumber{.min = 1});
-    app.add_option("--every", &record.every_ticks, "ticks from one frame to the next")
+    app.add_option("--every", &record.every_ticks, "number of ticks between two frames, 1 to 1000000")
         .needs(recording)
         .show_default()
         .check(WholeNumber{1, 1'000'000});
-    app.add_option("--fps", &record.fps, "frames per second of a film; a tick is 1/60 s unless set otherwise")
+    app.add_option("--fps", &record.fps, "frames per second of a film, 0.1 to 1000; a tick is 1/60 s by default")
         .needs(recording)
         .show_default()
         .check(RealNumber{0.1, 1000});

@@ -41,11 +41,11 @@ struct Options {
 
     /// Saves a sequence of frames instead of opening a window.
     struct Record {
-        std::string path;                         // a film if it has the ending of one, otherwise a folder
+        std::string path;                         // a film if is_film(path), otherwise a folder
         std::optional<std::uint64_t> ticks;       // ticks to record; both nullopt: until the run ends
         std::optional<std::uint64_t> generations; // further generations to record
         std::uint64_t every_ticks = 1;            // ticks between two frames
-        double fps = 60;                          // of a film
+        double fps = 60;                          // frames per second of a film
         double timeout_s = 60;                    // longest wait for one frame
     };
     std::optional<Record> record;

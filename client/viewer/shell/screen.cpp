@@ -35,10 +35,10 @@ class Screen::ScriptHost : public Script::Host {
 
     void send(const sf::Event& event) override { screen_.script_events_.push_back(event); }
     std::optional<Point> find(const std::string& widget) const override {
-        return screen_.renderer_.gui().spots().find(widget);
+        return screen_.renderer_.gui().widget_positions().find(widget);
     }
     const std::vector<std::string>* choices(const std::string& widget) const override {
-        return screen_.renderer_.gui().spots().choices(widget);
+        return screen_.renderer_.gui().widget_positions().choices(widget);
     }
     const ViewedWorld* world() const override { return world_; }
     std::string save(const std::string& path) override {

@@ -311,7 +311,7 @@ std::string state_fault(const std::string& word) {
 }
 
 const Condition conditions[] = {
-    {"connected", "", "connected, and the server has answered every request", no_fault,
+    {"connected", "", "evoview is connected, and the server has answered every request", no_fault,
      [](const Host& host, const std::string&) { return host.world() != nullptr && host.world()->all_answered(); }},
     {"snapshot", "", "a snapshot of the world is shown", no_fault,
      [](const Host& host, const std::string&) { return snapshot_of(host) != nullptr; }},
@@ -323,7 +323,7 @@ const Condition conditions[] = {
      [](const Host& host, const std::string& word) {
          return snapshot_of(host) != nullptr && snapshot_of(host)->tick() >= *number_in<std::uint64_t>(word);
      }},
-    {"state", "STATE", "the world is waiting, running, paused or ended", state_fault,
+    {"state", "STATE", "the world is in this state: waiting, running, paused or ended", state_fault,
      [](const Host& host, const std::string& word) {
          const auto* named = std::ranges::find(state_names, word, [](const auto& pair) { return pair.first; });
          return host.world() != nullptr && host.world()->feed.control().state() == named->second;
@@ -365,7 +365,9 @@ struct Verb {
 
 const Verb verbs[] = {
     {"key", "NAME",
-     "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, … or a sign; also with Ctrl+, Shift+, Alt+", 1, 1,
+     "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, …, or a character such as [; also after Ctrl+, "
+     "Shift+ or Alt+",
+     1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto chord = parse_chord(line.words[1]);
          if (!chord) {
@@ -373,11 +375,12 @@ const Verb verbs[] = {
          }
          return Acts{press_act(*chord)};
      }},
-    {"type", "TEXT", "types into the field that has the keyboard", 1, 1,
+    {"type", "TEXT", "types text into the field that has the keyboard focus", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return Acts{type_act(line.words[1])}; }},
     {"click", "NAME", "clicks on a widget, named by the text on it or beside it", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return click_acts(line.words[1]); }},
-    {"set", "NAME TEXT", "replaces the value of a field or slider and presses Enter; chooses from a drop-down", 2, 2,
+    {"set", "NAME TEXT",
+     "replaces the value of a field or slider and presses Enter, or chooses an entry of a drop-down", 2, 2,
      [](ScriptLine& line) -> core::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
     {"wait", "CONDITION", "waits until the condition holds", 1, 2,
      [](ScriptLine& line) -> core::Result<Acts> {
@@ -398,7 +401,7 @@ const Verb verbs[] = {
          }
          return Acts{[condition, word](Host& host) -> core::Result<bool> { return condition->holds(host, word); }};
      }},
-    {"timeout", "SECONDS", "sets how long each of the next lines may take; 60 by default", 1, 1,
+    {"timeout", "SECONDS", "sets the time limit of each of the following lines; 60 by default", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto seconds = number_in<double>(line.words[1]);
          if (!seconds || !(*seconds > 0 && *seconds <= timeout_s_max)) {
@@ -407,7 +410,7 @@ const Verb verbs[] = {
          line.timeout_s = *seconds;
          return Acts{};
      }},
-    {"screenshot", "FILE", "saves the window as PNG", 1, 1,
+    {"screenshot", "FILE", "saves the window as a PNG file", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
          return Acts{[path = line.words[1]](Host& host) -> core::Result<bool> {
              if (std::string trouble = host.save(path); !trouble.empty()) {

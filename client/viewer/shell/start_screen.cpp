@@ -66,10 +66,10 @@ void StartScreen::build(const Gui& gui) {
     ImGui::PushFont(&gui.title());
     ImGui::TextUnformatted("evoview");
     ImGui::PopFont();
-    widgets::say("A window into an evolution laboratory. Which server?");
+    widgets::small_text("Choose the evod server whose worlds you want to see.");
     ImGui::Dummy({0, 6 * scale});
     if (!reason_.empty()) {
-        widgets::say(reason_, palette::warning);
+        widgets::small_text(reason_, palette::warning);
         widgets::mark("error");
         ImGui::Dummy({0, 6 * scale});
     }
@@ -117,7 +117,7 @@ bool StartScreen::build_fields(const Gui& gui) {
         label("CA file");
         entered |= ImGui::InputTextWithHint("##ca", "the system's certificates", ca_.data(), ca_.size(), on_enter);
         widgets::mark("CA file");
-        widgets::explain("PEM file with the certificate that signed the server's, such as its evod.crt.");
+        widgets::explain("PEM file with the certificate that signed the server's certificate, such as its evod.crt.");
     }
     return entered;
 }
@@ -125,13 +125,13 @@ bool StartScreen::build_fields(const Gui& gui) {
 void StartScreen::build_recent() {
     if (!recent_.problem().empty()) {
         ImGui::Separator();
-        widgets::say(recent_.problem(), palette::stopped);
+        widgets::small_text(recent_.problem(), palette::stopped);
     }
     if (recent_.addresses().empty()) {
         return;
     }
     ImGui::Separator();
-    widgets::say("Recent servers");
+    widgets::small_text("Recent servers");
     for (const std::string& address : recent_.addresses()) {
         if (ImGui::Selectable(address.c_str(), address == address_.data(), ImGuiSelectableFlags_AllowDoubleClick)) {
             if (address != address_.data()) {

@@ -23,7 +23,7 @@ class Window {
 
     Window(Screen& screen, const Options& options);
 
-    /// Shows worlds until the user closes the window or the start screen is to be shown.
+    /// Shows worlds until the user closes the window or evoview must return to the start screen.
     ///
     /// must_connect  if the first attempt to connect fails, return with the reason; false: retry
     /// connected     is called when the first connection is established
@@ -42,7 +42,7 @@ class Window {
     Panes panes_;
     Input input_;
     core::WorldView::Clock::time_point now_{};
-    core::WorldView::Clock::time_point asked_to_quit_{}; // time of the first Esc; a second one soon after it quits
+    core::WorldView::Clock::time_point asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits
     bool to_start_screen_ = false;
 };
 

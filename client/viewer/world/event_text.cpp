@@ -48,7 +48,7 @@ std::string event_text(const evod::v1::Event& event) {
         return "The change of " +
                name_list(event.change_dropped().name(), [](const std::string& name) { return name; }) + " that " +
                core::to_text(event.change_dropped().by()) +
-               " planned conflicts with the other parameters and was not made";
+               " planned was dropped, because it conflicts with the other parameters";
     default:
         return "";
     }

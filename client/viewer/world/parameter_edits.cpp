@@ -19,7 +19,7 @@ using evod::v1::ParameterValue;
 constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
 constexpr std::size_t transactions_kept = 100;
 
-// A group of parameters and its first parameter. Groups are in the order of the registry.
+// The title of a group of parameters, and the first parameter of the group. Groups are in the order of the registry.
 struct Topic {
     std::string_view first, title;
 };
@@ -188,7 +188,7 @@ void ParameterEdits::take(const evod::v1::ParameterState& reported) {
     State& state = states_[found->second];
     state.value = reported.value();
     state.pending = reported.has_pending() ? std::optional{reported.pending()} : std::nullopt;
-    if (state.edit && same(*state.edit, asked_for(found->second))) {
+    if (state.edit && same(*state.edit, requested_value(found->second))) {
         state.edit.reset();
         state.violation.reset();
     }
@@ -225,12 +225,12 @@ bool ParameterEdits::has_pending() const {
 
 // ---- one parameter ---------------------------------------------------------------------------------------------
 
-const ParameterValue& ParameterEdits::asked_for(std::size_t i) const {
+const ParameterValue& ParameterEdits::requested_value(std::size_t i) const {
     return states_[i].pending ? *states_[i].pending : states_[i].value;
 }
 
 const ParameterValue& ParameterEdits::shown(std::size_t i) const {
-    return states_[i].edit ? *states_[i].edit : asked_for(i);
+    return states_[i].edit ? *states_[i].edit : requested_value(i);
 }
 
 const evod::v1::Violation* ParameterEdits::violation(std::size_t i) const {
@@ -246,7 +246,7 @@ void ParameterEdits::forget_refusal() {
 
 void ParameterEdits::edit(std::size_t i, ParameterValue value) {
     revert(i);
-    if (!same(value, asked_for(i))) {
+    if (!same(value, requested_value(i))) {
         states_[i].edit = std::move(value);
     }
 }
@@ -288,7 +288,7 @@ std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world)
     std::vector<Change> changes;
     for (std::size_t i = 0; i < states_.size(); ++i) {
         if (states_[i].edit) {
-            changes.push_back({i, asked_for(i), *states_[i].edit});
+            changes.push_back({i, requested_value(i), *states_[i].edit});
         }
     }
     return busy() || changes.empty() ? std::nullopt : send(world, Kind::Apply, std::move(changes));
@@ -299,7 +299,7 @@ std::optional<evod::v1::Request> ParameterEdits::send_back(const std::string& wo
     while (!busy() && !from.empty()) {
         std::vector<Change> changes;
         for (const Change& change : from.back()) {
-            if (same(asked_for(change.parameter), change.after)) {
+            if (same(requested_value(change.parameter), change.after)) {
                 changes.push_back({change.parameter, change.after, change.before});
             }
         }
@@ -367,7 +367,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     } else if (response != nullptr) {
         take_refusal(response->status());
     } else {
-        problem_ = "No answer arrived: the change may or may not have been made";
+        problem_ = "No answer arrived: the change may or may not have been applied";
     }
     if (!done && sent_.kind != Kind::Apply) { // keep the transaction, so that the user can undo or redo it again
         for (Change& change : sent_.changes) {

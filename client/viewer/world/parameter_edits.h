@@ -75,23 +75,23 @@ class ParameterEdits {
 
     // Data of one parameter, by its index in the registry.
 
-    const evod::v1::ParameterValue& holds(std::size_t i) const { return states_[i].value; }
+    const evod::v1::ParameterValue& current_value(std::size_t i) const { return states_[i].value; }
     /// The pending value; without one, the current value.
-    const evod::v1::ParameterValue& asked_for(std::size_t i) const;
-    /// The edited value; without an edit, asked_for().
+    const evod::v1::ParameterValue& requested_value(std::size_t i) const;
+    /// The edited value; without an edit, requested_value().
     const evod::v1::ParameterValue& shown(std::size_t i) const;
     bool is_pending(std::size_t i) const { return states_[i].pending.has_value(); }
     bool is_edited(std::size_t i) const { return states_[i].edit.has_value(); }
     /// The client that last changed this parameter. Empty if no other client has changed it since the value was
     /// received or set here.
     const std::string& changed_by(std::size_t i) const { return states_[i].changed_by; }
-    /// Why the server rejected the value that was sent last; null if it did not.
+    /// Why the server rejected the value that was sent last; null if the server accepted it.
     const evod::v1::Violation* violation(std::size_t i) const;
 
     // Editing. Each of these functions clears the violations and the problem of the last refusal, because they are
     // about earlier values.
 
-    /// Edits a value. A value equal to asked_for() removes the edit.
+    /// Edits a value. A value equal to requested_value() removes the edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
     void revert(std::size_t i);
     void revert_all();
@@ -113,7 +113,7 @@ class ParameterEdits {
     /// returns   whether the caller must request the complete set.
     bool answered(const evod::v1::Response* response);
 
-    /// Why the last transaction was refused; empty if it was not. A reason that concerns one parameter is in
+    /// Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is in
     /// violation().
     const std::string& problem() const { return problem_; }
 

@@ -12,13 +12,13 @@ bool Poll::due(const ViewedWorld& world, Clock::time_point now) {
     if (state_->sent) {
         return now - *state_->sent > answer_timeout;
     }
-    return state_->hurried || now >= state_->next;
+    return state_->due_now || now >= state_->next;
 }
 
 void Poll::send(ViewedWorld& world, evod::v1::Request request, Clock::time_point now, Handler handler) {
     const std::uint64_t number = ++state_->number, place = state_->place = world.feed.place_number();
     state_->sent = now;
-    state_->hurried = false;
+    state_->due_now = false;
     world.server.send(std::move(request),
                       [weak = std::weak_ptr{state_}, number, place, interval = interval_, &world,
                        handler = std::move(handler)](const core::Result<evod::v1::Response>& response) {

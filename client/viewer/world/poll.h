@@ -41,7 +41,7 @@ class Poll {
     bool pending() const { return state_->sent.has_value(); }
 
     /// Makes the next request due as soon as no request is pending. Call when the last answer is outdated.
-    void hurry() { state_->hurried = true; }
+    void make_due() { state_->due_now = true; }
     /// Makes the next request due after `delay`.
     void wait(Clock::duration delay);
     /// Forgets the pending request and the problem.
@@ -58,13 +58,14 @@ class Poll {
         std::uint64_t place = 0;                 // the place that the request is about (WorldFeed::place_number)
         std::optional<Clock::time_point> sent{}; // nullopt: no answer is pending
         Clock::time_point next{};
-        bool hurried = false;
+        bool due_now = false;
         std::string problem{};
         bool unsupported = false;
     };
 
     Clock::duration interval_;
-    std::shared_ptr<State> state_ = std::make_shared<State>(); // weak in handlers, so it ends with the Poll
+    std::shared_ptr<State> state_ =
+        std::make_shared<State>(); // handlers hold weak references, so it is destroyed with the Poll
 };
 
 } // namespace evod::viewer

@@ -56,8 +56,8 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
     }
     if (count > page.organism_count() - std::min<std::size_t>(page.first(), page.organism_count()) ||
         (count == 0 && page.first() < page.organism_count())) {
-        return "population.count is " + std::to_string(count) + " of " + std::to_string(page.organism_count()) +
-               " from " + std::to_string(page.first());
+        return "population.count is " + std::to_string(count) + ", but the page begins at organism " +
+               std::to_string(page.first()) + " of " + std::to_string(page.organism_count());
     }
     if (page.genes().size() != 4 * count * gene_count()) {
         return wrong("genes", page.genes().size(), 4 * count * gene_count());

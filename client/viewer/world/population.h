@@ -30,7 +30,7 @@ class Population {
         std::size_t size = 0; // number of descendants born in this generation
     };
     static constexpr std::size_t shown_families_max = 7;
-    static constexpr std::uint8_t no_family = shown_families_max; // a smaller or an unknown family
+    static constexpr std::uint8_t no_family = shown_families_max; // the family is unknown, or too small to be shown
 
     /// gene_count  number of genes of the world; the pages do not contain it.
     explicit Population(std::size_t gene_count = 0) : genes_(gene_count) {}

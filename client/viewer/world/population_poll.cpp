@@ -49,7 +49,7 @@ void PopulationPoll::take(const evod::v1::Population& page) {
         return poll_.wait(Poll::after_refusal);
     }
     if (!ended && !incomplete_.complete()) {
-        return poll_.hurry(); // request the next page at once
+        return poll_.make_due(); // request the next page at once
     }
     if (!ended) {
         complete_ = std::move(incomplete_);

@@ -163,7 +163,7 @@ void ReplayControl::seek_generations(int by) {
 
 void ReplayControl::fork(const std::string& name) {
     if (!server_.may_create()) {
-        server_.notice("Only the role admin may make worlds");
+        server_.notice("Only the role admin may create worlds");
         return;
     }
     evod::v1::Request request;
@@ -172,7 +172,7 @@ void ReplayControl::fork(const std::string& name) {
     server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
         if (server_.report_if_refused(response)) {
             forked_ = name;
-            server_.notice("Forked the world " + name + " from this moment; B shows it beside");
+            server_.notice("Forked the world " + name + " from this moment; B shows it in the other half");
         }
     });
 }

@@ -92,7 +92,7 @@ std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
         return std::nullopt;
     }
     if (state_ == evod::v1::RUN_STATE_RUNNING && step_target_ <= tick_) {
-        auto pause = pause_or_resume(); // otherwise a step would lease the world, which would run on afterwards
+        auto pause = pause_or_resume(); // without a pause, the world would run on when the lease of the step ends
         held_step_ = ticks;
         return pause;
     }

@@ -64,7 +64,8 @@ class RunControl {
     /// The newest WorldInfo; empty before the first one arrives. Snapshots may be of later ticks.
     const evod::v1::WorldInfo& info() const { return info_; }
 
-    static constexpr double factor_min = 0.001, factor_max = 10'000; // of real time; range allowed by the server
+    static constexpr double factor_min = 0.001,
+                            factor_max = 10'000; // in multiples of real time; range allowed by the server
 
   private:
     void begin_run(const std::string& world, const std::string& run_id);

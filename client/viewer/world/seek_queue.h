@@ -1,5 +1,5 @@
-// SeekQueue: decides when each seek of a replay is sent. Only one seek runs at a time; of those that wait, only the
-// newest is kept.
+// SeekQueue: decides when each seek of a replay is sent. Only one seek runs at a time; of the waiting seeks, only
+// the newest is kept.
 //
 // Owner        ReplayControl.
 // Threads      none; used by the thread that draws.

@@ -33,7 +33,7 @@ std::string connection_loss_text(const core::ConnectionStatus& status, bool has_
 /// The title of a snapshot: "Generation 12".
 std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
 
-/// The label of a replay: "REPLAY of default" for a live world's replay, "REPLAY" for a run file's.
+/// The label of a replay: "REPLAY of default" for a replay of a live world, "REPLAY" for one of a run file.
 std::string replay_label(const evod::v1::Replay& replay);
 
 /// World and island of a snapshot: "default · island 2 of 0–7".

@@ -90,14 +90,14 @@ void ViewedWorld::find_next_world(std::function<void(const std::string& world)> 
 std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) {
     const auto& list = worlds.worlds();
     if (list.empty()) {
-        server.notice("This server has no world yet: make one with evoctl create NAME");
+        server.notice("This server has no world yet: create one with evoctl create NAME");
         return std::nullopt;
     }
     const std::string shown = replay.present().value_or(feed.name());
     const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
     const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
     if (next == here) {
-        server.notice("This is the only world: make another with evoctl create NAME");
+        server.notice("This is the only world: create another with evoctl create NAME");
         return std::nullopt;
     }
     return next->name();

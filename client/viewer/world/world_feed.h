@@ -103,7 +103,7 @@ class WorldFeed {
     void take_info(const evod::v1::WorldInfo& world);
     /// Fetches the received events from the connection. events() returns them until the next call.
     void take_events();
-    /// Updates the stored data by one event.
+    /// Updates the stored data according to one event.
     void apply(const evod::v1::Event& event);
     /// Fetches the received snapshots. Returns whether there is a new one.
     bool take_snapshots(Clock::time_point now);

@@ -160,7 +160,7 @@ TEST_F(FfmpegTest, ReportsAMissingFfmpegBeforeAnyCommand) {
     setenv("PATH", folder.file("bin").c_str(), 1);
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2");
     EXPECT_EQ(ran.status, 1);
-    EXPECT_NE(ran.output.find("could not start ffmpeg to make"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("could not start ffmpeg to create"), std::string::npos) << ran.output;
     EXPECT_EQ(state().tick(), 50u);
 }
 

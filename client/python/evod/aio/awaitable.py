@@ -26,7 +26,7 @@ R = TypeVar("R", bound=_Stream[Any], covariant=True)
 
 
 class AwaitableContext(Generic[S]):
-    """A result that `await` opens. `async with` also opens it, and closes it at the end of the block."""
+    """A result that `await` opens. `async with` opens it, too, and closes it at the end of the block."""
 
     def __init__(self, coroutine: Coroutine[Any, Any, S]) -> None:
         self._coroutine = coroutine
@@ -45,7 +45,7 @@ class AwaitableContext(Generic[S]):
 
 
 class AwaitableStream(AwaitableContext[R]):
-    """A stream as a result: works like AwaitableContext; `async for` also opens, iterates and closes it."""
+    """An AwaitableContext for a stream. In addition, `async for` opens the stream, iterates over it and closes it."""
 
     async def __aiter__(self: AwaitableStream[_Stream[T]]) -> AsyncIterator[T]:
         stream = await self._coroutine

@@ -56,8 +56,8 @@ async def connect(
         Use TLS with this client certificate and its private key, for servers that require one. Both are PEM files; one file
         may contain both.
     timeout_s
-        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time calls
-        fail. Calls for which the server replays a run may take 20 times as long.
+        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time, calls
+        fail. Calls for which the server must replay a run may take 20 times as long.
     reconnect
         Whether to reconnect after the connection was lost.
     client_name
@@ -73,7 +73,7 @@ async def connect(
     Examples
     --------
     >>> import evod.aio
-    >>> async with evod.aio.local() as server:  # stands for a server of yours
+    >>> async with evod.aio.local() as server:  # in place of your own server
     ...     async with evod.aio.connect(server.address) as lab:
     ...         lab.role, [info.name for info in await lab.worlds()]
     ('admin', ['default'])
@@ -380,7 +380,8 @@ class World(ParameterAttributes):
         Parameters
         ----------
         values, **more
-            The values, with the names of the parameters. Values out of range are refused before a request is sent.
+            The new values by parameter name, as a mapping or as keyword arguments. Values out of range are refused before a
+            request is sent.
         dry_run
             Check the values and return the parameters as they would be after the change. Do not change anything.
         expected_revision
@@ -444,7 +445,7 @@ class World(ParameterAttributes):
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
     async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
-        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for it."""
+        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the pause."""
         return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
@@ -462,7 +463,7 @@ class World(ParameterAttributes):
         return await self._link.perform(self._plans.step(self.name, ticks))
 
     async def wait(self) -> world_pb2.WorldInfo:
-        """Waits until the world is not running any more, and returns its state."""
+        """Waits until the world stops running, and returns its state."""
         return await self._link.perform(self._plans.wait(self.name))
 
     async def pause(self) -> world_pb2.WorldInfo:
@@ -482,11 +483,11 @@ class World(ParameterAttributes):
         return await self._command("reset_world", seed=seed)
 
     async def release_lease(self) -> world_pb2.WorldInfo:
-        """Ends the lease that `run_until_tick` or `step` has taken, so that the world runs on its own again."""
+        """Ends the lease of the last `run_until_tick` or `step`, so that the world resumes if it was running before."""
         return await self._command("release_lease")
 
     async def renew_lease(self) -> None:
-        """Renews the lease that `run_until_tick` or `step` has taken, for its full duration."""
+        """Renews the lease of the last `run_until_tick` or `step` for its full duration."""
         await self._request("renew_lease")
 
     async def fork(self, name: str, at_generation: int | None = None) -> World:
@@ -624,7 +625,7 @@ class World(ParameterAttributes):
         island
             Index of the island.
         generation
-            The generation of the parents. By default the last generation that was bred from.
+            The generation of the parents. By default the last generation that has bred.
         first_contender, first_pick, first_descendant
             For each list, the index of the first row to return. Use them if a population does not fit into one answer.
         """

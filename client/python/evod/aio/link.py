@@ -31,7 +31,7 @@ class Link:
     """A connection to one server, and the Core that implements the protocol. Reconnects after the connection was lost.
 
     timeout_s    the longest time in seconds to wait for an answer, and for a server that cannot be reached.
-    reconnect    False: when the connection is lost, all waiting calls fail.
+    reconnect    whether to reconnect after the connection was lost; if not, all waiting calls fail.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Link:
             if self._backoff.down_since is not None:
                 back_by = self._backoff.down_since + self.timeout_s
                 if now >= back_by or not self._reconnect and self.core.loss:
-                    raise copy_of(self.core.loss or NoConnection(f"no welcome from {self.server}"))
+                    raise copy_of(self.core.loss or NoConnection(f"no Welcome arrived from {self.server}"))
                 end = back_by if end is None else min(end, back_by)
             if deadline is not None and now >= deadline:
                 if self._backoff.down_since is not None and self.core.loss:
@@ -125,7 +125,7 @@ class Link:
     # ---- the connection -------------------------------------------------------------------------------------------
 
     async def open(self) -> None:
-        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is no evod server."""
+        """Connects for the first time. Raises NoConnection, or DamagedData if the peer is not an evod server."""
         self._connection_task = asyncio.create_task(self._keep_connected())
         try:
             while not self.core.connected:

@@ -15,8 +15,8 @@ namespace evod::viewer {
 
 namespace {
 
-// Minimum times that a breeding stays on the screen: while the panel follows a fast world, and after a breeding was
-// played to its end.
+// Minimum times for which a breeding stays on the screen: while the panel follows a fast world, and after the breeding
+// was played to its end.
 constexpr std::chrono::milliseconds shown_min{500}, shown_after_playing{1500};
 
 /// Reserves a rectangle of the panel's window to draw in, as wide as that window.
@@ -33,7 +33,7 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
     return number ? with_unit(*number, unit) : "–";
 }
 
-/// Whether the panel may hold the world: the session may command it, and it is not a replay.
+/// Whether the panel may pause the world after each generation: the session may command it, and it is not a replay.
 bool may_hold(const ViewedWorld& world) {
     return world.commands.may_command() && world.replay.info() == nullptr;
 }
@@ -54,7 +54,7 @@ std::span<const Panel::Key> BreedingPanel::keys() const {
         {Keyboard::Space, "play, stop"},
         {Keyboard::Enter, ""},
         {Keyboard::Left, "one step back"},
-        {Keyboard::Right, "one step"},
+        {Keyboard::Right, "one step forward"},
         {Keyboard::PageUp, "to the previous stage"},
         {Keyboard::PageDown, "to the next stage"},
         {Keyboard::Home, "to the beginning"},
@@ -73,16 +73,16 @@ void BreedingPanel::build(Context& context) {
     hold_world(context.world);
     build_generation(context);
     if (!error_.empty()) {
-        widgets::say(error_, palette::text);
+        widgets::small_text(error_, palette::text);
         if (widgets::button("Retry")) {
             error_.clear();
-            poll_.hurry();
+            poll_.make_due();
         }
     }
     if (!shown_) {
         if (newest_ == 0) {
-            widgets::say("No generation has bred yet. The first one breeds when it ends and the next begins.",
-                         palette::text);
+            widgets::small_text("No generation has bred yet. The first one breeds when it ends and the next begins.",
+                                palette::text);
         } else if (error_.empty()) {
             ImGui::TextUnformatted("Loading …");
         }
@@ -131,8 +131,8 @@ void BreedingPanel::choose(const Context& context) {
     if (stepper_.playing()) {
         next_change_ = context.now + shown_after_playing;
     }
-    // Wait for a pending answer before requesting a newer generation. A fast world has always bred a newer one, so the
-    // panel would never show any.
+    // Wait for a pending answer before requesting a newer generation. In a fast world there is always a newer one, so
+    // the panel would never show a generation.
     const bool idle = !next_ || !error_.empty();
     const bool settled = !stepper_.playing() && (stepper_.at_begin() || stepper_.at_end());
     if (follow_ && idle && settled && context.now >= next_change_) {
@@ -173,8 +173,8 @@ void BreedingPanel::receive(const evod::v1::Breeding& breeding) {
         if (next_->known()) {
             show_next();
         } else {
-            error_ = "The server answered with the breeding of another generation than " +
-                     with_separators(next_->key().generation);
+            error_ =
+                "The server sent the breeding of a generation other than " + with_separators(next_->key().generation);
         }
     } else if (shown_) {
         shown_->add(breeding);
@@ -227,7 +227,7 @@ void BreedingPanel::build_generation(const Context& context) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    widgets::explain("Of the parents: any generation that has bred");
+    widgets::explain("Generation of the parents; the panel shows any generation that has bred");
     ImGui::SameLine();
     ImGui::Checkbox("the newest", &follow_);
     widgets::mark("the newest");
@@ -250,12 +250,13 @@ void BreedingPanel::build_generation(const Context& context) {
     if (const auto selected = context.world.feed.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
         ImGui::SameLine();
-        if (widgets::button("birth of the selected")) {
+        if (widgets::button("birth of the selected organism")) {
             stepper_.go_to(1 + shown_->pick_count() + *selected);
         }
     }
     if (shown_) {
-        widgets::say("Generation " + with_separators(shown_->key().generation) + ": " + breeding_summary(*shown_));
+        widgets::small_text("Generation " + with_separators(shown_->key().generation) + ": " +
+                            breeding_summary(*shown_));
     }
 }
 
@@ -279,7 +280,7 @@ void BreedingPanel::build_transport(const Gui& gui) {
     if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter)")) {
         stepper_.play_or_stop();
     }
-    if (button(">", "One step (right)")) {
+    if (button(">", "One step forward (right)")) {
         stepper_.step();
     }
     if (button(">>", "To the next stage (Page Down)")) {
@@ -329,7 +330,7 @@ void BreedingPanel::build_stage(const Context& context) {
     const Gui& gui = context.gui;
     const Moment moment = stepper_.moment();
     ImGui::BeginChild("caption", {0, 3 * ImGui::GetTextLineHeightWithSpacing()});
-    widgets::say(caption(*shown_, moment), palette::text);
+    widgets::small_text(caption(*shown_, moment), palette::text);
     ImGui::EndChild();
     const float height = ImGui::GetContentRegionAvail().y - 8;
     const float strip = 14 * gui.scale();
@@ -350,22 +351,22 @@ void BreedingPanel::build_stage(const Context& context) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
-        widgets::say("the picks in order; light: the fittest, dark: the lowest rank");
+        widgets::small_text("picks in order; light: the fittest organism, dark: the lowest rank");
         break;
     }
     case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
-        widgets::say("black: elite, dark: survivors, light: children");
+        widgets::small_text("black: elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            widgets::say(
-                "blue: genes of the first parent, orange: of the second, dashed: cuts, framed: mutated or clamped");
+            widgets::small_text("blue: genes of the first parent, orange: genes of the second parent, dashed: cuts, "
+                                "framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
             ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }
         break;
     case BreedingStage::Done:
         draw_descendants(sheet_of(gui, strip), *shown_, nullptr);
-        widgets::say("black: elite, dark: survivors, light: children");
+        widgets::small_text("black: elite, dark: survivors, light: children");
         if (comparison_) {
             draw_ranking(sheet_of(gui, height - 50 * gui.scale()), *shown_, *comparison_, comparison_->copies, nullptr);
         }
@@ -377,11 +378,11 @@ void BreedingPanel::build_theory(const Gui& gui) {
     ImGui::TextUnformatted("Theory");
     if (!comparison_) {
         const evod::v1::Breeding& breeding = shown_->breeding();
-        widgets::say(breeding.contender_count() > BreedingRecord::rows_kept_max
-                         ? "Theory needs all organisms; only the first " +
-                               with_separators(BreedingRecord::rows_kept_max) + " are requested."
-                         : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
-                               with_separators(breeding.contender_count()) + " organisms received …");
+        widgets::small_text(breeding.contender_count() > BreedingRecord::rows_kept_max
+                                ? "Theory needs all organisms; only the first " +
+                                      with_separators(BreedingRecord::rows_kept_max) + " are requested."
+                                : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
+                                      with_separators(breeding.contender_count()) + " organisms received …");
         return;
     }
     const Moment moment = stepper_.moment();
@@ -391,19 +392,19 @@ void BreedingPanel::build_theory(const Gui& gui) {
     draw_copies(sheet_of(gui, std::min(300.f * gui.scale(), ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
                 picking || made == 0 ? copies_after(*shown_, made) : comparison_->copies,
                 picking ? double(made) / picks : 1);
-    widgets::say(print("%zu of %zu ranks deviate by more than two standard errors", comparison_->beyond_two,
-                       comparison_->organisms.size()),
-                 palette::text);
+    widgets::small_text(print("%zu of %zu ranks deviate by more than two standard errors", comparison_->beyond_two,
+                              comparison_->organisms.size()),
+                        palette::text);
     for (const Prediction& prediction : comparison_->predictions) {
         ImGui::Separator();
-        widgets::say(print("%.*s: expected %s, observed %s", static_cast<int>(prediction.name.size()),
-                           prediction.name.data(), shown(prediction.expected, prediction.unit).c_str(),
-                           shown(prediction.observed, prediction.unit).c_str()),
-                     palette::text);
+        widgets::small_text(print("%.*s: expected %s, observed %s", static_cast<int>(prediction.name.size()),
+                                  prediction.name.data(), shown(prediction.expected, prediction.unit).c_str(),
+                                  shown(prediction.observed, prediction.unit).c_str()),
+                            palette::text);
         if (const auto off = prediction.deviation()) {
-            widgets::say(print("%+.2f standard errors", *off), palette::text);
+            widgets::small_text(print("%+.2f standard errors", *off), palette::text);
         }
-        widgets::say(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
+        widgets::small_text(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
     }
 }
 

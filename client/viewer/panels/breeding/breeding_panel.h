@@ -41,7 +41,7 @@ class BreedingPanel : public Panel {
     void build_stage(const Context& context);
     void build_theory(const Gui& gui);
 
-    std::optional<BreedingRecord> shown_, next_; // next_ replaces shown_ when its first page has arrived
+    std::optional<BreedingRecord> shown_, next_; // next_ replaces shown_ when the first page of next_ has arrived
     std::optional<Comparison> comparison_;       // for shown_; nullopt until all contenders have arrived
     Stepper stepper_;
     std::string error_; // why no further data can be shown

@@ -36,7 +36,7 @@ std::optional<evod::v1::GetBreeding> BreedingRecord::wanted(Moment moment) const
     if (!known_) {
         return request;
     }
-    if (fruitless_) {
+    if (no_new_row_) {
         return std::nullopt;
     }
     bool any = false;
@@ -71,7 +71,7 @@ void BreedingRecord::add(const evod::v1::Breeding& page) {
     bool any = append(*known_->mutable_contenders(), page.contenders(), known_->contender_count());
     any = append(*known_->mutable_picks(), page.picks(), known_->pick_count()) || any;
     any = append(*known_->mutable_descendants(), page.descendants(), known_->descendant_count()) || any;
-    fruitless_ = !any;
+    no_new_row_ = !any;
 }
 
 const evod::v1::Contender* BreedingRecord::contender(std::uint32_t organism) const {

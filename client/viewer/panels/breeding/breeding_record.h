@@ -57,7 +57,7 @@ class BreedingRecord {
 
     Key key_;
     std::optional<evod::v1::Breeding> known_; // all pages merged
-    bool fruitless_ = false;                  // the last page contained no new row
+    bool no_new_row_ = false;                 // the last page contained no new row
 };
 
 } // namespace evod::viewer

@@ -29,7 +29,7 @@ std::string organism_text(const BreedingRecord& record, std::uint32_t organism) 
     std::string text =
         print("organism %u (rank %u, fitness %.4g", organism, contender->rank() + 1, contender->fitness());
     if (contender->has_own_fitness()) {
-        text += print(" assigned by shuffling, its own %.4g", contender->own_fitness());
+        text += print(" assigned by shuffling, own fitness %.4g", contender->own_fitness());
     }
     if (contender->has_migrant()) {
         text += print(", migrated from island %u", contender->migrant().island());
@@ -40,11 +40,11 @@ std::string organism_text(const BreedingRecord& record, std::uint32_t organism) 
 std::string scaling_caption(const BreedingRecord& record) {
     const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
     if (method == "tournament") {
-        return print("Fitness by rank. Each tournament draws %g contestants at random; the fittest of them win.",
+        return print("Fitness by rank. Each tournament draws %g contestants at random; the fittest contestants win.",
                      record.number("tournament_size").value_or(0));
     }
     if (method == "random") {
-        return "Fitness by rank. Uniform random selection ignores it.";
+        return "Fitness by rank. Uniform random selection ignores the fitness.";
     }
     if (method == "truncation") {
         return "Fitness by rank. Truncation picks the best in order, repeatedly.";

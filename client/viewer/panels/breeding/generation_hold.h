@@ -36,7 +36,7 @@ class GenerationHold {
 
   private:
     std::optional<Run> run_;
-    bool limited_ = false; // the world runs the one generation that was requested
+    bool limited_ = false; // whether the world runs the requested generation
 };
 
 } // namespace evod::viewer

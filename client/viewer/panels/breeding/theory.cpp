@@ -92,7 +92,7 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     if (selection.method == Method::Truncation) {
         return 0;
     }
-    if (selection.method == Method::Random) { // a full round picks each organism once; only the last one varies
+    if (selection.method == Method::Random) { // picks in full rounds do not vary: each round picks every organism once
         const double rest = std::fmod(picks, population);
         const double square = std::inner_product(scores.begin(), scores.end(), scores.begin(), 0.0) / population;
         return population > 1 ? std::sqrt(square * rest * (population - rest) / (population - 1)) / picks : 0;
@@ -320,46 +320,50 @@ std::vector<Prediction> predictions(const Selection& selection, const Expectatio
                                         .standard_error = error_of_intensity(selection, expectation, scores)});
         intensity.observed = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
     };
-    add_intensity("Selection intensity",
-                  "By how many standard deviations the mean fitness of the picked exceeds the mean fitness of all.",
-                  standard_scores(fitness));
+    add_intensity(
+        "Selection intensity",
+        "By how many standard deviations the mean fitness of the picked organisms exceeds the mean fitness of all "
+        "organisms.",
+        standard_scores(fitness));
     if (selection.pressure == Pressure::Rank) {
-        add_intensity("Intensity, normal fitness",
-                      "The selection intensity if the fitness had a normal distribution: it then depends on the ranks "
-                      "alone.",
-                      normal_scores(expectation.copies.size()));
+        add_intensity(
+            "Intensity, normal fitness",
+            "The selection intensity if the fitness had a normal distribution: it would depend only on the ranks.",
+            normal_scores(expectation.copies.size()));
     }
 
-    Prediction& unpicked = all.emplace_back(
-        Prediction{.name = "Share not selected",
-                   .sentence = "The share of organisms that are never picked; genes that only they had are lost.",
-                   .source = "Motoki 2002",
-                   .expected = sum(expectation.unpicked_chance) / population,
-                   .standard_error = error_of_unpicked(selection, expectation)});
+    Prediction& unpicked = all.emplace_back(Prediction{
+        .name = "Share not selected",
+        .sentence = "The share of organisms that are never picked; genes that only these organisms had are lost.",
+        .source = "Motoki 2002",
+        .expected = sum(expectation.unpicked_chance) / population,
+        .standard_error = error_of_unpicked(selection, expectation)});
     if (known) {
         unpicked.observed = static_cast<double>(std::count(copies.begin(), copies.end(), 0u)) / population;
     }
     all.push_back({.name = "Loss of diversity",
-                   .sentence = "The share of the population that copies of fitter organisms replace if every number is "
-                               "the expected one: the least possible loss.",
+                   .sentence =
+                       "The share of the population that copies of fitter organisms replace if every organism has "
+                       "its expected number of copies: the least possible loss.",
                    .source = "Blickle & Thiele 1996",
                    .expected = loss_of_diversity(expectation.copies)});
 
     const auto takeover = takeover_generations(selection, expectation.copies, fitness);
-    all.push_back({.name = "Takeover time",
-                   .sentence = selection.overlapping
-                                   ? "Generations until copies of the fittest fill all places but one; not predicted "
-                                     "where most of a generation stays."
-                               : takeover ? "Generations of selection alone, without mutation and crossover, until "
-                                            "copies of the fittest fill all places but one."
-                               : selection.pressure != Pressure::Rank
-                                   ? "Generations until copies of the fittest fill all places but one; not predicted "
-                                     "where each generation subtracts its least fitness, or where all are equal."
-                                   : "Generations until copies of the fittest fill all places but one: never, as every "
-                                     "organism has the same chance.",
-                   .source = "Goldberg & Deb 1991",
-                   .unit = "generations",
-                   .expected = takeover ? std::optional<double>{*takeover} : std::nullopt});
+    all.push_back(
+        {.name = "Takeover time",
+         .sentence = selection.overlapping
+                         ? "Generations until copies of the fittest fill all places but one; not predicted if most "
+                           "of a generation survives."
+                     : takeover ? "Generations of selection alone, without mutation and crossover, until copies of "
+                                  "the fittest fill all places but one."
+                     : selection.pressure != Pressure::Rank
+                         ? "Generations until copies of the fittest fill all places but one; not predicted if each "
+                           "generation subtracts its lowest fitness, or if all fitness values are equal."
+                         : "Generations until copies of the fittest fill all places but one: never, because every "
+                           "organism has the same chance.",
+         .source = "Goldberg & Deb 1991",
+         .unit = "generations",
+         .expected = takeover ? std::optional<double>{*takeover} : std::nullopt});
 
     Prediction agreement{.name = "Agreement of all copies",
                          .sentence = "Squared differences between observed and expected copies, each divided by the "

@@ -25,7 +25,7 @@ namespace evod::viewer {
 /// The distribution of the copies as sent by the server. Each list is indexed by rank and has shape (population).
 struct Expectation {
     std::vector<double> copies;          // expected copies, in all picks together
-    std::vector<double> standard_error;  // standard deviation of the copies when a breeding is repeated
+    std::vector<double> standard_error;  // standard deviation of the copies over repetitions of the breeding
     std::vector<double> unpicked_chance; // probability of having no copy
 };
 
@@ -49,7 +49,7 @@ Selection selection_of(const evod::v1::Breeding& breeding);
 struct Prediction {
     std::string_view name{}, sentence{}, source{};
     std::string_view unit{};                // empty: dimensionless
-    std::optional<double> expected{};       // nullopt: never, or unknown to theory; see `sentence`
+    std::optional<double> expected{};       // nullopt: never, or no theory predicts it; see `sentence`
     std::optional<double> observed{};       // nullopt: cannot be observed in one breeding
     std::optional<double> standard_error{}; // standard error of the observed number; nullopt: unknown
 

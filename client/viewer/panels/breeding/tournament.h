@@ -14,7 +14,7 @@ namespace evod::viewer {
 struct Contestant {
     std::uint32_t organism = 0;
     bool won = false;
-    bool picked_now = false; // by the pick shown
+    bool picked_now = false; // whether the pick shown selected this contestant
 };
 
 /// The contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. If an

@@ -68,7 +68,7 @@ void PhysicsPanel::poll(Context& context) {
 
 void PhysicsPanel::build_motion() {
     if (!poll_.problem().empty()) {
-        widgets::say(poll_.problem(), palette::warning);
+        widgets::small_text(poll_.problem(), palette::warning);
     }
     if (history_.empty()) {
         ImGui::TextUnformatted("…");
@@ -76,9 +76,9 @@ void PhysicsPanel::build_motion() {
     }
     const evod::v1::Motion& now = history_.last();
     const TickVerdict verdict = judge_tick(now);
-    widgets::say(verdict.sentence, verdict.level == TickVerdict::Level::Good    ? palette::running
-                                   : verdict.level == TickVerdict::Level::Close ? palette::stopped
-                                                                                : palette::warning);
+    widgets::small_text(verdict.sentence, verdict.level == TickVerdict::Level::Good    ? palette::running
+                                          : verdict.level == TickVerdict::Level::Close ? palette::stopped
+                                                                                       : palette::warning);
     ImGui::Text("%s bodies, %s pairs touch; tick of %.4g s", with_separators(now.body_count()).c_str(),
                 with_separators(now.touching_count()).c_str(), now.tick_s());
     using Motion = evod::v1::Motion;
@@ -91,10 +91,10 @@ void PhysicsPanel::build_motion() {
                  [](const Motion& m) { return m.deepest_overlap_px(); });
     draw_measure("fastest body " + with_unit(now.fastest_px_s(), "px/s"), history_,
                  [](const Motion& m) { return m.fastest_px_s(); });
-    draw_measure("its movement per tick, in radii: " + shown_number(now.fastest_step_share()), history_,
+    draw_measure("movement of the fastest body per tick, in radii: " + shown_number(now.fastest_step_share()), history_,
                  [](const Motion& m) { return m.fastest_step_share(); });
     const double step_px = now.fastest_px_s() * now.tick_s();
-    widgets::say(
+    widgets::small_text(
         print("The fastest body moves %.3g px per tick; the contact search uses strips of %.4g px. The deepest "
               "overlap is %.2g of the smaller body's radius. In this generation %s moves were longer than the "
               "body's radius, and max_speed_px_s limited a body %s times.",
@@ -154,7 +154,7 @@ void PhysicsPanel::build_demo() {
         set_curves(demo);
     }
     const std::string steps = with_separators(rows_.size() - 1) + " steps";
-    widgets::say(steps);
+    widgets::small_text(steps);
     widgets::mark(steps);
     Plot x{.title = "x in 10 s, px"}, energy{.title = "energy, relative to the start"};
     for (const Curve& curve : curves_) {
@@ -166,7 +166,7 @@ void PhysicsPanel::build_demo() {
     curve_widget(x, {spring_ ? -reach : 0, reach}, height);
     curve_widget(energy, {0, 3}, height);
     for (std::size_t i = curves_.size(); i-- > 0;) {
-        widgets::say(curves_[i].name, curves_[i].colour);
+        widgets::small_text(curves_[i].name, curves_[i].colour);
         if (i > 0) {
             ImGui::SameLine();
         }
@@ -176,7 +176,7 @@ void PhysicsPanel::build_demo() {
         for (const char* name : {"t, s", "x, px"}) {
             ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 1);
         }
-        for (const char* name : {"symplectic (error)", "explicit (error)"}) {
+        for (const char* name : {"symplectic Euler", "explicit Euler"}) {
             ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 2);
         }
         ImGui::TableHeadersRow();
@@ -196,20 +196,20 @@ void PhysicsPanel::build_demo() {
         ImGui::EndTable();
     }
     if (spring_) {
-        widgets::say(
-            print("ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
-                  "short. Symplectic Euler, the default of a world, %s.",
+        widgets::small_text(
+            print("Errors are in parentheses. ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = "
+                  "%.4g in every step, however short. Symplectic Euler, the default of a world, %s.",
                   rate * dt, demo.explicit_growth(dt),
-                  demo.symplectic_is_stable(dt) ? "keeps it near its start, as ω·dt is below 2"
-                                                : "keeps it only if ω·dt is below 2, so not here"),
+                  demo.symplectic_is_stable(dt)
+                      ? "keeps the energy near its initial value, because ω·dt is below 2"
+                      : "keeps the energy near its initial value only if ω·dt is below 2, which is not so here"),
             palette::text);
     } else {
-        widgets::say(
-            print(
-                "c·dt is %.3g. Each step multiplies the velocity by 1 − c·dt, the exact solution by e^(−c·dt): for "
-                "c·dt above 1 the body reverses, above 2 it speeds up. The damping of a world multiplies by e^(−c·dt) "
-                "itself, at any tick length.",
-                rate * dt),
+        widgets::small_text(
+            print("Errors are in parentheses. c·dt is %.3g. Each step multiplies the velocity by 1 − c·dt; the "
+                  "exact factor is e^(−c·dt). If c·dt is above 1, the body reverses its direction; above 2, it "
+                  "also becomes faster. The damping of a world uses the exact factor at any tick length.",
+                  rate * dt),
             palette::text);
     }
 }

@@ -117,7 +117,7 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         }
         break;
     case Quantity::Selection:
-        make.plot().y_label = "gene units a generation";
+        make.plot().y_label = "gene units per generation";
         if (gene.empty()) {
             make.plot().title = "Selection of the genes";
             const auto& names = subject.table.gene_names();
@@ -134,7 +134,7 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         break;
     case Quantity::Diversity:
         make.plot().title = "Diversity";
-        make.plot().y_label = "mean deviation of the genes, as a share of their bounds";
+        make.plot().y_label = "mean standard deviation of the genes, as a share of their allowed range";
         make.plot().from_zero = true;
         make.line("diversity", "diversity", palette::series_purple, true);
         break;

@@ -4,7 +4,7 @@
 
 namespace evod::viewer {
 
-void History::see_run(const std::string& world, const std::string& run_id) {
+void History::set_run(const std::string& world, const std::string& run_id) {
     if (world == world_ && run_id == run_id_) {
         return;
     }
@@ -17,8 +17,8 @@ void History::see_run(const std::string& world, const std::string& run_id) {
     ++revision_;
 }
 
-void History::see_run(const evod::v1::WorldInfo& world) {
-    see_run(world.name(), world.run_id());
+void History::set_run(const evod::v1::WorldInfo& world) {
+    set_run(world.name(), world.run_id());
     set_gene_names({world.gene_names().begin(), world.gene_names().end()});
 }
 
@@ -28,7 +28,7 @@ void History::set_gene_names(const std::vector<std::string>& names) {
     }
 }
 
-void History::see_event(const evod::v1::Event& event) {
+void History::apply_event(const evod::v1::Event& event) {
     using Kind = evod::v1::Event::KindCase;
     if (event.kind_case() == Kind::kEventsDropped) {
         refresh();
@@ -37,19 +37,19 @@ void History::see_event(const evod::v1::Event& event) {
         return;
     }
     if (event.kind_case() == Kind::kWorldReset) {
-        see_run(event.world_reset().world());
+        set_run(event.world_reset().world());
     } else if (event.kind_case() == Kind::kWorldCreated) {
-        see_run(event.world_created().world());
+        set_run(event.world_created().world());
     } else if (event.kind_case() == Kind::kGenerationFinished && event.run_id() == run_id_) {
         add(event.generation_finished().statistics());
         if (!missing_) {
             whole_until_ = table_.last_without_gap(whole_until_);
-            see_ended(table_.last_generation());
+            set_ended(table_.last_generation());
         }
     }
 }
 
-void History::see_ended(std::uint64_t generation) {
+void History::set_ended(std::uint64_t generation) {
     ended_ = std::max(ended_, generation);
     missing_ = missing_ || ended_ > whole_until_;
 }

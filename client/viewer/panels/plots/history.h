@@ -21,14 +21,14 @@ namespace evod::viewer {
 class History {
   public:
     /// Sets the run; clears the history if the world or the run has changed.
-    void see_run(const std::string& world, const std::string& run_id);
-    void see_run(const evod::v1::WorldInfo& world);
+    void set_run(const std::string& world, const std::string& run_id);
+    void set_run(const evod::v1::WorldInfo& world);
 
     /// Processes an event. Ignores events of other worlds, except a report of dropped events.
-    void see_event(const evod::v1::Event& event);
+    void apply_event(const evod::v1::Event& event);
 
     /// Records that all generations of this run up to `generation` have ended. A snapshot reports this number.
-    void see_ended(std::uint64_t generation);
+    void set_ended(std::uint64_t generation);
 
     /// Call when events may have been missed.
     void refresh() { missing_ = again_ = true; }
@@ -66,7 +66,7 @@ class History {
 
     std::string world_, run_id_;
     HistoryTable table_;
-    std::uint64_t whole_until_ = 0; // up to this generation, the table contains all that the server keeps
+    std::uint64_t whole_until_ = 0; // up to this generation, the table contains every generation that the server keeps
     bool missing_ = true;
     bool again_ = false;                     // generations may have been missed since the last query
     std::uint64_t asked_ = 0, answered_ = 0; // numbers of the last queries sent and answered

@@ -14,23 +14,23 @@ namespace {
 
 // Indices of columns in core::history_columns().
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
-// Number of columns per gene. Behind them follow the columns of the selection account, again as many per gene.
+// Number of columns per gene. The columns of the selection account follow, with the same number per gene.
 constexpr std::size_t columns_of_gene = 4;
 
 std::size_t genes_in(std::size_t columns) {
     return (columns - gene_begin) / (2 * columns_of_gene);
 }
 
-constexpr std::size_t islands_max = 65'536; // more than any world can have
+constexpr std::size_t islands_max = 65'536; // no world can have as many islands
 
 /// How the numbers of several islands are combined. Deviation also uses the means, which are in the preceding column;
 /// for fitness_deviation they are in fitness_mean.
-enum class Together { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
+enum class Combination { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
 /// columns  total number of columns.
-Together together(std::size_t column, std::size_t columns) {
-    using enum Together;
-    constexpr Together of_all[gene_begin] = {
+Combination combination_of(std::size_t column, std::size_t columns) {
+    using enum Combination;
+    constexpr Combination of_all[gene_begin] = {
         First,     // generation
         First,     // island
         Greatest,  // end_tick
@@ -52,7 +52,7 @@ Together together(std::size_t column, std::size_t columns) {
         Sum,       // speed_limit_count
         Unknown,   // best_organism
     };
-    constexpr Together of_gene[columns_of_gene] = {Mean, Deviation, Least, Greatest};
+    constexpr Combination of_gene[columns_of_gene] = {Mean, Deviation, Least, Greatest};
     if (column < gene_begin) {
         return of_all[column];
     }
@@ -85,29 +85,29 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             return sum;
         };
         double& number = all[column];
-        switch (together(column, all.size())) {
-        case Together::First:
+        switch (combination_of(column, all.size())) {
+        case Combination::First:
             break;
-        case Together::Greatest:
+        case Combination::Greatest:
             for (const std::vector<double>& row : rows) {
                 number = std::max(number, row[column]);
             }
             break;
-        case Together::Least:
+        case Combination::Least:
             for (const std::vector<double>& row : rows) {
                 number = std::min(number, row[column]);
             }
             break;
-        case Together::Sum:
+        case Combination::Sum:
             number = 0;
             for (const std::vector<double>& row : rows) {
                 number += row[column];
             }
             break;
-        case Together::Mean:
+        case Combination::Mean:
             number = mean_of([&](const auto& row) { return row[column]; });
             break;
-        case Together::Deviation: { // variance within islands plus variance between their means
+        case Combination::Deviation: { // variance within islands plus variance between their means
             const std::size_t mean_column = mean_of_deviation(column);
             const double mean = mean_of([&](const auto& row) { return row[mean_column]; });
             number = std::sqrt(mean_of([&](const auto& row) {
@@ -116,7 +116,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             }));
             break;
         }
-        case Together::Unknown:
+        case Combination::Unknown:
             number = std::numeric_limits<double>::quiet_NaN();
             break;
         }
@@ -137,7 +137,7 @@ void HistoryTable::Rows::put(std::span<const double> numbers) {
         columns.resize(numbers.size(), std::vector<double>(generations().size(), unknown));
     }
     const std::vector<double>& known = columns[generation_column];
-    // The row nearly always belongs at the end.
+    // The row is nearly always the last one.
     const auto found = known.empty() || known.back() < numbers[generation_column]
                            ? known.end()
                            : std::lower_bound(known.begin(), known.end(), numbers[generation_column]);
@@ -210,7 +210,7 @@ std::uint64_t HistoryTable::last_generation() const {
 std::uint64_t HistoryTable::last_without_gap(std::uint64_t generation) const {
     const std::vector<double>& known = all_.generations();
     const auto after = std::upper_bound(known.begin(), known.end(), static_cast<double>(generation));
-    // Without a gap, each generation exceeds the one before it by 1. A binary search therefore finds the first gap.
+    // Without a gap, each generation exceeds the previous one by 1. A binary search therefore finds the first gap.
     const auto steps = std::distance(after, known.end());
     std::ptrdiff_t low = 0, high = steps;
     while (low < high) {

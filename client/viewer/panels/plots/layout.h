@@ -24,8 +24,7 @@ struct Range {
 std::optional<Range> range_of(std::span<const double> numbers);
 std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b);
 
-/// Widens a range by `room_share` of its width at each end, and at least so far that rounding does not matter when it
-/// is drawn.
+/// Widens a range by `room_share` of its width at each end, and at least enough that rounding errors are not visible.
 Range with_room(Range range, double room_share);
 
 struct Ticks {
@@ -53,7 +52,7 @@ struct Group {
     std::size_t begin, end;
 };
 
-/// Divides the visible part of a series, and one more number on either side, into groups, one for each column of
+/// Divides the numbers of the visible part of a series, and one more number at each end, into one group per column of
 /// pixels. If there are at most two numbers per column, every number is a group of its own.
 ///
 /// x  in increasing order.

@@ -36,7 +36,7 @@ class Drawing {
         lay_out(box);
     }
 
-    /// Without axes: the vertical range of the box is `y`.
+    /// Draws no axes. `y` is the vertical range of the box.
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
         : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
         group(columns());
@@ -259,7 +259,7 @@ class Drawing {
 
     void draw_line(const Series& series, std::span<const Group> groups) {
         std::vector<ImVec2> points;
-        // If each column of pixels has several numbers, the line goes up and down within it and dashes would be
+        // If a column of pixels has several numbers, the line moves up and down within the column, so dashes would be
         // invisible.
         const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
         const auto finish = [&] {

@@ -112,15 +112,15 @@ void PlotsPanel::update(Context& context) {
             history.refresh();
         }
         for (const evod::v1::Event& event : world.feed.events()) {
-            history.see_event(event);
+            history.apply_event(event);
         }
     }
     if (world.feed.control().known()) {
-        own_.history.see_run(world.feed.control().world(), world.feed.control().run_id());
+        own_.history.set_run(world.feed.control().world(), world.feed.control().run_id());
     }
     const codec::DecodedSnapshot* snapshot = world.feed.snapshot();
     if (snapshot != nullptr && snapshot->about.run_id() == own_.history.run_id() && snapshot->about.generation() > 0) {
-        own_.history.see_ended(snapshot->about.generation() - 1);
+        own_.history.set_ended(snapshot->about.generation() - 1);
     }
     own_.history.set_gene_names(world.feed.gene_names());
     for (const evod::v1::Event& event : world.feed.events()) {
@@ -146,10 +146,10 @@ void PlotsPanel::build(Context& context) {
     build_choices();
     build_comparison();
     if (!own_.poll.problem().empty()) {
-        widgets::say(own_.poll.problem(), palette::warning);
+        widgets::small_text(own_.poll.problem(), palette::warning);
     }
     if (other_world_ && !other_world_->poll.problem().empty()) {
-        widgets::say(other_name_ + ": " + other_world_->poll.problem(), palette::warning);
+        widgets::small_text(other_name_ + ": " + other_world_->poll.problem(), palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -194,7 +194,7 @@ void PlotsPanel::build_choices() {
     const std::string known = table.empty() ? own_.history.complete() ? "No generation has ended yet" : "…"
                                             : with_separators(table.column(std::nullopt, "generation").size()) +
                                                   " generations, up to " + with_separators(table.last_generation());
-    widgets::say(known);
+    widgets::small_text(known);
     widgets::mark(known);
 }
 
@@ -235,7 +235,7 @@ void PlotsPanel::build_comparison() {
             if (widgets::choice("compare", "world " + world.name(),
                                 other_world_ && world.name() == other_world_->history.world())) {
                 other_world_ = std::make_unique<TrackedHistory>();
-                other_world_->history.see_run(world);
+                other_world_->history.set_run(world);
                 file_.reset();
                 other_name_ = world.name();
             }
@@ -263,10 +263,10 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     // Height of the export row and its message, which are below the plot.
     const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
-        build_gene_choice("all: their means");
+        build_gene_choice("means of all genes");
         update_histogram(context);
     } else if (quantity == Quantity::Selection) {
-        build_gene_choice("all: their selection");
+        build_gene_choice("selection of all genes");
     }
     const auto* other_table = other_world_ ? &other_world_->history.table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;
@@ -286,12 +286,12 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     ImGui::SameLine();
     const Population* population = population_.complete();
     if (const std::string problem = population_.problem(); !problem.empty()) {
-        widgets::say(problem, palette::warning);
+        widgets::small_text(problem, palette::warning);
     } else if (population == nullptr) {
-        widgets::say("…");
+        widgets::small_text("…");
     } else {
-        widgets::say("generation " + with_separators(population->generation()) + ", island " +
-                     std::to_string(island_.value_or(context.world.feed.island())) + population_note_);
+        widgets::small_text("generation " + with_separators(population->generation()) + ", island " +
+                            std::to_string(island_.value_or(context.world.feed.island())) + population_note_);
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -345,7 +345,8 @@ void PlotsPanel::update_histogram(Context& context) {
             histogram_ = histogram_of(gene_, gene_of(*population, index, *ids));
             return;
         }
-        population_note_ = ids ? ": none alive, all shown" : ": living ones unknown, all shown";
+        population_note_ =
+            ids ? ": no organism is alive, all are shown" : ": unknown which organisms live, all are shown";
     }
     const std::span<const float> of_all = population->gene(index);
     histogram_ = histogram_of(gene_, {of_all.begin(), of_all.end()});
@@ -424,7 +425,7 @@ void PlotsPanel::build_export() {
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     build_pixels("pixels", "image height", image_pixels_[1]);
     if (!message_.empty()) {
-        widgets::say(message_, message_is_error_ ? palette::warning : palette::text_quiet);
+        widgets::small_text(message_, message_is_error_ ? palette::warning : palette::text_quiet);
     }
 }
 

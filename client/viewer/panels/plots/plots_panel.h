@@ -26,7 +26,7 @@ class PlotsPanel : public Panel {
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{
-        100}; // a world may finish more generations per second than a user can see
+        100}; // a fast world finishes more generations per second than a user can see
     static constexpr std::chrono::seconds population_interval{1}; // between requests for the living organisms
 
     struct TrackedHistory {
@@ -83,7 +83,7 @@ class PlotsPanel : public Panel {
     } histogram_of_;
     std::string population_note_; // why the histogram includes dead organisms
 
-    std::array<char, 256> path_{}; // of the file to compare with
+    std::array<char, 256> path_{}; // path of the file to compare with
     std::array<int, 2> image_pixels_{1200, 700};
     std::string message_; // result of the last file operation
     bool message_is_error_ = false;

@@ -39,8 +39,8 @@ TEST(EventText, SaysWhyAPlannedChangeWasNotMade) {
     evod::v1::Event event;
     by_evoctl(*event.mutable_change_dropped());
     event.mutable_change_dropped()->add_name("food_count");
-    EXPECT_EQ(event_text(event), "The change of food_count that evoctl 127.0.0.1 planned conflicts with the other "
-                                 "parameters and was not made");
+    EXPECT_EQ(event_text(event), "The change of food_count that evoctl 127.0.0.1 planned was dropped, because it "
+                                 "conflicts with the other parameters");
 }
 
 TEST(EventText, IsEmptyForEventsThatNeedNoNotice) {

@@ -208,7 +208,7 @@ TEST_F(ParameterEditsTest, ShowsChangesOfOthersAndKeepsEdits) {
     EXPECT_EQ(edits.shown(mutation_chance).real(), 0.3);
     EXPECT_EQ(edits.changed_by(mutation_chance), "evoctl 127.0.0.1:9");
     EXPECT_EQ(edits.shown(food_count).count(), 30u);
-    EXPECT_EQ(edits.asked_for(food_count).count(), 28u);
+    EXPECT_EQ(edits.requested_value(food_count).count(), 28u);
     EXPECT_EQ(edits.apply("w")->set_parameters().expected_revision(), 8u) << "the revision was received";
 }
 
@@ -294,7 +294,7 @@ TEST_F(ParameterEditsTest, APendingValueIsTheRequestedOne) {
     *set.mutable_parameters(food_count)->mutable_pending() = count(60);
     edits.update(set);
     EXPECT_TRUE(edits.has_pending());
-    EXPECT_EQ(edits.holds(food_count).count(), 25u);
+    EXPECT_EQ(edits.current_value(food_count).count(), 25u);
     EXPECT_EQ(edits.shown(food_count).count(), 60u);
     edits.edit(food_count, count(60));
     EXPECT_EQ(edits.edit_count(), 0u);

@@ -62,10 +62,10 @@ TEST_F(PollTest, SendsAgainAfterTheIntervalOrWhenHurried) {
     EXPECT_THAT(received, ElementsAre(5));
     EXPECT_FALSE(poll->due(*world, now + 59min));
     EXPECT_TRUE(poll->due(*world, now + 61min));
-    poll->hurry();
+    poll->make_due();
     EXPECT_TRUE(poll->due(*world, now));
     ask();
-    poll->hurry();
+    poll->make_due();
     EXPECT_FALSE(poll->due(*world, now)) << "one at a time";
 }
 

@@ -43,7 +43,7 @@ TEST_F(WorldCommandsTest, DoesNotSendAViewersCommandsAndSaysWhy) {
                 testing::AllOf(testing::SizeIs(9), testing::Each(world.commands.read_only_reason())));
     world.replay.fork("other");
     EXPECT_TRUE(world.all_answered());
-    EXPECT_THAT(world.server.take_notices(), ElementsAre("Only the role admin may make worlds"));
+    EXPECT_THAT(world.server.take_notices(), ElementsAre("Only the role admin may create worlds"));
 }
 
 TEST_F(WorldCommandsTest, TakesTheEndOfAStepAfterItsAnswer) {

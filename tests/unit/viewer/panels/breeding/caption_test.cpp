@@ -30,7 +30,7 @@ TEST(Caption, ShowsTheOwnFitnessBesideAShuffledOne) {
     breeding.mutable_contenders(2)->set_own_fitness(12.5);
     EXPECT_TRUE(breeding_summary(record_of(breeding)).ends_with(" · fitness shuffled among organisms"));
     EXPECT_NE(caption(record_of(breeding), {BreedingStage::Picking, 1})
-                  .find("organism 2 (rank 2, fitness 30 assigned by shuffling, its own 12.5)"),
+                  .find("organism 2 (rank 2, fitness 30 assigned by shuffling, own fitness 12.5)"),
               std::string::npos);
 }
 

@@ -44,7 +44,7 @@ v1::History page(std::uint64_t first, std::uint64_t last, std::optional<std::uin
 }
 
 struct HistoryTest : testing::Test {
-    HistoryTest() { history.see_run("lab", "a"); }
+    HistoryTest() { history.set_run("lab", "a"); }
 
     /// Returns the first generation of the next query.
     std::uint64_t ask() {
@@ -83,10 +83,10 @@ TEST_F(HistoryTest, RequestsEarlierGenerationsPageByPage) {
 
 TEST_F(HistoryTest, EventsContinueAfterThePages) {
     ask();
-    history.see_event(finished(4)); // while the first page is pending
+    history.apply_event(finished(4)); // while the first page is pending
     answer(page(1, 3));
-    history.see_event(finished(5));
-    history.see_event(finished(5));
+    history.apply_event(finished(5));
+    history.apply_event(finished(5));
     EXPECT_TRUE(history.complete());
     EXPECT_THAT(known(), ElementsAre(1, 2, 3, 4, 5));
 }
@@ -94,9 +94,9 @@ TEST_F(HistoryTest, EventsContinueAfterThePages) {
 TEST_F(HistoryTest, RequestsAGap) {
     ask();
     answer(page(1, 3));
-    history.see_event(finished(6));
+    history.apply_event(finished(6));
     EXPECT_EQ(ask(), 4u);
-    history.see_event(finished(7));
+    history.apply_event(finished(7));
     answer(page(4, 6));
     EXPECT_TRUE(history.complete());
     EXPECT_THAT(known(), ElementsAre(1, 2, 3, 4, 5, 6, 7));
@@ -105,9 +105,9 @@ TEST_F(HistoryTest, RequestsAGap) {
 TEST_F(HistoryTest, AnEventBeyondAGapLeavesNoHole) {
     ask();
     answer(page(1, 3));
-    history.see_event(finished(5));
+    history.apply_event(finished(5));
     EXPECT_EQ(ask(), 4u);
-    history.see_event(finished(8)); // 6 and 7 are missing
+    history.apply_event(finished(8)); // 6 and 7 are missing
     answer(page(4, 6));
     EXPECT_FALSE(history.complete());
     EXPECT_EQ(ask(), 7u);
@@ -119,11 +119,11 @@ TEST_F(HistoryTest, AnEventBeyondAGapLeavesNoHole) {
 TEST_F(HistoryTest, DoesNotRequestWhatTheServerDropped) {
     ask();
     answer(page(1, 3));
-    history.see_event(finished(20'000));
+    history.apply_event(finished(20'000));
     EXPECT_EQ(ask(), 4u);
     answer(page(10'001, 20'000 - 9'990));
     EXPECT_TRUE(history.complete());
-    history.see_event(finished(20'001));
+    history.apply_event(finished(20'001));
     EXPECT_TRUE(history.complete());
 }
 
@@ -132,16 +132,16 @@ TEST_F(HistoryTest, DroppedEventsAndSnapshotsRevealAGap) {
     answer(page(1, 3));
     v1::Event dropped;
     dropped.mutable_events_dropped()->set_dropped_count(2);
-    history.see_event(dropped);
+    history.apply_event(dropped);
     EXPECT_EQ(ask(), 4u);
     history.refresh(); // again, while the query is pending
     answer(page(4, 5));
     EXPECT_EQ(ask(), 6u);
     answer({});
     EXPECT_TRUE(history.complete());
-    history.see_ended(5);
+    history.set_ended(5);
     EXPECT_TRUE(history.complete());
-    history.see_ended(6);
+    history.set_ended(6);
     EXPECT_EQ(ask(), 6u);
     answer({});
     EXPECT_TRUE(history.complete()) << "the server no longer has it";
@@ -157,23 +157,23 @@ TEST_F(HistoryTest, AResetClearsItAndOldAnswersAreIgnored) {
     reset.set_run_id("b");
     reset.mutable_world_reset()->mutable_world()->set_name("lab");
     reset.mutable_world_reset()->mutable_world()->set_run_id("b");
-    history.see_event(reset);
+    history.apply_event(reset);
     EXPECT_NE(history.revision(), revision);
     EXPECT_TRUE(history.table().empty());
     answer(page(4, 9)); // of the previous run
-    history.see_event(finished(10, "a"));
+    history.apply_event(finished(10, "a"));
     EXPECT_TRUE(history.table().empty());
     EXPECT_EQ(ask(), 1u);
     answer(page(1, 1));
     EXPECT_THAT(known(), ElementsAre(1));
-    history.see_run("lab", "b");
+    history.set_run("lab", "b");
     EXPECT_THAT(known(), ElementsAre(1)) << "the same as before";
 }
 
 TEST_F(HistoryTest, IgnoresEventsOfOtherWorlds) {
     ask();
     answer(page(1, 1));
-    history.see_event(finished(2, "a", "other"));
+    history.apply_event(finished(2, "a", "other"));
     EXPECT_THAT(known(), ElementsAre(1));
 }
 
