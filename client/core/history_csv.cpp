@@ -1,6 +1,6 @@
 #include "client/core/history_csv.h"
 
-#include "client/core/exact.h"
+#include "proto/text/number_text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -121,7 +121,8 @@ std::string history_heading(const std::vector<std::string>& gene_names) {
 std::string history_line(std::span<const double> numbers) {
     std::string line;
     for (const double number : numbers) {
-        line += (line.empty() ? "" : ",") + (std::isnan(number) ? std::string{} : exact(number));
+        line += (line.empty() ? "" : ",") +
+                (std::isnan(number) ? std::string{} : text::number_text(number, text::Exponent::IfLong));
     }
     return line + "\n";
 }
@@ -177,7 +178,8 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
         for (std::size_t i = 0; i < 2; ++i) {
             if (row[i] != std::floor(row[i]) || row[i] < (i == 0 ? 1 : 0) || row[i] >= (i == 0 ? 1e15 : 65'536)) {
                 return misread("line " + std::to_string(number) + ", " + columns[i] + ": must be a whole number from " +
-                               (i == 0 ? "1" : "0 to 65535") + ", not " + exact(row[i]));
+                               (i == 0 ? "1" : "0 to 65535") + ", not " +
+                               text::number_text(row[i], text::Exponent::IfLong));
             }
         }
     }

@@ -138,7 +138,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
 std::string to_text(const v1::ParameterValue& value) {
     switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
-        return exact(value.real());
+        return number_text(value.real(), text::Exponent::IfLong);
     case v1::ParameterValue::kCount:
         return std::to_string(value.count());
     case v1::ParameterValue::kFlag:
@@ -153,7 +153,8 @@ std::string to_text(const v1::ParameterValue& value) {
 std::string allowed(const v1::ParameterDescription& parameter) {
     switch (parameter.kind()) {
     case v1::PARAMETER_KIND_REAL:
-        return exact(parameter.min()) + " to " + exact(parameter.max());
+        return number_text(parameter.min(), text::Exponent::IfLong) + " to " +
+               number_text(parameter.max(), text::Exponent::IfLong);
     case v1::PARAMETER_KIND_COUNT:
         return fixed(parameter.min(), 0) + " to " + fixed(parameter.max(), 0) + ", whole";
     case v1::PARAMETER_KIND_FLAG:

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <utility>
 
@@ -59,12 +58,6 @@ std::string sparkline(std::span<const double> values, std::size_t width_max) {
         line += bars[static_cast<std::size_t>(std::clamp(height * 8, 0.0, 7.0))];
     }
     return line;
-}
-
-std::string fixed(double value, int decimals) {
-    std::array<char, 400> digits;
-    const int length = std::snprintf(digits.data(), digits.size(), "%.*f", decimals, value);
-    return {digits.data(), static_cast<std::size_t>(length)};
 }
 
 std::string short_time(double seconds) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "client/core/duration.h"
-#include "client/core/exact.h"
+#include "proto/text/number_text.h"
 
 #include <cstdint>
 #include <span>
@@ -39,10 +39,9 @@ std::string sparkline(std::span<const double> values, std::size_t width_max);
 /// Makes text from a server safe to print on a terminal: replaces control characters except line breaks by '?'.
 std::string visible(std::string utf8);
 
-using core::exact;
-/// Formats a number with a fixed number of decimals.
-std::string fixed(double value, int decimals);
 using core::duration;
+using text::fixed;
+using text::number_text;
 /// Formats a short duration: "12 µs", "3.4 ms", "1.2 s".
 std::string short_time(double seconds);
 /// Formats a number of bytes: "512 B", "1.5 KiB", "12 MiB".

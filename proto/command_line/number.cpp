@@ -1,21 +1,20 @@
 #include "proto/command_line/number.h"
 
+#include "proto/text/number_text.h"
+
 #include <charconv>
 
 namespace evod::command_line {
 namespace {
+
+using text::Exponent;
+using text::number_text;
 
 template <class Number>
 bool read(const std::string& word, Number& number) {
     const char* const end = word.data() + word.size();
     const auto [read_until, error] = std::from_chars(word.data(), end, number);
     return error == std::errc{} && read_until == end;
-}
-
-/// The shortest text, without an exponent, that reads back as the same number.
-std::string text_of(double number) {
-    char digits[400]; // DBL_MAX has 309 digits
-    return {digits, std::to_chars(digits, digits + sizeof digits, number, std::chars_format::fixed).ptr};
 }
 
 } // namespace
@@ -32,7 +31,8 @@ std::string RealNumber::operator()(const std::string& word) const {
     double number = 0;
     return read(word, number) && number >= min && number <= max
                ? std::string{}
-               : "must be a number, " + text_of(min) + " to " + text_of(max) + ", not " + word;
+               : "must be a number, " + number_text(min, Exponent::Never) + " to " + number_text(max, Exponent::Never) +
+                     ", not " + word;
 }
 
 } // namespace evod::command_line

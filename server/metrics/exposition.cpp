@@ -1,6 +1,6 @@
 #include "server/metrics/exposition.h"
 
-#include "server/base/number_text.h"
+#include "proto/text/number_text.h"
 
 #include <cmath>
 #include <cstdint>
@@ -35,7 +35,7 @@ std::string sample_text(double value) {
     }
     constexpr double exact_max = 9007199254740992; // 2^53
     return value == std::trunc(value) && std::abs(value) <= exact_max ? std::to_string(static_cast<std::int64_t>(value))
-                                                                      : base::number_text(value);
+                                                                      : text::number_text(value);
 }
 
 /// Formats labels: {world="default",le="0.1"}. Returns an empty string if there are none.

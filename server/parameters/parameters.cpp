@@ -1,7 +1,7 @@
 #include "server/parameters/parameters.h"
 
+#include "proto/text/number_text.h"
 #include "server/base/elementary.h"
-#include "server/base/number_text.h"
 #include "server/base/overloaded.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace evod::parameters {
 namespace {
 
 using base::Effect;
-using base::number_text;
 using base::Overloaded;
+using text::number_text;
 
 // clang-format off
 #define EVOD_REAL_LINE(name, value, least, greatest, unit, effect, help)                                               \

@@ -1,6 +1,6 @@
 #include "server/protocol/commands.h"
 
-#include "server/base/number_text.h"
+#include "proto/text/number_text.h"
 #include "server/protocol/experiments.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
@@ -17,8 +17,8 @@
 namespace evod::protocol {
 namespace {
 
-using base::number_text;
 using base::Violation;
+using text::number_text;
 using Violations = std::vector<Violation>;
 using RequestCase = v1::Request::KindCase;
 

@@ -1,6 +1,6 @@
 #include "server/replay/mismatch.h"
 
-#include "server/base/number_text.h"
+#include "proto/text/number_text.h"
 
 #include <algorithm>
 #include <span>
@@ -14,13 +14,13 @@ using simulation::IslandState;
 using Found = std::optional<Mismatch>;
 
 std::string text_of(double value) {
-    return base::number_text(value + 0.0); // SQLite stores −0 as 0
+    return text::number_text(value + 0.0); // SQLite stores −0 as 0
 }
 /// Formats several numbers with spaces between them: "3 4.5 6".
 template <class... Numbers>
 std::string text_of_numbers(Numbers... numbers) {
     std::string text;
-    ((text += (text.empty() ? "" : " ") + base::number_text(static_cast<double>(numbers) + 0.0)), ...);
+    ((text += (text.empty() ? "" : " ") + text::number_text(static_cast<double>(numbers) + 0.0)), ...);
     return text;
 }
 std::string text_of(std::uint64_t value) {

@@ -1,8 +1,7 @@
 """An independent client against a real server: everything that docs/PROTOCOL.md promises, abuse included.
 
 Plain Python 3, protobuf and numpy, with message classes made by protoc, and the decoder of docs/PROTOCOL.md; nothing else
-of this repository. Each class below
-is one test of ctest:
+of this repository. Each class below is one subject, and one test of ctest:
 
     plain_client.py EVOD MESSAGES PROTOCOL.md [CLASS …]
 

@@ -1,4 +1,5 @@
-"""Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages, sizes.
+"""Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages, sizes,
+unit tests.
 
     tidy.py [ROOT]     prints every finding as PATH:LINE: what is wrong, and what to write instead
 
@@ -163,13 +164,71 @@ def large_source(path, text):
 
 RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source)
 
+# Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
+UNIT_TESTED_ELSEWHERE = {
+    ("client/core", "endpoint session"): "unit/core/connection_test",
+    ("client/core/example", "*"): "an example, which is only built",
+    ("client/ctl", "*"): "system/evoctl_test: commands of evoctl, from the terminal to the server",
+    ("client/viewer", "*"): "tests/system/viewer: windows, which need a display",
+    ("proto/codec", "result"): "unit/codec/framing_test",
+    ("server", "main"): "system/console_test",
+    ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
+    ("server/base", "instructions"): "tests/determinism, with every instruction set",
+    ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
+    ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
+    ("server/commands", "parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
+    ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
+    ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
+    ("server/network", "breeding_queries description exports http messages random_ids server_metrics transport"):
+        "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
+    ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
+    ("server/physics", "bodies motion_kernels"): "unit/physics/step_test and tests/determinism",
+    ("server/recording", "run_log storage_worker waiting_record"): "unit/recording/storage_thread_test and recorder_test",
+    ("server/replay", "columns table"): "unit/replay/run_tables_test",
+    ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents run_database "
+                        "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one file",
+    ("server/runtime", "demand"): "unit/network/streams_test",
+    ("server/runtime", "replays snapshot"): "unit/runtime/simulation_loop_test and system/past_test",
+    ("server/simulation", "commands items_kernels organism_kernels statistics"):
+        "unit/simulation/island_test and model_check, with every instruction set",
+    ("server/streaming", "encoded_island"): "unit/streaming/snapshot_streams_test",
+}
+
+
+def untested_sources(names, text_of):
+    """Sources that no unit test is about. A unit test is about a source if it mirrors its path, or includes its header.
+
+    names    paths of the tree's files.
+    text_of  returns the text of a file.
+    """
+    tests = {name for name in names if re.match(r"tests/unit/.*\.(cpp|h)$", name)}
+    included = {header for test in tests for header in re.findall(r'^#include "([^"]+)"', text_of(test), re.M)}
+    excepted = {(folder, stem) for folder, stems in UNIT_TESTED_ELSEWHERE for stem in stems.split()}
+    used = set()
+    for name in sorted(names):
+        if not re.match(r"(server|client|proto)/.*\.cpp$", name):
+            continue
+        folder, stem = name[:-4].rsplit("/", 1)
+        test = f"tests/unit/{name[:-4].split('/', 1)[1]}_test.cpp"
+        if test in tests or f"{folder}/{stem}.h" in included:
+            continue
+        found = {one for one in excepted if one == (folder, stem) or one[1] == "*" and f"{folder}/".startswith(one[0] + "/")}
+        used |= found
+        if not found:
+            yield (pathlib.Path(name), 1,
+                   f"no unit test: write {test}, or list in UNIT_TESTED_ELSEWHERE the tests that cover the source")
+    for folder, stem in sorted(excepted - used):
+        yield (pathlib.Path("tests/tidy/tidy.py"), 1,
+               f"UNIT_TESTED_ELSEWHERE: {folder}/{stem}.cpp has a unit test or does not exist: remove the exception")
+
 
 def findings(root):
     """(path, line, what is wrong) of every rule and every tracked file below `root`."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout.decode()
-    for name in filter(None, listed.split("\0")):
+    names = [name for name in filter(None, listed.split("\0")) if (root / name).is_file()]
+    for name in names:
         path = pathlib.Path(name)
-        if path.suffix not in TEXT or not (root / path).is_file():
+        if path.suffix not in TEXT:
             continue
         try:
             text = (root / path).read_text()
@@ -179,6 +238,7 @@ def findings(root):
             if rule is banned_words and WITHOUT_WORDS.search(name):
                 continue
             yield from rule(path, text)
+    yield from untested_sources(names, lambda name: (root / name).read_text())
 
 
 if __name__ == "__main__":

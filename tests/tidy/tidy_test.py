@@ -1,6 +1,7 @@
 """The tree keeps the rules of tidy.py, and each rule finds what breaks it."""
 import pathlib
 import unittest
+import unittest.mock
 
 import tidy
 
@@ -56,6 +57,21 @@ class Rules(unittest.TestCase):
         self.assertEqual(found(tidy.large_source, "server/a.cpp", "\n" * 701), [1])
         self.assertEqual(found(tidy.large_source, "server/a.cpp", "\n" * 700), [])
         self.assertEqual(found(tidy.large_source, "tests/a.cpp", "\n" * 701), [])
+
+    def test_sources_without_a_unit_test_are_found(self):
+        def untested(tests, excepted=()):
+            names = ["server/network/a.cpp", "server/network/a.h", *tests]
+            with unittest.mock.patch.dict(tidy.UNIT_TESTED_ELSEWHERE, {name: "reason" for name in excepted}, clear=True):
+                return [str(path) for path, _, _ in tidy.untested_sources(names, lambda name: tests.get(name, ""))]
+        self.assertEqual(untested({}), ["server/network/a.cpp"])
+        self.assertEqual(untested({"tests/unit/network/a_test.cpp": ""}), [])
+        self.assertEqual(untested({"tests/unit/b_test.cpp": '#include "server/network/a.h"\n'}), [])
+        self.assertEqual(untested({"tests/unit/other/a_test.cpp": "", "tests/system/a_test.cpp": '#include "server/network/a.h"\n'}),
+                         ["server/network/a.cpp"])
+        self.assertEqual(untested({}, [("server/network", "a")]), [])
+        self.assertEqual(untested({}, [("server", "*")]), [])
+        self.assertEqual(untested({"tests/unit/network/a_test.cpp": ""}, [("server/network", "a")]),
+                         ["tests/tidy/tidy.py"])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include "client/core/actor.h"
 #include "client/viewer/world/status_text.h"
+#include "proto/text/number_text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -50,9 +51,7 @@ std::string plain(std::string_view text) {
     return lower;
 }
 
-std::string number_text(double number) {
-    return print("%.10g", number);
-}
+constexpr int digits_shown = 10;
 
 constexpr std::string_view field_prefix = "set_parameters.";
 
@@ -82,7 +81,7 @@ bool same(const ParameterValue& a, const ParameterValue& b) {
 std::string to_text(const ParameterValue& value) {
     switch (value.kind_case()) {
     case ParameterValue::kReal:
-        return number_text(value.real());
+        return text::rounded(value.real(), digits_shown);
     case ParameterValue::kCount:
         return with_separators(value.count());
     case ParameterValue::kFlag:
@@ -125,7 +124,7 @@ std::string allowed_text(const ParameterDescription& parameter) {
         return names;
     }
     default:
-        return number_text(parameter.min()) + " to " + number_text(parameter.max());
+        return text::rounded(parameter.min(), digits_shown) + " to " + text::rounded(parameter.max(), digits_shown);
     }
 }
 

@@ -45,25 +45,6 @@ TEST(Table, AlignsByCharactersNotBytes) {
                                "größe     10\n");
 }
 
-TEST(Numbers, AreShortAndReadBack) {
-    EXPECT_EQ(exact(0.15), "0.15");
-    EXPECT_EQ(exact(500'000), "500000");
-    EXPECT_EQ(exact(1e-4), "0.0001");
-    EXPECT_EQ(exact(-1e300), "-1e+300");
-    EXPECT_EQ(exact(0), "0");
-    EXPECT_EQ(std::stod(exact(1.0 / 60)), 1.0 / 60);
-    EXPECT_EQ(fixed(2.345, 1), "2.3");
-}
-
-TEST(Durations, HaveTheirUnit) {
-    EXPECT_EQ(duration(0), "0.0 s");
-    EXPECT_EQ(duration(59.96), "60.0 s");
-    EXPECT_EQ(duration(245), "4:05 min");
-    EXPECT_EQ(duration(119.9999), "2:00 min") << "a sum of ticks is seldom whole";
-    EXPECT_EQ(duration(7200), "2:00:00 h");
-    EXPECT_EQ(duration(std::nan("")), "nan s");
-}
-
 TEST(ShortTime, HasTwoOrThreeDigits) {
     EXPECT_EQ(short_time(0), "0.0 µs");
     EXPECT_EQ(short_time(2.34e-6), "2.3 µs");

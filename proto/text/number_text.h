@@ -1,0 +1,47 @@
+// Numbers as text: the messages, errors, tables and files of the server and of its clients. Standard library only,
+// because every folder may include this one, below the purity line too.
+//
+// Threads      any; no state.
+// Determinism  independent of the locale.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace evod::text {
+
+/// When a text has an exponent.
+enum class Exponent {
+    IfShorter, // "1e+05" and "1e-04", but "10000"
+    IfLong,    // below 1e-5 and from 1e15
+    Never,
+};
+
+/// Writes a number with the arguments of std::to_chars that follow the value.
+inline std::string formatted_number(double value, auto... format) {
+    char digits[400]; // the longest double without an exponent has 327 characters
+    return {digits, std::to_chars(digits, digits + sizeof digits, value, format...).ptr};
+}
+
+/// The shortest text that parses back to the same number: "0.1", "-2.5", "nan".
+inline std::string number_text(double value, Exponent exponent = Exponent::IfShorter) {
+    if (exponent == Exponent::IfShorter) {
+        return formatted_number(value);
+    }
+    const double size = std::abs(value);
+    const bool plain = exponent == Exponent::Never || value == 0 || (size >= 1e-5 && size < 1e15);
+    return formatted_number(value, plain ? std::chars_format::fixed : std::chars_format::scientific);
+}
+
+/// The number rounded to so many significant digits, without trailing zeros, like %g of printf.
+inline std::string rounded(double value, int digits) {
+    return formatted_number(value, std::chars_format::general, digits);
+}
+
+/// The number rounded to so many decimals, at most 80: fixed(2.345, 1) is "2.3".
+inline std::string fixed(double value, int decimals) {
+    return formatted_number(value, std::chars_format::fixed, decimals);
+}
+
+} // namespace evod::text

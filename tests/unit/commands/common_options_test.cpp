@@ -1,0 +1,64 @@
+#include "server/commands/common_options.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <optional>
+
+namespace evod::commands {
+namespace {
+
+/// Sets an environment variable, or removes it. The destructor restores it.
+class Variable {
+  public:
+    Variable(const char* name, const char* value) : name_{name} {
+        if (const char* before = std::getenv(name)) {
+            before_ = before;
+        }
+        set(value);
+    }
+    ~Variable() { set(before_ ? before_->c_str() : nullptr); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    void set(const char* value) { value != nullptr ? ::setenv(name_, value, 1) : ::unsetenv(name_); }
+
+    const char* name_;
+    std::optional<std::string> before_;
+};
+
+TEST(DataFolder, IsTheStateFolderUnlessGiven) {
+    const Variable state{"XDG_STATE_HOME", "/state"}, home{"HOME", "/home/anna"};
+    EXPECT_EQ(data_folder_or_default("given"), "given");
+    EXPECT_EQ(data_folder_or_default(""), "/state/evod");
+    {
+        const Variable relative{"XDG_STATE_HOME", "state"};
+        EXPECT_EQ(data_folder_or_default(""), "/home/anna/.local/state/evod");
+    }
+    const Variable unset{"XDG_STATE_HOME", nullptr};
+    EXPECT_EQ(data_folder_or_default(""), "/home/anna/.local/state/evod");
+}
+
+TEST(DataFolder, IsRequiredWithoutADefault) {
+    const Variable state{"XDG_STATE_HOME", nullptr}, home{"HOME", nullptr};
+    EXPECT_EQ(data_folder_or_default(""), "");
+    std::string folder;
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(find_data_folder("evod token", folder));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "evod token: " + std::string{no_data_folder} + "\n");
+    folder = "given";
+    EXPECT_TRUE(find_data_folder("evod token", folder));
+    EXPECT_EQ(folder, "given");
+}
+
+TEST(Fail, PrintsTheCommandAndEveryWrongField) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(fail("evod run", base::Refusal{.message = "invalid", .violations = {{"a", "0 to 1", "2"}}}), exit_error);
+    const std::string text = testing::internal::GetCapturedStderr();
+    EXPECT_THAT(text, testing::StartsWith("evod run: invalid"));
+    EXPECT_THAT(text, testing::HasSubstr("a: got 2, allowed 0 to 1"));
+}
+
+} // namespace
+} // namespace evod::commands

@@ -1,0 +1,73 @@
+#include "server/experiments/population_file.h"
+
+#include "proto/codec/population_csv.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+namespace evod::experiments {
+namespace {
+
+using base::RefusalCode;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class PopulationFile : public testing::Test {
+  protected:
+    PopulationFile() {
+        parameters.population_size = 2;
+        parameters.island_count = 1;
+    }
+    base::Result<simulation::FirstPopulation> load(const std::string& rows) const {
+        std::ofstream{path} << codec::population_heading << '\n' << rows;
+        return load_population(path, parameters);
+    }
+    std::string refusal_of(const std::string& rows) const {
+        const auto loaded = load(rows);
+        EXPECT_FALSE(loaded);
+        return loaded ? "" : to_text(loaded.error());
+    }
+
+    const recording::TemporaryFolder folder;
+    const std::string path = folder.path() + "/first.csv";
+    parameters::Parameters parameters;
+};
+
+TEST_F(PopulationFile, HasAColumnPerOrganism) {
+    const auto loaded = load("0,0,100,101,102,103,104,105\n0,1,110,111,112,113,114,115\n");
+    ASSERT_TRUE(loaded) << to_text(loaded.error());
+    ASSERT_EQ((*loaded)->size(), 1u);
+    const evolution::GeneMatrix& genes = (*loaded)->front();
+    ASSERT_EQ(genes.rows(), evolution::gene_count);
+    ASSERT_EQ(genes.cols(), 2);
+    EXPECT_EQ(genes(0, 0), 100);
+    EXPECT_EQ(genes(5, 0), 105);
+    EXPECT_EQ(genes(0, 1), 110);
+}
+
+TEST_F(PopulationFile, NoPathIsNoPopulation) {
+    const auto loaded = load_population("", parameters);
+    ASSERT_TRUE(loaded);
+    EXPECT_EQ(*loaded, nullptr);
+}
+
+TEST_F(PopulationFile, MustFitTheWorld) {
+    const std::string one = "0,0,100,101,102,103,104,105\n", two = one + "0,1,110,111,112,113,114,115\n";
+    EXPECT_THAT(refusal_of(one), AllOf(HasSubstr(path), HasSubstr("population")));
+    EXPECT_THAT(refusal_of(two + "1,0,100,101,102,103,104,105\n"), HasSubstr("population"));
+    EXPECT_THAT(refusal_of("0,0,100,101,1e9,103,104,105\n0,1,110,111,112,113,114,115\n"),
+                HasSubstr("population[0].organism[0].body_size"));
+}
+
+TEST_F(PopulationFile, NamesTheFileAndTheLine) {
+    EXPECT_THAT(refusal_of("0,0,100,101,102,103,104\n"), AllOf(HasSubstr(path), HasSubstr("line 2")));
+    EXPECT_THAT(refusal_of(""), AllOf(HasSubstr(path), HasSubstr("no organism")));
+    const auto missing = load_population(folder.path() + "/none.csv", parameters);
+    ASSERT_FALSE(missing);
+    EXPECT_THAT(missing.error().message, HasSubstr("/none.csv"));
+}
+
+} // namespace
+} // namespace evod::experiments

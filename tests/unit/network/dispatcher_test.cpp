@@ -1,0 +1,261 @@
+// The dispatcher between clients on the loopback interface and a mailbox that no simulation thread reads.
+#include "server/network/dispatcher.h"
+
+#include "server/protocol/answers.h"
+#include "tests/unit/network/loopback.h"
+
+#include <string>
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+using access::Role;
+
+class DispatcherTest : public Loopback {
+  protected:
+    static constexpr std::size_t mailbox_capacity = 3;
+
+    DispatcherTest() {
+        host.handle = [this](Session& session, v1::Request request) { dispatcher.handle(session, std::move(request)); };
+        host.ended = [this](Session& ended) {
+            dispatcher.forget(ended);
+            sessions.erase(ended.number());
+            streams.forget(ended);
+        };
+    }
+    void TearDown() override {
+        Loopback::TearDown();
+        mailbox.drain();
+    }
+
+    static v1::Request pause_of(std::uint64_t request_id, const std::string& world = "w") {
+        v1::Request request;
+        request.set_request_id(request_id);
+        request.set_client_key("key");
+        request.mutable_pause()->set_world(world);
+        return request;
+    }
+    void ask(Client& client, v1::Request request) {
+        v1::ClientMessage message;
+        *message.mutable_request() = std::move(request);
+        send(client, message);
+    }
+    /// Removes all mail. Returns the commands in it, and answers the queries with an empty laboratory.
+    std::vector<runtime::CommandMail> take_commands() {
+        std::vector<runtime::CommandMail> commands;
+        for (runtime::Mail& mail : mailbox.drain()) {
+            if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
+                commands.push_back(std::move(*command));
+            } else if (auto* query = std::get_if<runtime::QueryMail>(&mail)) {
+                query->ask(laboratory);
+            }
+        }
+        dispatcher.deliver(outbox.take().deliveries);
+        settle();
+        return commands;
+    }
+    void finish(runtime::CommandMail command, const base::Result<simulation::Applied>& outcome) {
+        const v1::Response answer =
+            protocol::answer_of(command.origin.request_id, command.request_name, laboratory, outcome);
+        std::vector<runtime::Delivery> deliveries;
+        deliveries.emplace_back(
+            runtime::CommandDone{.mail = std::move(command), .outcome = outcome, .frame = protocol::frame_of(answer)});
+        dispatcher.deliver(std::move(deliveries));
+        settle();
+    }
+    static simulation::Applied applied(std::uint64_t tick) {
+        simulation::Applied done;
+        done.world = "w";
+        done.tick = tick;
+        return done;
+    }
+
+    simulation::Laboratory laboratory;
+    runtime::Mailbox mailbox{mailbox_capacity};
+    runtime::Outbox outbox{[] {}};
+    runtime::StreamDemand demand;
+    Streams streams{sessions, demand, mailbox};
+    int shut_downs = 0;
+    Dispatcher dispatcher{
+        context, mailbox, outbox, demand, streams, counters, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
+};
+
+TEST_F(DispatcherTest, SendsACommandToTheSimulationOnce) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    ask(client, pause_of(7));
+    const auto waiting = take_commands();
+    ASSERT_EQ(waiting.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<simulation::Pause>(waiting[0].command));
+    EXPECT_EQ(waiting[0].request_name, "pause");
+    EXPECT_EQ(waiting[0].session, 1u);
+    EXPECT_EQ(waiting[0].origin.client_key, "key");
+    EXPECT_EQ(waiting[0].origin.request_id, 7u);
+    v1::Request journaled;
+    EXPECT_TRUE(journaled.ParseFromString(waiting[0].origin.request));
+    EXPECT_EQ(journaled.pause().world(), "w");
+    EXPECT_TRUE(client.responses.empty());
+}
+
+TEST_F(DispatcherTest, AnswersEveryCopyOfACommand) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    ask(client, pause_of(7));
+    finish(take_commands().at(0), applied(42));
+    ASSERT_EQ(client.responses.size(), 2u);
+    Client& other = connect(Role::Controller);
+    ask(other, pause_of(7));
+    EXPECT_TRUE(take_commands().empty());
+    ASSERT_EQ(other.responses.size(), 1u);
+    for (const v1::Response& response : {client.responses[0], client.responses[1], other.responses[0]}) {
+        EXPECT_EQ(response.request_id(), 7u);
+        EXPECT_EQ(response.applied_tick(), 42u);
+    }
+}
+
+TEST_F(DispatcherTest, RefusesAUsedIdForAnotherRequest) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    ask(client, pause_of(7, "another"));
+    EXPECT_EQ(take_commands().size(), 1u);
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().reason(), v1::REASON_REQUEST_ID_REUSED);
+    ASSERT_EQ(client.responses[0].status().violations_size(), 1);
+    EXPECT_EQ(client.responses[0].status().violations(0).field(), "request_id");
+}
+
+TEST_F(DispatcherTest, RunsACommandAgainAfterATemporaryRefusal) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    finish(take_commands().at(0), base::refusal(base::RefusalCode::Unavailable, "the disk is full"));
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().code(), v1::CODE_UNAVAILABLE);
+    ask(client, pause_of(7));
+    EXPECT_EQ(take_commands().size(), 1u);
+}
+
+TEST_F(DispatcherTest, KeepsAPermanentRefusal) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    finish(take_commands().at(0), base::refusal(base::RefusalCode::NotFound, "no such world"));
+    ask(client, pause_of(7));
+    EXPECT_TRUE(take_commands().empty());
+    ASSERT_EQ(client.responses.size(), 2u);
+    EXPECT_EQ(client.responses[1].status().code(), v1::CODE_NOT_FOUND);
+}
+
+TEST_F(DispatcherTest, RefusesACommandWithoutItsRole) {
+    Client& client = connect(Role::Viewer);
+    ask(client, pause_of(7));
+    EXPECT_TRUE(take_commands().empty());
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().code(), v1::CODE_PERMISSION_DENIED);
+}
+
+TEST_F(DispatcherTest, LetsAViewerControlItsOwnReplay) {
+    Client& client = connect(Role::Viewer);
+    client.session->replays.insert("w");
+    ask(client, pause_of(7));
+    EXPECT_EQ(take_commands().size(), 1u);
+}
+
+TEST_F(DispatcherTest, RequestIdsBeginAt1) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(0));
+    EXPECT_TRUE(take_commands().empty());
+    ASSERT_EQ(client.responses.size(), 1u);
+    ASSERT_EQ(client.responses[0].status().violations_size(), 1);
+    EXPECT_EQ(client.responses[0].status().violations(0).field(), "request_id");
+}
+
+TEST_F(DispatcherTest, ACommandMayBeRepeatedAfterAFullMailbox) {
+    Client& client = connect(Role::Controller);
+    for (std::uint64_t id = 1; id <= mailbox_capacity; ++id) {
+        ask(client, pause_of(id));
+    }
+    EXPECT_TRUE(client.responses.empty());
+    ask(client, pause_of(9));
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].request_id(), 9u);
+    EXPECT_EQ(client.responses[0].status().reason(), v1::REASON_SERVER_BUSY);
+    EXPECT_EQ(counters.count(Limit::MailboxCommands), 1u);
+    EXPECT_EQ(take_commands().size(), mailbox_capacity);
+    ask(client, pause_of(9));
+    EXPECT_EQ(take_commands().size(), 1u);
+}
+
+TEST_F(DispatcherTest, HoldsRequestsBackUntilAQueryIsAnswered) {
+    Client& client = connect(Role::Controller);
+    v1::Request query;
+    query.set_request_id(1);
+    query.mutable_list_worlds();
+    ask(client, query);
+    ask(client, pause_of(2));
+    EXPECT_TRUE(client.responses.empty());
+    EXPECT_TRUE(take_commands().empty()) << "the command came before the answer to the query";
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].request_id(), 1u);
+    EXPECT_EQ(take_commands().size(), 1u);
+}
+
+TEST_F(DispatcherTest, CountsTheLimitThatARefusalReports) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    finish(take_commands().at(0),
+           base::refusal(base::RefusalCode::ResourceExhausted, "too many worlds", base::Reason::WorldsMax));
+    EXPECT_EQ(counters.count(Limit::Worlds), 1u);
+}
+
+TEST_F(DispatcherTest, RefusesUnknownSubscriptionsByTheirField) {
+    Client& client = connect(Role::Viewer);
+    v1::Request request;
+    request.set_request_id(1);
+    request.mutable_unsubscribe()->set_subscription_id(4);
+    ask(client, request);
+    request.set_request_id(2);
+    request.mutable_request_keyframe()->set_subscription_id(4);
+    ask(client, request);
+    ASSERT_EQ(client.responses.size(), 2u);
+    for (const v1::Response& response : client.responses) {
+        EXPECT_EQ(response.status().reason(), v1::REASON_SUBSCRIPTION_NOT_FOUND);
+    }
+    EXPECT_EQ(client.responses[0].status().violations(0).field(), "unsubscribe.subscription_id");
+    EXPECT_EQ(client.responses[1].status().violations(0).field(), "request_keyframe.subscription_id");
+    EXPECT_EQ(client.responses[1].status().violations(0).got(), "4");
+}
+
+TEST_F(DispatcherTest, RefusesEverythingWhileShuttingDown) {
+    Client& client = connect(Role::Admin);
+    dispatcher.refuse_all();
+    ask(client, pause_of(7));
+    EXPECT_TRUE(take_commands().empty());
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().reason(), v1::REASON_SERVER_GOING_AWAY);
+}
+
+TEST_F(DispatcherTest, AnswersShutDownBeforeItShutsDown) {
+    Client& client = connect(Role::Admin);
+    v1::Request request;
+    request.set_request_id(1);
+    request.mutable_shut_down();
+    ask(client, request);
+    EXPECT_EQ(shut_downs, 1);
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().code(), v1::CODE_UNSPECIFIED);
+}
+
+TEST_F(DispatcherTest, SendsCommandsOfTheServerItself) {
+    v1::Request request;
+    request.mutable_run()->set_world("w");
+    dispatcher.handle_own(request);
+    dispatcher.handle_own(request);
+    const auto waiting = take_commands();
+    ASSERT_EQ(waiting.size(), 2u) << "each has a request_id of its own";
+    EXPECT_EQ(waiting[0].session, 0u);
+    EXPECT_EQ(waiting[0].origin.client, "evod");
+    EXPECT_NE(waiting[0].origin.request_id, waiting[1].origin.request_id);
+}
+
+} // namespace
+} // namespace evod::network
