@@ -73,7 +73,7 @@ class ProtocolState {
 
   private:
     /// The state that begins with each attempt to connect.
-    struct Session {
+    struct SessionState {
         bool opened = false;
         bool going_away = false;                 // the server has announced its shutdown
         std::optional<evod::v1::Status> goodbye; // the server's reason for ending the session
@@ -88,7 +88,7 @@ class ProtocolState {
 
     const Options options_;
     ConnectionStatus status_;
-    Session session_;
+    SessionState session_;
     Output output_;
     RequestQueue requests_;
     Subscriptions subscriptions_{requests_};
