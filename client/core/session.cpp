@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -156,121 +155,104 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
 
 } // namespace
 
-Session::Session(asio::io_context& io, const Options& options, Handlers handlers)
-    : io_{io}, options_{options}, handlers_{std::move(handlers)}, socket_{io}, deadline_{io}, received_(read_bytes) {}
+Session::Session(std::shared_ptr<asio::io_context> io, const Options& options, ProtocolState& protocol,
+                 std::function<void()> changed)
+    : io_{std::move(io)}
+    , options_{options}
+    , protocol_{protocol}
+    , changed_{std::move(changed)}
+    , socket_{*io_}
+    , received_(read_bytes) {}
 
 void Session::start() {
-    start_deadline(options_.connect_timeout, "no connection with");
-    look_up();
-}
-
-/// Looks up a host name on a separate thread, because getaddrinfo() may block for half a minute and cannot be
-/// cancelled. The thread owns only this object, so it may outlive the Session.
-struct Session::LookUp {
-    std::mutex mutex;     // guards the other members
-    asio::io_context* io; // nullptr: the session has cancelled the look-up
-    std::weak_ptr<Session> of;
-};
-
-void Session::look_up() {
     const std::string host = options_.server.host, service = std::to_string(options_.server.port);
     error_code not_an_address;
     if (const auto address = asio::ip::make_address(host, not_an_address); !not_an_address) {
-        asio::post(io_, [self = shared_from_this(), address, host, service] {
+        asio::post(*io_, [self = shared_from_this(), address, host, service] {
             const asio::ip::tcp::endpoint endpoint{address, self->options_.server.port};
-            self->looked_up({}, asio::ip::tcp::resolver::results_type::create(endpoint, host, service));
+            self->looked_up({}, Addresses::create(endpoint, host, service));
         });
         return;
     }
-    look_up_ = std::make_shared<LookUp>();
-    look_up_->io = &io_;
-    look_up_->of = weak_from_this();
-    std::thread{[mine = look_up_, host, service] {
+    // A separate thread looks up the name, because getaddrinfo() may block for half a minute and cannot be cancelled.
+    // The thread may outlive the session.
+    std::thread{[io = io_, of = weak_from_this(), host, service] {
         asio::io_context unused;
         asio::ip::tcp::resolver resolver{unused};
         error_code error;
         const auto addresses = resolver.resolve(host, service, asio::ip::resolver_base::numeric_service, error);
-        const std::lock_guard lock{mine->mutex};
-        if (mine->io != nullptr) {
-            asio::post(*mine->io, [of = mine->of, error, addresses] {
-                if (const auto session = of.lock()) {
-                    session->looked_up(error, addresses);
-                }
-            });
-        }
+        asio::post(*io, [of, error, addresses] {
+            if (const auto session = of.lock()) {
+                session->looked_up(error, addresses);
+            }
+        });
     }}.detach();
 }
 
-void Session::looked_up(const error_code& error, const asio::ip::tcp::resolver::results_type& addresses) {
+void Session::looked_up(const error_code& error, const Addresses& addresses) {
     if (ended_) {
         return;
     }
     if (error) {
         end({.reason = reason_of(error, options_.server)});
-    } else {
-        connect(addresses);
+        return;
     }
-}
-
-void Session::cancel_look_up() {
-    if (look_up_) {
-        const std::lock_guard lock{look_up_->mutex};
-        look_up_->io = nullptr;
-    }
-}
-
-void Session::connect(const asio::ip::tcp::resolver::results_type& addresses) {
-    asio::async_connect(socket_, addresses,
-                        [self = shared_from_this()](const error_code& error, const asio::ip::tcp::endpoint&) {
-                            if (self->ended_) {
-                                return;
-                            }
-                            if (error) {
-                                self->end({.reason = reason_of(error, self->options_.server)});
-                                return;
-                            }
-                            notice_silence(self->socket_);
-                            if (self->options_.tls) {
-                                self->perform_handshake();
-                            } else {
-                                self->begin();
-                            }
-                        });
-}
-
-void Session::perform_handshake() {
-    namespace ssl = asio::ssl;
-    const Options::Tls& files = *options_.tls;
-    tls_context_.emplace(ssl::context::tls_client);
-    SSL_CTX_set_min_proto_version(tls_context_->native_handle(), TLS1_2_VERSION);
-    tls_context_->set_verify_mode(ssl::verify_peer);
-    error_code error;
-    const auto fails = [&](const char* option, const std::string& file, const char* also = "") {
-        if (error) {
-            end({.reason = std::string{option} + ": " + file + " cannot be used for TLS: " + error.message() + also,
-                 .final = true});
+    asio::async_connect(socket_, addresses, [self = shared_from_this()](const error_code& failed, const auto&) {
+        if (self->ended_) {
+            return;
         }
-        return error.failed();
+        if (failed) {
+            self->end({.reason = reason_of(failed, self->options_.server)});
+            return;
+        }
+        notice_silence(self->socket_);
+        if (self->options_.tls) {
+            self->perform_handshake();
+        } else {
+            self->begin();
+        }
+    });
+}
+
+std::string Session::load_tls_files() {
+    const Options::Tls& files = *options_.tls;
+    error_code error;
+    const auto unusable = [&](const std::string& file, const char* also = "") {
+        return file + " cannot be used for TLS: " + error.message() + also;
     };
     if (files.ca.empty()) {
         tls_context_->set_default_verify_paths(error);
     } else {
         tls_context_->load_verify_file(files.ca, error);
     }
-    if (files.ca.empty() ? fails("--tls", "the certificates of this system") : fails("--ca", files.ca)) {
-        return;
+    if (error) {
+        return unusable(files.ca.empty() ? "--tls: the certificates of this system" : "--ca: " + files.ca);
     }
-    if (!files.certificate.empty()) {
-        tls_context_->use_certificate_chain_file(files.certificate, error);
-        if (fails("--cert", files.certificate)) {
-            return;
-        }
-        tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, ssl::context::pem, error);
-        if (files.key.empty()
-                ? fails("--cert", files.certificate, ": if it does not contain the key, give the key with --key")
-                : fails("--key", files.key)) {
-            return;
-        }
+    if (files.certificate.empty()) {
+        return {};
+    }
+    tls_context_->use_certificate_chain_file(files.certificate, error);
+    if (error) {
+        return unusable("--cert: " + files.certificate);
+    }
+    tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, asio::ssl::context::pem,
+                                       error);
+    if (error) {
+        return files.key.empty() ? unusable("--cert: " + files.certificate,
+                                            ": if it does not contain the key, give the key with --key")
+                                 : unusable("--key: " + files.key);
+    }
+    return {};
+}
+
+void Session::perform_handshake() {
+    namespace ssl = asio::ssl;
+    tls_context_.emplace(ssl::context::tls_client);
+    SSL_CTX_set_min_proto_version(tls_context_->native_handle(), TLS1_2_VERSION);
+    tls_context_->set_verify_mode(ssl::verify_peer);
+    if (std::string unusable = load_tls_files(); !unusable.empty()) {
+        end({.reason = std::move(unusable), .final = true});
+        return;
     }
     tls_.emplace(socket_, *tls_context_);
     // The callback may use `this`, because the session owns the stream and outlives it.
@@ -291,40 +273,30 @@ void Session::perform_handshake() {
     if (error_code not_an_address; asio::ip::make_address(options_.server.host, not_an_address), not_an_address) {
         SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
     }
-    tls_->async_handshake(ssl::stream_base::client, [self = shared_from_this()](const error_code& failed) {
+    tls_->async_handshake(ssl::stream_base::client, [self = shared_from_this()](const error_code& error) {
         if (self->ended_) {
             return;
         }
-        if (failed) {
-            const std::string known = tls_reason_of(failed);
-            const bool by_tls = failed.category() == asio::error::get_ssl_category();
-            const std::string why = !self->distrust_.empty() ? "its certificate is not trusted: " + self->distrust_
-                                    : known.empty()          ? failed.message()
-                                                             : known;
-            self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
-                       .final = !self->distrust_.empty() || (by_tls && !known.empty())});
+        if (!error) {
+            self->begin();
             return;
         }
-        self->begin();
+        const std::string known = tls_reason_of(error);
+        const bool by_tls = error.category() == asio::error::get_ssl_category();
+        const std::string why = !self->distrust_.empty() ? "its certificate is not trusted: " + self->distrust_
+                                : known.empty()          ? error.message()
+                                                         : known;
+        self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
+                   .final = !self->distrust_.empty() || (by_tls && !known.empty())});
     });
 }
 
 void Session::begin() {
-    send_hello();
-    read();
-}
-
-void Session::send_hello() {
-    evod::v1::ClientMessage message;
-    auto& hello = *message.mutable_hello();
-    hello.set_protocol_version(codec::protocol_version);
-    hello.set_client_name(options_.client_name);
-    hello.set_client_version(options_.client_version);
-    hello.set_token(options_.token);
-    hello.set_frame_bytes_max(static_cast<std::uint32_t>(*codec::client_limits.control_bytes_max));
-    to_send_.push_back(codec::encode_frame(codec::Channel::Control, message));
-    write();
-    start_deadline(options_.connect_timeout, "no Welcome from");
+    protocol_.opened(Clock::now());
+    changed_();
+    if (!ended_) {
+        read();
+    }
 }
 
 void Session::read() {
@@ -336,8 +308,9 @@ void Session::read() {
             self->end(self->lost(error));
             return;
         }
-        self->reader_.feed(std::span{self->received_}.first(length));
-        self->handle_frames();
+        self->has_received_ = true;
+        self->protocol_.received(std::span{self->received_}.first(length), Clock::now());
+        self->changed_();
         if (!self->ended_) {
             self->read();
         }
@@ -349,94 +322,20 @@ void Session::read() {
     }
 }
 
-void Session::handle_frames() {
-    while (!ended_) {
-        const auto frame = reader_.next();
-        if (!frame) {
-            // A peer that never sent a valid message is not an evod server: reconnecting would not help. After a
-            // Welcome the damage may be temporary.
-            end({.reason = to_text(options_.server) +
-                           (welcomed_ ? " sent damaged data: " : " is not an evod server: ") + frame.error().what,
-                 .final = !welcomed_});
-            return;
-        }
-        if (!*frame) {
-            return;
-        }
-        if ((*frame)->channel == codec::Channel::Control) {
-            handle_control((*frame)->body);
-        } else if (!welcomed_) {
-            end({.reason = to_text(options_.server) + " is not an evod server: its first message is a snapshot",
-                 .final = true});
-        } else if (auto snapshot = codec::parse_body<evod::v1::SnapshotFrame>((*frame)->body)) {
-            handlers_.snapshot_received(*std::move(snapshot));
-        } else {
-            end({.reason = to_text(options_.server) + " sent damaged data: " + snapshot.error().what});
-        }
-    }
-}
-
-void Session::handle_control(std::span<const std::byte> body) {
-    auto message = codec::parse_body<evod::v1::ServerMessage>(body);
-    if (!message) {
-        end({.reason = to_text(options_.server) + " sent damaged data: " + message.error().what});
-    } else if (!welcomed_) {
-        handle_first_message(*message);
-    } else {
-        if (message->has_goodbye()) {
-            goodbye_ = message->goodbye().status();
-        }
-        going_away_ = going_away_ || message->event().has_server_going_away();
-        handlers_.received(*std::move(message));
-    }
-}
-
-void Session::handle_first_message(const evod::v1::ServerMessage& message) {
-    if (message.has_goodbye()) {
-        const auto code = message.goodbye().status().code();
-        const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
-        end(refused(message.goodbye().status(), "refused us", !later));
-    } else if (!message.has_welcome()) {
-        end({.reason = to_text(options_.server) + " is not an evod server: its first message is not a Welcome",
-             .final = true});
-    } else if (message.welcome().protocol_version() != codec::protocol_version) {
-        end({.reason = "the server at " + to_text(options_.server) + " uses protocol version " +
-                       std::to_string(message.welcome().protocol_version()) + ", this program version " +
-                       std::to_string(codec::protocol_version) + ": use a program of the server's version",
-             .final = true});
-    } else {
-        deadline_.cancel();
-        welcomed_ = true;
-        handlers_.welcomed(message.welcome());
-    }
-}
-
-Session::Ending Session::lost(const error_code& error) const {
-    if (goodbye_) { // if the token was revoked, reconnecting would not help
-        return refused(*goodbye_, "ended the session", goodbye_->code() == evod::v1::CODE_UNAUTHENTICATED);
-    }
+Ending Session::lost(const error_code& error) const {
+    const bool by_tls = error.category() == asio::error::get_ssl_category();
     // With TLS 1.3, only this error reports that the server rejected the client's certificate. Another attempt would
     // fail too.
-    const bool not_taken =
-        !welcomed_ && error.category() == asio::error::get_ssl_category() && !tls_reason_of(error).empty();
+    const bool not_taken = !has_received_ && by_tls && !tls_reason_of(error).empty();
     // The server's message about a rejected client certificate may be lost with the connection.
-    const bool without_message = tls_ && !welcomed_ && error.category() != asio::error::get_ssl_category();
-    return {.reason = going_away_
-                          ? "the server at " + to_text(options_.server) + " was shut down"
-                          : reason_of(error, options_.server) +
-                                (without_message ? ": it may require another client certificate, see --cert" : ""),
+    const bool without_message = tls_ && !has_received_ && !by_tls;
+    return {.reason = reason_of(error, options_.server) +
+                      (without_message ? ": it may require another client certificate, see --cert" : ""),
             .final = not_taken};
 }
 
-Session::Ending Session::refused(const evod::v1::Status& status, const char* did, bool final) const {
-    return {.reason = "the server at " + to_text(options_.server) + " " + did + ": " + to_text(status),
-            .final = final,
-            .token_needed = status.code() == evod::v1::CODE_UNAUTHENTICATED,
-            .refusal = status};
-}
-
-void Session::send(std::string frame) {
-    to_send_.push_back(std::move(frame));
+void Session::send(std::string bytes) {
+    to_send_.push_back(std::move(bytes));
     if (to_send_.size() == 1) {
         write();
     }
@@ -460,20 +359,8 @@ void Session::write() {
     }
 }
 
-void Session::start_deadline(std::chrono::milliseconds timeout, std::string what) {
-    deadline_.expires_after(timeout);
-    deadline_.async_wait([self = shared_from_this(), timeout, what = std::move(what)](const error_code& error) {
-        if (!error && !self->ended_ && !self->welcomed_) {
-            self->end({.reason = what + " " + to_text(self->options_.server) + " within " +
-                                 std::to_string(timeout.count()) + " ms: check the address and the network"});
-        }
-    });
-}
-
 void Session::close() {
     ended_ = true;
-    cancel_look_up();
-    deadline_.cancel();
     error_code ignored;
     socket_.close(ignored);
 }
@@ -481,7 +368,8 @@ void Session::close() {
 void Session::end(Ending ending) {
     if (!ended_) {
         close();
-        handlers_.ended(std::move(ending));
+        protocol_.lost(std::move(ending), Clock::now());
+        changed_();
     }
 }
 

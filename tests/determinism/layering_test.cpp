@@ -373,5 +373,24 @@ TEST(ProtocolAndRunFiles, OpenNoSockets) {
     }
 }
 
+TEST(ClientProtocol, UsesNoSocketThreadOrClock) {
+    static const std::regex file{R"(client/core/(client_types|protocol_state|request_queue|subscriptions)\.(h|cpp))"};
+    static const std::set<std::string> forbidden = {"thread", "mutex", "condition_variable", "future", "atomic"};
+    int found = 0;
+    for (const Source& source : sources()) {
+        if (!std::regex_match(source.path, file)) {
+            continue;
+        }
+        ++found;
+        EXPECT_EQ(source.code.find("now()"), std::string::npos) << source.path << " reads a clock";
+        for (const std::string& include : source.libraries) {
+            EXPECT_FALSE(forbidden.contains(include) || include.starts_with("boost/asio") ||
+                         include.starts_with("sys/"))
+                << source.path << " includes <" << include << ">";
+        }
+    }
+    EXPECT_EQ(found, 8);
+}
+
 } // namespace
 } // namespace evod

@@ -1,7 +1,10 @@
-#include "client/core/connection.h"
+#include "client/core/client_types.h"
+
+#include <boost/throw_exception.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <stdexcept>
 
 namespace evod::core {
 
@@ -13,6 +16,10 @@ Error malformed(std::string_view text, const std::string& why) {
 }
 
 } // namespace
+
+void throw_exception_from_error(const Error& error, const boost::source_location& where) {
+    boost::throw_exception(std::runtime_error{error.what}, where);
+}
 
 Result<Endpoint> parse_endpoint(std::string_view text) {
     std::string_view host = text, port;
@@ -50,6 +57,23 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
 std::string to_text(const Endpoint& endpoint) {
     const bool bracketed = endpoint.host.find(':') != std::string::npos;
     return (bracketed ? "[" + endpoint.host + "]" : endpoint.host) + ":" + std::to_string(endpoint.port);
+}
+
+std::string to_text(const evod::v1::Status& status) {
+    std::string name = evod::v1::Code_IsValid(status.code()) ? evod::v1::Code_Name(status.code()) : "CODE_UNKNOWN";
+    std::string text = name.substr(std::string{"CODE_"}.size());
+    if (!status.message().empty()) {
+        text += ": " + status.message();
+    }
+    for (const auto& violation : status.violations()) {
+        text += "\n  " + violation.field() + ": got " + violation.got() + ", allowed " + violation.allowed();
+    }
+    return text;
+}
+
+const char* to_text(State state) {
+    constexpr const char* texts[] = {"connecting", "connected", "lost", "failed"};
+    return texts[static_cast<std::size_t>(state)];
 }
 
 } // namespace evod::core

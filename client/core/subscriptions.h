@@ -1,0 +1,69 @@
+// Subscriptions: what a client has subscribed to. Requests every subscription in every session, decodes and
+// acknowledges snapshots, and requests a keyframe after a damaged one.
+//
+// Threads      none of its own.
+// Bounded      keeps the newest snapshot and the baseline for the next delta, for each subscription and island.
+#pragma once
+
+#include "client/core/request_queue.h"
+
+#include "proto/codec/snapshot_decoder.h"
+
+#include <map>
+#include <memory>
+
+namespace evod::core {
+
+using Answers = std::map<SubscriptionHandle, evod::v1::Response>;
+/// The newest snapshot of each island.
+using IslandSnapshots = std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>;
+using Snapshots = std::map<SubscriptionHandle, IslandSnapshots>;
+
+class Subscriptions {
+  public:
+    explicit Subscriptions(RequestQueue& requests) : requests_{requests} {}
+    Subscriptions(const Subscriptions&) = delete;
+
+    void add(SubscriptionHandle handle, evod::v1::Request request);
+    void set_view(SubscriptionHandle handle, evod::v1::View view);
+    void remove(SubscriptionHandle handle);
+
+    /// Requests all subscriptions for which no request is waiting. Called after the Welcome.
+    void begin_session();
+    void end_session();
+    void take_answer(SubscriptionHandle handle, evod::v1::Response response);
+    /// Decodes a snapshot. Counts damaged snapshots and the requests for keyframes in `status`. Returns the frame that
+    /// acknowledges the snapshot; empty: none.
+    std::string take_snapshot(evod::v1::SnapshotFrame frame, ConnectionStatus& status);
+
+    /// The server's last answer to each subscription in this session.
+    const Answers& answers() const { return answers_; }
+    /// Returns the snapshots that were decoded since the last call.
+    Snapshots take_snapshots() { return std::exchange(snapshots_, {}); }
+
+  private:
+    /// The snapshot stream for one island, in this session.
+    struct IslandStream {
+        codec::SnapshotDecoder decoder;
+        int keyframe_requests = 0; // number of keyframe requests since the last decoded snapshot
+    };
+    struct Subscription {
+        evod::v1::Request request;
+        bool view_changed = false;              // the view was changed after the last request that contained it
+        std::optional<std::uint32_t> server_id; // its id in this session; nullopt: the server has not accepted it yet
+        std::map<std::uint32_t, IslandStream> islands;
+    };
+    static constexpr int keyframe_requests_max = 3;
+
+    void request(SubscriptionHandle handle, bool first);
+    /// Sends the view if it was changed after the subscription was requested.
+    void send_view(Subscription& subscription);
+    void unsubscribe_from(std::uint32_t server_id);
+
+    RequestQueue& requests_;
+    std::map<SubscriptionHandle, Subscription> subscriptions_;
+    Answers answers_;
+    Snapshots snapshots_;
+};
+
+} // namespace evod::core
