@@ -1,7 +1,11 @@
 #include "server/runtime/replays.h"
 
 #include "server/base/inline_executor.h"
+#include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/request_rules.h"
+#include "server/protocol/worlds.h"
 
 #include <algorithm>
 #include <memory>
@@ -87,30 +91,34 @@ simulation::Entry* Replays::entry_of(const std::string& world) {
     return found ? *found : nullptr;
 }
 
-void Replays::apply(ReplayMail mail) {
-    if (const auto* open_replay = std::get_if<OpenReplay>(&mail.request)) {
-        return open(*open_replay, mail.reply);
+void Replays::apply(const ReplayMail& mail) {
+    std::visit(base::Overloaded{[&](const OpenReplay& request) { open(request, mail); },
+                                [&](const Seek& request) { seek(request, mail); },
+                                [&](const CloseReplay& request) { answer(mail, close(request)); }},
+               mail.request);
+}
+
+void Replays::answer(const ReplayMail& mail, const Result<std::string>& world) {
+    ReplayDone done{.mail = mail, .world = world};
+    if (world && !std::holds_alternative<CloseReplay>(mail.request)) {
+        if (const simulation::Entry* entry = entry_of(*world)) {
+            done.shown = protocol::to_proto(*entry);
+        }
     }
-    if (const auto* seek_moment = std::get_if<Seek>(&mail.request)) {
-        return seek(*seek_moment, mail.reply);
-    }
-    if (const auto* close_replay = std::get_if<CloseReplay>(&mail.request)) {
-        return mail.reply(laboratory_, close(*close_replay));
-    }
-    close_all_of(std::get<OwnerGone>(mail.request).owner);
+    reply_(std::move(done));
 }
 
 void Replays::find_run(const FindRun& mail) {
-    const auto entry = std::as_const(laboratory_).find(mail.world);
+    const auto entry = std::as_const(laboratory_).find(protocol::lookup_name(protocol::world_of(*mail.request)));
     if (!entry) {
-        return mail.found(entry.error());
+        return reply_(RunFound{mail, entry.error()});
     }
     const auto run = replay_of((*entry)->name);
     if (!run) {
-        return mail.found(run.error());
+        return reply_(RunFound{mail, run.error()});
     }
-    once_written((*entry)->name,
-                 [found = mail.found, run = FoundRun{*run, (*entry)->world.moment().generation}](bool) { found(run); });
+    once_written((*entry)->name, [this, found = RunFound{mail, FoundRun{*run, (*entry)->world.moment().generation}}](
+                                     bool) { reply_(found); });
 }
 
 Result<replay::StoredRun> Replays::replay_of(const std::string& world) const {
@@ -250,11 +258,19 @@ void Replays::advance_seeks(const std::function<bool()>& stop) {
         seeks_.erase(seeks_.begin() + static_cast<std::ptrdiff_t>(i));
         const simulation::Moment& there = running.rerun.world().moment();
         if (there.generation == running.to.generation && there.tick == running.to.tick) {
-            running.done(SeekResult{std::move(running.rerun), std::move(running.there)});
+            finished_.push_back(
+                {std::move(running.done), SeekResult{std::move(running.rerun), std::move(running.there)}});
         } else {
-            running.done(refusal(RefusalCode::DataLoss,
-                                 "simulated again, the run does not reach the moment that its file contains"));
+            finished_.push_back({std::move(running.done),
+                                 refusal(RefusalCode::DataLoss,
+                                         "simulated again, the run does not reach the moment that its file contains")});
         }
+    }
+}
+
+void Replays::finish_seeks() {
+    for (FinishedSeek& seek : std::exchange(finished_, {})) {
+        seek.done(std::move(seek.result));
     }
 }
 
@@ -268,48 +284,48 @@ void Replays::move_to(simulation::Entry& entry, Shown& shown, SeekResult result)
     moved_.push_back(entry.name);
 }
 
-void Replays::open(const OpenReplay& request, const ReplayReply& reply) {
+void Replays::open(const OpenReplay& request, const ReplayMail& mail) {
     const auto origin = std::as_const(laboratory_).find(request.world);
     if (!origin) {
-        return reply(laboratory_, origin.error());
+        return answer(mail, origin.error());
     }
     std::size_t of_owner = 0, of_all = replays_.size();
     for (const auto& [name, shown] : replays_) {
-        of_owner += shown.owner == request.owner;
+        of_owner += shown.owner == mail.session;
     }
     for (const auto& [owner, count] : opening_) {
-        of_owner += owner == request.owner ? count : 0;
+        of_owner += owner == mail.session ? count : 0;
         of_all += count;
     }
     if (of_owner >= replays_max || of_all >= replays_of_all_max) {
-        return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
-                                          of_owner >= replays_max
-                                              ? "this session has " + std::to_string(replays_max) +
-                                                    " replays open already: close one first"
-                                              : "all clients together have " + std::to_string(replays_of_all_max) +
-                                                    " replays open already: try again when one of them is closed",
-                                          base::Reason::ReplaysMax));
+        return answer(mail, refusal(RefusalCode::ResourceExhausted,
+                                    of_owner >= replays_max
+                                        ? "this session has " + std::to_string(replays_max) +
+                                              " replays open already: close one first"
+                                        : "all clients together have " + std::to_string(replays_of_all_max) +
+                                              " replays open already: try again when one of them is closed",
+                                    base::Reason::ReplaysMax));
     }
     const std::string name = (*origin)->replays_another_world() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;
     const auto run = replay_of(world);
     if (!run) {
-        return reply(laboratory_, run.error());
+        return answer(mail, run.error());
     }
-    ++opening_[request.owner];
-    const auto opened = [this, owner = request.owner, reply](const Result<std::string>& shown) {
-        if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0) {
+    ++opening_[mail.session];
+    const auto opened = [this, mail](const Result<std::string>& shown) {
+        if (const auto opening = opening_.find(mail.session); opening != opening_.end() && --opening->second == 0) {
             opening_.erase(opening);
         }
-        reply(laboratory_, shown);
+        answer(mail, shown);
     };
     const auto known = recorded_until(world, run->run_id());
-    once_written(world, [this, name, known, run = *run, request, opened](bool all_is_written) {
+    once_written(world, [this, name, known, run = *run, request, owner = mail.session, opened](bool all_is_written) {
         std::optional<replay::WantedMoment> at;
         if (request.at.generation || request.at.tick) {
             at = request.at;
         }
-        const auto done = [this, name, run, owner = request.owner, opened](Result<SeekResult> result) {
+        const auto done = [this, name, run, owner, opened](Result<SeekResult> result) {
             if (!result) {
                 return opened(within(result.error(), "at"));
             }
@@ -318,45 +334,44 @@ void Replays::open(const OpenReplay& request, const ReplayReply& reply) {
             show(replay_name, run, owner, *std::move(result));
             opened(replay_name);
         };
-        if (!opening_.contains(request.owner)) {
+        if (!opening_.contains(owner)) {
             return opened(owner_gone());
         }
-        read_and_seek(run, at, all_is_written ? known : replay::RecordedUntil{}, request.owner, done);
+        read_and_seek(run, at, all_is_written ? known : replay::RecordedUntil{}, owner, done);
     });
 }
 
-void Replays::seek(const Seek& request, const ReplayReply& reply) {
+void Replays::seek(const Seek& request, const ReplayMail& mail) {
     const auto entry = std::as_const(laboratory_).find(request.world);
     if (!entry) {
-        return reply(laboratory_, entry.error());
+        return answer(mail, entry.error());
     }
     const std::string name = (*entry)->name;
     if (!replays_.contains(name)) {
-        return reply(
-            laboratory_,
-            Refusal{.code = RefusalCode::FailedPrecondition,
-                    .message =
-                        "this world lives and cannot be taken to another moment: open its "
-                        "run, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
-                    .violations = {},
-                    .reason = base::Reason::WorldIsLive});
+        return answer(
+            mail, Refusal{.code = RefusalCode::FailedPrecondition,
+                          .message =
+                              "this world lives and cannot be taken to another moment: open its "
+                              "run, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
+                          .violations = {},
+                          .reason = base::Reason::WorldIsLive});
     }
     const std::string& replay_of = (*entry)->replay->replay_of;
     const std::string origin = replay_of.empty() ? name : replay_of;
     const auto known_now = recorded_until(origin, replays_.find(name)->second.run.run_id());
-    ++seeking_[request.owner];
-    const auto sought = [this, owner = request.owner, reply](const Result<std::string>& world) {
-        if (const auto seeking = seeking_.find(owner); seeking != seeking_.end() && --seeking->second == 0) {
+    ++seeking_[mail.session];
+    const auto sought = [this, mail](const Result<std::string>& world) {
+        if (const auto seeking = seeking_.find(mail.session); seeking != seeking_.end() && --seeking->second == 0) {
             seeking_.erase(seeking);
         }
-        reply(laboratory_, world);
+        answer(mail, world);
     };
-    once_written(origin, [this, name, known_now, request, sought](bool all_is_written) {
+    once_written(origin, [this, name, known_now, request, owner = mail.session, sought](bool all_is_written) {
         const auto shown = replays_.find(name);
         if (shown == replays_.end()) {
             return sought(closed_since());
         }
-        if (!seeking_.contains(request.owner)) {
+        if (!seeking_.contains(owner)) {
             return sought(owner_gone());
         }
         const replay::StoredRun& run = shown->second.run;
@@ -379,7 +394,7 @@ void Replays::seek(const Seek& request, const ReplayReply& reply) {
             move_to(*entry_of(name), seen_from->second, *std::move(result));
             sought(name);
         };
-        read_and_seek(run, request.to, known, request.owner, done, [this, name](std::uint64_t running) {
+        read_and_seek(run, request.to, known, owner, done, [this, name](std::uint64_t running) {
             const auto shown_now = replays_.find(name);
             if (shown_now == replays_.end()) {
                 return false;
@@ -404,26 +419,26 @@ Result<std::string> Replays::close(const CloseReplay& request) {
     return request.world;
 }
 
-void Replays::close_all_of(std::uint64_t owner) {
+void Replays::forget(std::uint64_t session) {
     std::erase_if(replays_, [&](const auto& item) {
-        if (item.second.owner != owner) {
+        if (item.second.owner != session) {
             return false;
         }
         laboratory_.dismiss(item.first);
         return true;
     });
-    opening_.erase(owner);
-    seeking_.erase(owner);
+    opening_.erase(session);
+    seeking_.erase(session);
     std::vector<SeekDone> cancelled;
     std::erase_if(pending_, [&](auto& item) {
-        if (item.second.owner != owner) {
+        if (item.second.owner != session) {
             return false;
         }
         cancelled.push_back(std::move(item.second.done));
         return true;
     });
     std::erase_if(seeks_, [&](RunningSeek& running) {
-        if (running.owner != owner) {
+        if (running.owner != session) {
             return false;
         }
         cancelled.push_back(std::move(running.done));

@@ -12,6 +12,7 @@
 #include "server/recording/recorder.h"
 #include "server/replay/stored_run.h"
 #include "server/runtime/mailbox.h"
+#include "server/runtime/replies.h"
 
 #include <functional>
 #include <map>
@@ -28,10 +29,17 @@ class Replays {
     static constexpr std::size_t seeks_max = 64;          // seeks at the same time
     static constexpr std::chrono::milliseconds refresh_time{250};
 
-    /// All arguments must outlive this object. recorder: nullptr if the server stores no runs.
+    /// All arguments must outlive this object.
+    ///
+    /// recorder  nullptr if the server stores no runs.
+    /// reply     receives the replies.
     Replays(simulation::Laboratory& laboratory, Mailbox& mailbox, base::Executor& executor,
-            recording::Recorder* recorder)
-        : laboratory_{laboratory}, mailbox_{mailbox}, executor_{executor}, recorder_{recorder} {}
+            recording::Recorder* recorder, std::function<void(Reply)> reply)
+        : laboratory_{laboratory}
+        , mailbox_{mailbox}
+        , executor_{executor}
+        , recorder_{recorder}
+        , reply_{std::move(reply)} {}
 
     /// The run of a file that the server shows as long as it runs.
     struct FileReplay {
@@ -45,8 +53,10 @@ class Replays {
                                               base::Executor& executor);
     void show(FileReplay replay);
 
-    void apply(ReplayMail mail);
+    void apply(const ReplayMail& mail);
     void find_run(const FindRun& mail);
+    /// Closes all replays of a session that has ended, and cancels its seeks.
+    void forget(std::uint64_t session);
 
     /// Must be called after every tick of a replay.
     void follow(simulation::Entry& entry);
@@ -61,12 +71,14 @@ class Replays {
         simulation::Replay there;
     };
     using SeekDone = std::function<void(base::Result<SeekResult>)>;
-    /// Seeks to the first moment of a generation in the run of a world. `done` is called in a later slice.
+    /// Seeks to the first moment of a generation in the run of a world. finish_seeks() calls `done` later.
     void begin_seek(const std::string& world, std::uint64_t generation, SeekDone done);
 
     bool under_way() const { return !seeks_.empty(); }
-    /// Advances all seeks in turn by one tick each, until `stop` returns true or all seeks are done.
+    /// Advances all seeks in turn by one tick each, until `stop` returns true or all have reached their moments.
     void advance_seeks(const std::function<bool()>& stop);
+    /// Calls `done` of each seek that advance_seeks() has ended. May create worlds.
+    void finish_seeks();
     /// Called when nothing can be written to the disk. Requests that wait for the disk continue with the present file.
     void stop_waiting();
 
@@ -90,6 +102,10 @@ class Replays {
         simulation::Replay there;
         SeekDone done;
     };
+    struct FinishedSeek {
+        SeekDone done;
+        base::Result<SeekResult> result;
+    };
     /// Called with the number of the seek before it begins. Returns false if the result is no longer needed.
     using Begun = std::function<bool(std::uint64_t number)>;
     /// A seek that waits until its run file has been read.
@@ -99,10 +115,11 @@ class Replays {
         SeekDone done;
     };
 
-    void open(const OpenReplay& request, const ReplayReply& reply);
-    void seek(const Seek& request, const ReplayReply& reply);
+    void open(const OpenReplay& request, const ReplayMail& mail);
+    void seek(const Seek& request, const ReplayMail& mail);
     base::Result<std::string> close(const CloseReplay& request);
-    void close_all_of(std::uint64_t owner);
+    /// world  the name of the replay, once it shows the requested moment.
+    void answer(const ReplayMail& mail, const base::Result<std::string>& world);
     /// The stored run of a world; refused if there is none.
     base::Result<replay::StoredRun> replay_of(const std::string& world) const;
     /// Calls `then` on the simulation thread once all records of the world are on the disk. Calls it with false at once
@@ -136,12 +153,14 @@ class Replays {
     Mailbox& mailbox_;
     base::Executor& executor_;
     recording::Recorder* recorder_;
+    const std::function<void(Reply)> reply_;
     std::map<std::string, Shown, std::less<>> replays_; // key: name of the replay
     // The number of requests in progress. The key is the owner; a session that has ended has no entry.
     std::map<std::uint64_t, std::size_t> opening_, seeking_;
     std::map<std::uint64_t, std::function<void(bool all_is_written)>> waiting_; // requests that wait for the disk
     std::map<std::uint64_t, PendingSeek> pending_;                              // key: number of the seek
     std::vector<RunningSeek> seeks_;
+    std::vector<FinishedSeek> finished_;
     std::vector<std::string> moved_;
     std::uint64_t last_seek_ = 0, last_name_ = 0, last_waiting_ = 0;
     jobs::JobQueue reader_{{.name = "replay"}}; // last member, because its jobs use the others

@@ -5,6 +5,7 @@
 #include "server/log/log.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
+#include "server/protocol/queries.h"
 
 #include <algorithm>
 #include <memory>
@@ -65,7 +66,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
-    , replays_{laboratory_, mailbox, executor, recorder} {
+    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
@@ -75,11 +76,10 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
 }
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
+    poll_storage();
     poll_mailbox();
     answer_queries();
     poll_demand();
-    poll_storage();
-    follow_worlds();
 
     // Paced live worlds come first, because their ticks are due at fixed times.
     std::optional<Clock::time_point> next;
@@ -142,7 +142,6 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
-    announce_finished_seeks();
     if (const auto again = answer_queries()) { // answers queries until the next tick is due
         at_latest(*again);
     }
@@ -162,8 +161,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     return next;
 }
 
-void SimulationLoop::announce_finished_seeks() {
-    follow_worlds(); // a finished seek may have opened a replay
+void SimulationLoop::announce_moved_replays() {
     for (const std::string& name : replays_.take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
@@ -177,19 +175,27 @@ void SimulationLoop::announce_finished_seeks() {
 }
 
 void SimulationLoop::poll_mailbox() {
-    if (!mailbox_.pending()) {
-        return;
+    replays_.finish_seeks();
+    if (mailbox_.pending()) {
+        mail_ = mailbox_.drain(std::move(mail_));
+        for (Mail& mail : mail_) {
+            std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
+                                        [this](QueryMail& query) { queries_.push_back(std::move(query)); },
+                                        [this](FindRun& run) { replays_.find_run(run); },
+                                        [this](ReplayMail& request) { replays_.apply(request); },
+                                        [this](SessionEnded& ended) {
+                                            std::erase_if(queries_, [&](const QueryMail& query) {
+                                                return query.session == ended.session;
+                                            });
+                                            replays_.forget(ended.session);
+                                        },
+                                        [](CallMail& call) { call.call(); }},
+                       mail);
+        }
+        mail_.clear();
     }
-    mail_ = mailbox_.drain(std::move(mail_));
-    for (Mail& mail : mail_) {
-        std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
-                                    [this](QueryMail& query) { queries_.push_back(std::move(query)); },
-                                    [](CallMail& call) { call.call(); },
-                                    [this](ReplayMail& past) { replays_.apply(std::move(past)); },
-                                    [this](FindRun& run) { replays_.find_run(run); }},
-                   mail);
-    }
-    mail_.clear();
+    follow_worlds();
+    announce_moved_replays();
 }
 
 std::optional<Clock::time_point> SimulationLoop::answer_queries() {
@@ -213,8 +219,7 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
             query_budget_.spend(now - began);
         }
         if (mailbox_.pending()) {
-            poll_mailbox();  // commands do not wait for queries
-            follow_worlds(); // a command may have created a world
+            poll_mailbox(); // commands do not wait for queries
             woken = true;
         }
     }
@@ -222,9 +227,12 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
 }
 
 void SimulationLoop::answer_query() {
-    const QueryMail query = std::move(queries_.front());
+    QueryDone done{.mail = std::move(queries_.front()), .response = {}, .result = {}};
     queries_.pop_front();
-    query.ask(laboratory_);
+    const QueryMail& query = done.mail;
+    done.response.set_request_id(query.request->request_id());
+    done.result = protocol::answer_query(*query.request, laboratory_, query.users_only, done.response);
+    outputs_.reply(std::move(done));
 }
 
 bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
@@ -232,8 +240,7 @@ bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
                if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
                }
-               const auto track = tracks_.find(entry->name);
-               return !entry->control.speed || track == tracks_.end() || track->second.due <= now;
+               return !entry->control.speed || tracks_.find(entry->name)->second.due <= now;
            });
 }
 
@@ -355,7 +362,7 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
     if (recorder_ && applied && changes_something(done.mail.command)) {
         record(std::move(done), before);
     } else {
-        outputs_.done(std::move(done));
+        outputs_.reply(std::move(done));
     }
 }
 
@@ -380,14 +387,14 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
     if (entry && (*entry)->replay) {
-        return outputs_.done(std::move(done)); // commands to replays are not stored in the journal
+        return outputs_.reply(std::move(done)); // commands to replays are not stored in the journal
     }
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,
                                     .answer = done.frame};
     // After the command was written to the disk, the storage thread passes it on.
-    record.done = [hand_on = outputs_.done, done = std::move(done)]() mutable { hand_on(std::move(done)); };
+    record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
     switch (effect) {
     case RunEffect::Begins:
         return recorder_->begin(**entry, std::move(record));

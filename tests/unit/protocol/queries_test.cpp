@@ -35,7 +35,7 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
     v1::Request request;
     request.mutable_get_population()->set_first_organism(1);
     v1::Response response;
-    const QueryRows rows = answer_query(request, laboratory, false, response);
+    const QueryResult rows = answer_query(request, laboratory, false, response);
     EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
     EXPECT_EQ(std::get<PopulationRows>(rows).first, 1);
     put_rows(rows, response);
