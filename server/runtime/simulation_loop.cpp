@@ -448,7 +448,7 @@ void SimulationLoop::poll_storage() {
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,
-               std::to_string(recording::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
+               std::to_string(recording::DiskState::waiting_bytes_max >> 20) + " MiB wait to be written"};
     }
     const simulation::Storage before = *laboratory_.storage();
     if (now == before) {

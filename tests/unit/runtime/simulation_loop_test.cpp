@@ -786,7 +786,7 @@ class LoopWithDisk : public Loop {
                 .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); }},
                {},
                &recorder} {
-        thread.when_changed([this] { ++news; });
+        thread.disk().when_changed([this] { ++news; });
         clock.per_look = 100us; // so that slices end
     }
     ~LoopWithDisk() override { give_back(); }
