@@ -60,8 +60,8 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     server->tls_ = *std::move(tls);
     server->host_.tls = server->tls_.get();
     if (server->options_.replay) {
-        auto replay = runtime::Replays::replay_of(server->options_.replay->path, server->options_.replay->generation,
-                                                  *server->executor_);
+        auto replay = runtime::FileReplay::open(server->options_.replay->path, server->options_.replay->generation,
+                                                *server->executor_);
         if (!replay) {
             base::Refusal refused = replay.error();
             for (base::Violation& violation : refused.violations) {

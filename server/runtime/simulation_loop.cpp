@@ -58,7 +58,7 @@ bool changes_something(const simulation::Command& command) {
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
-                               std::optional<Replays::FileReplay> replay)
+                               std::optional<FileReplay> replay)
     : mailbox_{mailbox}
     , demand_{demand}
     , executor_{executor}
@@ -71,7 +71,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
         laboratory_.set_storage({});
     }
     if (replay) {
-        replays_.show(*std::move(replay));
+        replays_.shown().show(replay->name, replay->run, 0, std::move(replay->shown));
     }
 }
 
@@ -117,7 +117,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
                (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
     };
     auto shares = std::ranges::count_if(laboratory_.entries(), [&](const auto& entry) { return wants_share(*entry); }) +
-                  (replays_.under_way() ? 1 : 0);
+                  (replays_.seeks().under_way() ? 1 : 0);
     const auto end_of_share = [&](std::optional<Clock::time_point> until) {
         const auto now = clock_.now();
         const auto share = until ? (*until - now) / std::max<std::ptrdiff_t>(shares--, 1) : slice;
@@ -136,10 +136,10 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
             at_latest(entry->control.speed ? track.due : clock_.now());
         }
     }
-    if (replays_.under_way()) {
+    if (replays_.seeks().under_way()) {
         // Seeks share the processor with worlds that cannot keep their pace.
         const auto end = end_of_share(in_time);
-        replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
+        replays_.seeks().advance([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
     if (const auto again = answer_queries()) { // answers queries until the next tick is due
@@ -147,7 +147,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     }
 
     const auto now = clock_.now();
-    if (const auto again = replays_.refresh(now)) {
+    if (const auto again = replays_.shown().refresh(now)) {
         at_latest(*again);
     }
     for (const auto& entry : laboratory_.entries()) {
@@ -162,7 +162,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 }
 
 void SimulationLoop::announce_moved_replays() {
-    for (const std::string& name : replays_.take_moved()) {
+    for (const std::string& name : replays_.shown().take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
@@ -175,7 +175,7 @@ void SimulationLoop::announce_moved_replays() {
 }
 
 void SimulationLoop::poll_mailbox() {
-    replays_.finish_seeks();
+    replays_.seeks().finish();
     if (mailbox_.pending()) {
         mail_ = mailbox_.drain(std::move(mail_));
         for (Mail& mail : mail_) {
@@ -236,7 +236,7 @@ void SimulationLoop::answer_query() {
 }
 
 bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
-    return replays_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+    return replays_.seeks().under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
                if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
                }
@@ -337,7 +337,7 @@ void SimulationLoop::fork(CommandMail& mail) {
     // The seek runs in slices, so that the thread can serve other clients meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    replays_.begin_seek(origin->name, generation, [this, waiting, before](base::Result<Replays::SeekResult> arrival) {
+    replays_.seek_for_fork(origin->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
         if (arrival) {
             return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
@@ -530,7 +530,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
                 track.recorder->follow(entry.world);
             }
             if (entry.replay) {
-                replays_.follow(entry);
+                replays_.shown().follow(entry);
             }
             ++taken;
             stopped = !entry.wants_tick();

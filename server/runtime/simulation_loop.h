@@ -67,7 +67,7 @@ class SimulationLoop {
     /// replay      a replay that is shown from the start.
     SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                    simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
-                   std::optional<Replays::FileReplay> replay = {});
+                   std::optional<FileReplay> replay = {});
 
     /// Handles the mail and advances each world that is due by about one slice. Returns the time at which the next pass
     /// is due if no mail arrives; nullopt: no pass is due before mail arrives.
