@@ -62,20 +62,20 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
 }
 
 /// request  its kind is REQUEST_KIND_REPLAY.
-runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t owner, runtime::ReplayReply reply) {
+runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t session) {
+    runtime::ReplayMail mail{.request = {},
+                             .session = session,
+                             .request_id = request.request_id(),
+                             .request_name = protocol::name_of(request)};
+    const std::string world = protocol::lookup_name(protocol::world_of(request));
     if (request.has_open_replay()) {
-        return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
-                                    .at = wanted(request.open_replay().at()),
-                                    .owner = owner},
-                std::move(reply)};
+        mail.request = runtime::OpenReplay{.world = world, .at = wanted(request.open_replay().at())};
+    } else if (request.has_seek()) {
+        mail.request = runtime::Seek{.world = world, .to = wanted(request.seek().to())};
+    } else {
+        mail.request = runtime::CloseReplay{world};
     }
-    if (request.has_seek()) {
-        return {runtime::Seek{.world = protocol::lookup_name(request.seek().world()),
-                              .to = wanted(request.seek().to()),
-                              .owner = owner},
-                std::move(reply)};
-    }
-    return {runtime::CloseReplay{protocol::lookup_name(request.close_replay().world())}, std::move(reply)};
+    return mail;
 }
 
 /// request  must be valid.
@@ -106,15 +106,15 @@ void count_limits_met(const v1::Request& request, LimitCounters& counters) {
 }
 
 /// Increments the counter of each limit that shortened an answer.
-void count_cuts(const protocol::QueryRows& rows, LimitCounters& counters) {
-    if (const auto* part = std::get_if<protocol::HistoryPart>(&rows)) {
+void count_cuts(const protocol::QueryResult& result, LimitCounters& counters) {
+    if (const auto* part = std::get_if<protocol::HistoryPart>(&result)) {
         if (part->begins_late) {
             counters.met(Limit::HistoryGenerationsKept);
         }
         if (part->next_generation) {
             counters.met(Limit::HistoryGenerations);
         }
-    } else if (const auto* part = std::get_if<protocol::PopulationRows>(&rows)) {
+    } else if (const auto* part = std::get_if<protocol::PopulationRows>(&result)) {
         if (part->first + part->genes.size() < part->organism_count) {
             counters.met(Limit::PopulationRows);
         }
@@ -127,20 +127,13 @@ base::Refusal server_goes_away() {
                    base::Reason::ServerGoingAway);
 }
 
-/// Replaces the contents of a response by a refusal.
-void refuse(v1::Response& response, const base::Refusal& refused) {
-    *response.mutable_status() = protocol::to_proto(refused);
-    response.clear_answer();
-}
-
 } // namespace
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
-                       runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
+                       const Sessions& sessions, Streams& streams, LimitCounters& limit_counters,
                        std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : mailbox_{mailbox}
-    , outbox_{outbox}
-    , demand_{demand}
+    , sessions_{sessions}
     , streams_{streams}
     , limit_counters_{limit_counters}
     , shut_down_{std::move(shut_down)}
@@ -227,13 +220,13 @@ void Dispatcher::serve(Session& session, v1::Request request) {
     case v1::REQUEST_KIND_QUERY:
         return query(session, std::move(request));
     case v1::REQUEST_KIND_SUBSCRIPTION:
-        return subscription(session, request);
+        return subscription(session, std::move(request));
     case v1::REQUEST_KIND_REPLAY:
         return replay(session, request);
     case v1::REQUEST_KIND_EXPORT:
-        return export_text(session, request);
+        return export_text(session, std::move(request));
     case v1::REQUEST_KIND_LEASE:
-        return renew_lease(session, request);
+        return ask(session, std::move(request));
     case v1::REQUEST_KIND_SERVER:
         log::info({.session = session.number(), .client = session.by()}, "session {}: {} shuts the server down",
                   session.number(), session.by());
@@ -326,8 +319,8 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
 
 void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
     for (runtime::Delivery& delivery : deliveries) {
-        if (auto* done = std::get_if<runtime::CommandDone>(&delivery)) {
-            on_done(std::move(*done));
+        if (auto* reply = std::get_if<runtime::Reply>(&delivery)) {
+            std::visit([this](auto& done) { on_done(std::move(done)); }, *reply);
         } else {
             // Destroys the call and its captured data before the next delivery.
             std::exchange(std::get<runtime::Call>(delivery), nullptr)();
@@ -379,33 +372,45 @@ void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusa
     }
 }
 
-void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) {
-    ask(session, request_id, std::move(answer), [](Session&, v1::Response&) {});
+SessionPtr Dispatcher::find(std::uint64_t session) const {
+    const auto found = sessions_.find(session);
+    return found == sessions_.end() ? nullptr : found->second;
 }
 
-bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, Then then) {
-    auto ask = [this, request_id, answer = std::move(answer), then = std::move(then),
-                weak = session.weak_from_this()](const simulation::Laboratory& laboratory) {
-        if (weak.expired()) {
-            return; // the session has ended
-        }
-        v1::Response response = response_to(request_id);
-        answer(laboratory, response);
-        outbox_.answer([this, weak, then, response = std::move(response)]() mutable {
-            if (const auto asking = weak.lock()) {
-                asking->query_under_way = false;
-                then(*asking, response);
-                asking->answer(std::move(response));
-                serve_held_back(*asking);
-            }
-        });
-    };
-    if (mailbox_.try_push(runtime::QueryMail{std::move(ask)})) {
-        session.query_under_way = true;
+bool Dispatcher::ask(Session& session, std::uint64_t request_id, runtime::Mail mail) {
+    if (mailbox_.try_push(std::move(mail))) {
         return true;
     }
     session.answer(protocol::refusing(request_id, busy()));
     return false;
+}
+
+void Dispatcher::ask(Session& session, v1::Request request) {
+    const auto asked = std::make_shared<const v1::Request>(std::move(request));
+    const bool users_only = session.visitor().role < access::Role::Controller;
+    if (ask(session, asked->request_id(), runtime::QueryMail{session.number(), asked, users_only})) {
+        session.query_under_way = true;
+        session.expect(static_cast<std::ptrdiff_t>(protocol::row_bytes_max(*asked)));
+    }
+}
+
+void Dispatcher::on_done(runtime::QueryDone done) {
+    const SessionPtr session = find(done.mail.session);
+    if (!session) {
+        return;
+    }
+    const v1::Request& request = *done.mail.request;
+    session->query_under_way = false;
+    session->expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
+    count_cuts(done.result, limit_counters_);
+    protocol::put_rows(done.result, done.response);
+    if (const auto* world = std::get_if<protocol::FoundWorld>(&done.result)) {
+        if (const auto refused = apply(request, *world, *session, done.response)) {
+            *done.response.mutable_status() = protocol::to_proto(*refused);
+        }
+    }
+    session->answer(std::move(done.response));
+    serve_held_back(*session);
 }
 
 void Dispatcher::query(Session& session, v1::Request request) {
@@ -415,7 +420,7 @@ void Dispatcher::query(Session& session, v1::Request request) {
     }
     switch (request.kind_case()) {
     case v1::Request::kGetBreeding:
-        return breeding(session, request);
+        return find_run(session, std::move(request));
     case v1::Request::kGetMetrics: {
         v1::Response response = response_to(id);
         *response.mutable_metrics() = metrics_();
@@ -430,24 +435,8 @@ void Dispatcher::query(Session& session, v1::Request request) {
     default:
         break;
     }
-    // For a long answer the simulation thread only copies the rows. The network thread converts them into a message.
-    const auto bytes = static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request));
-    const auto rows = std::make_shared<protocol::QueryRows>();
-    const bool users_only = session.visitor().role < access::Role::Controller;
-    const bool asked = ask(
-        session, id,
-        [request = std::move(request), users_only, rows](const simulation::Laboratory& laboratory,
-                                                         v1::Response& response) {
-            *rows = protocol::answer_query(request, laboratory, users_only, response);
-        },
-        [this, bytes, rows](Session& asking, v1::Response& response) {
-            asking.expect(-bytes);
-            count_cuts(*rows, limit_counters_);
-            protocol::put_rows(*rows, response);
-        });
-    if (asked) {
-        session.expect(bytes);
-    }
+    // For a long answer the simulation thread only copies the rows. on_done() converts them into a message.
+    ask(session, std::move(request));
 }
 
 void Dispatcher::set_view(Session& session, const v1::Request& request) {
@@ -470,7 +459,7 @@ void Dispatcher::set_view(Session& session, const v1::Request& request) {
     return streams_.set_view(session, subscription_id, request.set_view().view());
 }
 
-void Dispatcher::subscription(Session& session, const v1::Request& request) {
+void Dispatcher::subscription(Session& session, v1::Request request) {
     const std::uint64_t id = request.request_id();
     const auto refuse_it = [&](const base::Refusal& refused) { session.answer(protocol::refusing(id, refused)); };
     if (request.has_unsubscribe()) {
@@ -494,87 +483,64 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         return set_view(session, request);
     }
 
-    // The simulation thread finds the world. The subscription then begins here, on the network thread.
-    const auto full = [this](const Session& s) {
-        const bool is = s.snapshots.subscriptions.size() + s.events.size() >= subscriptions_max;
-        if (is) {
-            limit_counters_.met(Limit::Subscriptions);
+    // The simulation thread finds the world. The subscription then begins in apply(), on the network thread.
+    ask(session, std::move(request));
+}
+
+std::optional<base::Refusal> Dispatcher::apply(const v1::Request& request, const protocol::FoundWorld& world,
+                                               Session& session, v1::Response& response) {
+    if (request.has_renew_lease()) {
+        const std::string& key = request.client_key();
+        if (leases_.renew(world.name, ReplyCache::key_of(session.visitor().name, key))) {
+            return std::nullopt;
         }
-        return is;
-    };
-    const auto too_many_islands = [this](const Session& s, const streaming::SnapshotSubscription& wanted) {
-        std::size_t watched = wanted.island_count;
-        for (const auto& [number, other] : s.snapshots.subscriptions) {
-            watched += other.island_count;
-        }
-        if (watched > watched_islands_max) {
-            limit_counters_.met(Limit::WatchedIslands);
-        }
-        return watched > watched_islands_max;
-    };
-    const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
-                                  "this session already has " + std::to_string(subscriptions_max) +
-                                      " subscriptions: unsubscribe from one first",
-                                  base::Reason::SubscriptionsMax);
-    const std::string name = protocol::name_of(request);
-    if (request.has_subscribe_snapshots()) {
-        auto wanted = std::make_shared<streaming::SnapshotSubscription>();
-        ask(
-            session, id,
-            [this, name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
-                const auto& subscribe = request.subscribe_snapshots();
-                const auto watched = protocol::find_watched(laboratory, subscribe);
-                if (!watched) {
-                    return refuse(response, protocol::with_paths(watched.error(), name));
-                }
-                const double rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
-                if (rate_hz < subscribe.rate_hz()) {
-                    limit_counters_.met(Limit::SnapshotRate);
-                }
-                *wanted = streaming::to_subscription(subscribe, watched->world, watched->island_count, rate_hz);
-            },
-            [this, wanted, full, too_many, too_many_islands](Session& subscriber, v1::Response& response) {
-                if (response.status().code() != v1::CODE_UNSPECIFIED) {
-                    return;
-                }
-                if (full(subscriber)) {
-                    return refuse(response, too_many);
-                }
-                if (too_many_islands(subscriber, *wanted)) {
-                    return refuse(response, refusal(base::RefusalCode::ResourceExhausted,
-                                                    "the subscriptions of this session would come to more than " +
-                                                        std::to_string(watched_islands_max) +
-                                                        " islands: subscribe to single islands, or unsubscribe first",
-                                                    base::Reason::SubscriptionsMax));
-                }
-                response.mutable_subscription()->set_rate_hz(wanted->rate_hz);
-                response.mutable_subscription()->set_subscription_id(
-                    streams_.subscribe(subscriber, std::move(*wanted)));
-            });
-        return;
+        return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
+                             .message = "this client_key has no lease of that world: it gets one with "
+                                        "run_until_tick on a running world",
+                             .violations = {{"client_key", "the key of the run_until_tick", key}},
+                             .reason = base::Reason::NoLease};
     }
-    auto wanted = std::make_shared<EventSubscription>();
-    ask(
-        session, id,
-        [name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
-            if (!request.subscribe_events().has_world()) {
-                return;
-            }
-            const auto entry = laboratory.find(protocol::lookup_name(request.subscribe_events().world()));
-            if (!entry) {
-                return refuse(response, protocol::with_paths(entry.error(), name));
-            }
-            wanted->world = (*entry)->name;
-        },
-        [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
-            if (response.status().code() != v1::CODE_UNSPECIFIED) {
-                return;
-            }
-            if (full(subscriber)) {
-                return refuse(response, too_many);
-            }
-            response.mutable_subscription()->set_subscription_id(streams_.subscribe(subscriber, std::move(*wanted)));
-        });
+    if (session.snapshots.subscriptions.size() + session.events.size() >= subscriptions_max) {
+        limit_counters_.met(Limit::Subscriptions);
+        return refusal(base::RefusalCode::ResourceExhausted,
+                       "this session already has " + std::to_string(subscriptions_max) +
+                           " subscriptions: unsubscribe from one first",
+                       base::Reason::SubscriptionsMax);
+    }
+    if (request.has_subscribe_snapshots()) {
+        return subscribe(request.subscribe_snapshots(), world, session, response);
+    }
+    EventSubscription subscription;
+    if (request.subscribe_events().has_world()) {
+        subscription.world = world.name;
+    }
+    response.mutable_subscription()->set_subscription_id(streams_.subscribe(session, std::move(subscription)));
+    return std::nullopt;
+}
+
+std::optional<base::Refusal> Dispatcher::subscribe(const v1::SubscribeSnapshots& request,
+                                                   const protocol::FoundWorld& world, Session& session,
+                                                   v1::Response& response) {
+    const double rate_hz = std::clamp(request.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
+    if (rate_hz < request.rate_hz()) {
+        limit_counters_.met(Limit::SnapshotRate);
+    }
+    auto subscription = streaming::to_subscription(request, world.name, world.island_count, rate_hz);
+    std::size_t watched = subscription.island_count;
+    for (const auto& [number, other] : session.snapshots.subscriptions) {
+        watched += other.island_count;
+    }
+    if (watched > watched_islands_max) {
+        limit_counters_.met(Limit::WatchedIslands);
+        return refusal(base::RefusalCode::ResourceExhausted,
+                       "the subscriptions of this session would come to more than " +
+                           std::to_string(watched_islands_max) +
+                           " islands: subscribe to single islands, or unsubscribe first",
+                       base::Reason::SubscriptionsMax);
+    }
+    response.mutable_subscription()->set_rate_hz(rate_hz);
+    response.mutable_subscription()->set_subscription_id(streams_.subscribe(session, std::move(subscription)));
+    return std::nullopt;
 }
 
 void Dispatcher::replay(Session& session, const v1::Request& request) {
@@ -582,38 +548,36 @@ void Dispatcher::replay(Session& session, const v1::Request& request) {
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
-    auto reply = [this, id, name = protocol::name_of(request), opens = request.has_open_replay(),
-                  closes = request.has_close_replay(), weak = session.weak_from_this()](
-                     const simulation::Laboratory& laboratory, const base::Result<std::string>& world) {
-        v1::Response response = response_to(id);
-        if (opens && !world && world.error().code == base::RefusalCode::ResourceExhausted) {
-            limit_counters_.met(Limit::Replays);
-        }
-        if (!world) {
-            refuse(response, protocol::with_paths(world.error(), name));
-        } else if (const auto entry = laboratory.find(*world); entry && !closes) {
-            *response.mutable_world() = protocol::to_proto(**entry);
-        }
-        outbox_.answer([weak, opens, closes, world, response = std::move(response)]() mutable {
-            const auto asking = weak.lock();
-            if (!asking) {
-                return;
-            }
-            if (world && opens) {
-                asking->replays.insert(*world);
-            }
-            if (world && closes) {
-                asking->replays.erase(*world);
-            }
-            asking->answer(std::move(response));
-        });
-    };
-    if (!mailbox_.try_push(replay_mail(request, session.number(), std::move(reply)))) {
-        session.answer(protocol::refusing(id, busy()));
-    }
+    ask(session, id, replay_mail(request, session.number()));
 }
 
-void Dispatcher::export_text(Session& session, const v1::Request& request) {
+void Dispatcher::on_done(runtime::ReplayDone done) {
+    const runtime::ReplayMail& mail = done.mail;
+    const bool opens = std::holds_alternative<runtime::OpenReplay>(mail.request);
+    if (opens && !done.world && done.world.error().code == base::RefusalCode::ResourceExhausted) {
+        limit_counters_.met(Limit::Replays);
+    }
+    const SessionPtr session = find(mail.session);
+    if (!session) {
+        return;
+    }
+    if (!done.world) {
+        return session->answer(
+            protocol::refusing(mail.request_id, protocol::with_paths(done.world.error(), mail.request_name)));
+    }
+    if (opens) {
+        session->replays.insert(*done.world);
+    } else if (std::holds_alternative<runtime::CloseReplay>(mail.request)) {
+        session->replays.erase(*done.world);
+    }
+    v1::Response response = response_to(mail.request_id);
+    if (done.shown) {
+        *response.mutable_world() = *std::move(done.shown);
+    }
+    session->answer(std::move(response));
+}
+
+void Dispatcher::export_text(Session& session, v1::Request request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
@@ -621,66 +585,34 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
     if (request.has_continue_export()) {
         return exports_.go_on(session, id, request.continue_export());
     }
-    find_run(session, request, request.export_run().world(), [this, id, request](Session& asking, const auto& run) {
-        exports_.begin(asking, id, run.run, wanted(request.export_run(), asking.visitor().role));
-    });
+    find_run(session, std::move(request));
 }
 
-void Dispatcher::breeding(Session& session, const v1::Request& request) {
-    find_run(session, request, request.get_breeding().world(), [this, request](Session& asking, auto run) {
-        breeding_queries_.ask(asking, request.request_id(), request.get_breeding(), std::move(run));
-    });
+void Dispatcher::find_run(Session& session, v1::Request request) {
+    const auto asked = std::make_shared<const v1::Request>(std::move(request));
+    ask(session, asked->request_id(), runtime::FindRun{session.number(), asked});
 }
 
-void Dispatcher::find_run(Session& session, const v1::Request& request, const std::string& world, Found then) {
-    const std::uint64_t id = request.request_id();
-    auto found = [this, id, name = protocol::name_of(request), then = std::move(then),
-                  weak = session.weak_from_this()](const base::Result<runtime::FoundRun>& run) {
-        outbox_.answer([id, name, then, run, weak] {
-            const auto asking = weak.lock();
-            if (!asking) {
-                return;
-            }
-            if (run) {
-                then(*asking, *run);
-            } else {
-                asking->answer(protocol::refusing(id, protocol::with_paths(run.error(), name)));
-            }
-        });
-    };
-    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(world), std::move(found)})) {
-        session.answer(protocol::refusing(id, busy()));
+void Dispatcher::on_done(runtime::RunFound done) {
+    const SessionPtr session = find(done.mail.session);
+    if (!session) {
+        return;
     }
-}
-
-void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
-    // The simulation thread replaces an empty name by the name of the world.
-    const auto world = std::make_shared<std::string>();
-    ask(
-        session, request.request_id(),
-        [request, world](const simulation::Laboratory& laboratory, v1::Response& response) {
-            if (const auto entry = laboratory.find(protocol::lookup_name(request.renew_lease().world()))) {
-                *world = (*entry)->name;
-            } else {
-                refuse(response, protocol::with_paths(entry.error(), protocol::name_of(request)));
-            }
-        },
-        [this, world, key = request.client_key()](Session& asking, v1::Response& response) {
-            if (response.status().code() == v1::CODE_UNSPECIFIED &&
-                !leases_.renew(*world, ReplyCache::key_of(asking.visitor().name, key))) {
-                refuse(response, {.code = base::RefusalCode::FailedPrecondition,
-                                  .message = "this client_key has no lease of that world: it gets one with "
-                                             "run_until_tick on a running world",
-                                  .violations = {{"client_key", "the key of the run_until_tick", key}},
-                                  .reason = base::Reason::NoLease});
-            }
-        });
+    const v1::Request& request = *done.mail.request;
+    const std::uint64_t id = request.request_id();
+    if (!done.run) {
+        session->answer(protocol::refusing(id, protocol::with_paths(done.run.error(), protocol::name_of(request))));
+    } else if (request.has_export_run()) {
+        exports_.begin(*session, id, done.run->run, wanted(request.export_run(), session->visitor().role));
+    } else {
+        breeding_queries_.ask(*session, id, request.get_breeding(), *std::move(done.run));
+    }
 }
 
 void Dispatcher::forget(const Session& session) {
     exports_.forget(session);
     breeding_queries_.forget(session);
-    mailbox_.push(runtime::ReplayMail{runtime::OwnerGone{session.number()}, {}});
+    mailbox_.push(runtime::SessionEnded{session.number()});
 }
 
 } // namespace evod::network

@@ -2,8 +2,8 @@
 // simulation thread, and uses the reply cache to make commands idempotent.
 //
 // Owner        the server.
-// Threads      the network thread. The simulation thread runs only the functions given to ask(), which read the
-//              laboratory. Commands are passed between the threads as data (server/runtime/commands.h).
+// Threads      the network thread. Requests go to the simulation thread as data (server/runtime/mail.h) and come back
+//              as data (server/runtime/replies.h).
 #pragma once
 
 #include "server/network/breeding_queries.h"
@@ -13,6 +13,7 @@
 #include "server/network/reply_cache.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
+#include "server/protocol/queries.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
 
@@ -24,9 +25,9 @@ class Dispatcher {
     ///
     /// shut_down  shuts the server down.
     /// metrics    returns the current metrics.
-    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
-               runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
-               std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
+    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox, const Sessions& sessions,
+               Streams& streams, LimitCounters& limit_counters, std::function<void()> shut_down,
+               std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
     /// Handles deliveries from the outbox in order.
@@ -59,17 +60,16 @@ class Dispatcher {
     void serve_held_back(Session& session);
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
-    void subscription(Session& session, const v1::Request& request);
+    void subscription(Session& session, v1::Request request);
     /// Changes the view of a subscription.
     void set_view(Session& session, const v1::Request& request);
     void replay(Session& session, const v1::Request& request);
-    void export_text(Session& session, const v1::Request& request);
-    void breeding(Session& session, const v1::Request& request);
-    /// Finds the run file of a world, then calls `then` on the network thread if the session still exists. If the
-    /// search is refused, the session receives the refusal as its answer.
-    using Found = std::function<void(Session&, runtime::FoundRun)>;
-    void find_run(Session& session, const v1::Request& request, const std::string& world, Found then);
-    void renew_lease(Session& session, const v1::Request& request);
+    void export_text(Session& session, v1::Request request);
+    /// Begins the subscription or renews the lease. Returns why that is refused; nullopt: the response is complete.
+    std::optional<base::Refusal> apply(const v1::Request& request, const protocol::FoundWorld& world, Session& session,
+                                       v1::Response& response);
+    std::optional<base::Refusal> subscribe(const v1::SubscribeSnapshots& request, const protocol::FoundWorld& world,
+                                           Session& session, v1::Response& response);
 
     /// Puts a command into the mailbox. Returns false if the mailbox is full.
     ///
@@ -81,23 +81,26 @@ class Dispatcher {
     /// Called after a command was refused, or was applied and stored. Sends the answer and reports the change to
     /// subscribers.
     void on_done(runtime::CommandDone done);
+    // The other replies complete and send the answer, if the session still exists.
+    void on_done(runtime::QueryDone done);
+    void on_done(runtime::ReplayDone done);
+    void on_done(runtime::RunFound done);
     /// key  the sender's key in the reply cache.
     void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
                     const SharedBytes& frame);
 
     /// Returns the refusal for a full mailbox.
     base::Refusal busy();
-    /// Sends a query to the simulation thread, which calls `answer` to fill in the response.
-    using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
-    void ask(Session& session, std::uint64_t request_id, Answer answer);
-    /// Like the function above; afterwards `then` completes the response on the network thread. `then` is called only
-    /// if the session still exists. Returns false if the mailbox is full; the request has then been refused.
-    using Then = std::function<void(Session&, v1::Response&)>;
-    bool ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
+    /// Puts mail into the mailbox. If the mailbox is full, refuses the request and returns false.
+    bool ask(Session& session, std::uint64_t request_id, runtime::Mail mail);
+    /// Sends a query to the simulation thread. The session's further requests are held back until it is answered.
+    void ask(Session& session, v1::Request request);
+    void find_run(Session& session, v1::Request request);
+    /// The session with this number; nullptr if it has ended.
+    SessionPtr find(std::uint64_t session) const;
 
     runtime::Mailbox& mailbox_;
-    runtime::Outbox& outbox_;
-    runtime::StreamDemand& demand_;
+    const Sessions& sessions_;
     Streams& streams_;
     LimitCounters& limit_counters_;
     std::function<void()> shut_down_;

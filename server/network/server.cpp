@@ -60,8 +60,8 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     server->tls_ = *std::move(tls);
     server->host_.tls = server->tls_.get();
     if (server->options_.replay) {
-        auto replay = runtime::Replays::replay_of(server->options_.replay->path, server->options_.replay->generation,
-                                                  *server->executor_);
+        auto replay = runtime::FileReplay::open(server->options_.replay->path, server->options_.replay->generation,
+                                                *server->executor_);
         if (!replay) {
             base::Refusal refused = replay.error();
             for (base::Violation& violation : refused.violations) {
@@ -106,7 +106,7 @@ Server::Server(ServerOptions options)
     , dispatcher_{context_,
                   mailbox_,
                   outbox_,
-                  demand_,
+                  sessions_,
                   streams_,
                   limit_counters_,
                   [this] { stop(); },
@@ -275,7 +275,7 @@ bool Server::run() {
         runtime::LoopOutputs{
             .events = streams_.outlet(outbox_),
             .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
-            .done = [this](runtime::CommandDone done) { outbox_.done(std::move(done)); },
+            .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); },
             .storage =
                 [this](const simulation::Storage& storage) {
                     // Passed like an answer, because the outbox may drop events. Sessions that connect later read the

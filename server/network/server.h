@@ -121,8 +121,8 @@ class Server {
     asio::steady_timer housekeeping_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
-    std::unique_ptr<replay::Archive> archive_;           // nullptr: runs are not stored
-    std::optional<runtime::Replays::FileReplay> replay_; // empty after it was moved to the simulation thread
+    std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored
+    std::optional<runtime::FileReplay> replay_; // empty after it was moved to the simulation thread
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;
     runtime::StreamDemand demand_;

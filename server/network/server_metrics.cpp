@@ -107,9 +107,9 @@ void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::St
     const std::chrono::duration<double> lag =
         since ? std::chrono::steady_clock::now() - *since : std::chrono::steady_clock::duration{0};
     add_gauge(to, "evod_journal_waiting_bytes", "Bytes waiting to be written to run files")
-        .add(number(thread.waiting_bytes()));
+        .add(number(thread.disk().waiting_bytes()));
     add_gauge(to, "evod_journal_waiting_bytes_max", "Limit of the waiting bytes; above it, worlds wait for the disk")
-        .add(number(recording::StorageThread::waiting_bytes_max));
+        .add(number(recording::DiskState::waiting_bytes_max));
     add_gauge(to, "evod_journal_lag_seconds", "Age of the oldest waiting bytes; up to 0.2 s is normal")
         .add(std::max(lag.count(), 0.0));
     add_histogram(to, "evod_journal_wait_seconds", "Time from applying a command until it is on the disk and answered")

@@ -253,21 +253,25 @@ base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, co
     return motion;
 }
 
-base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, const v1::SubscribeSnapshots& request) {
-    const auto entry = laboratory.find(lookup_name(request.world()));
+base::Result<FoundWorld> find_world(const simulation::Laboratory& laboratory, const v1::Request& request) {
+    if (request.has_subscribe_events() && !request.subscribe_events().has_world()) {
+        return FoundWorld{};
+    }
+    const auto entry = laboratory.find(lookup_name(world_of(request)));
     if (!entry) {
         return entry.error();
     }
     const auto island_count = static_cast<std::uint32_t>((*entry)->world.islands().size());
-    if (request.has_island() && request.island() >= island_count) {
-        return no_such("island", "subscribe_snapshots.island", island_count, request.island(),
+    const v1::SubscribeSnapshots& snapshots = request.subscribe_snapshots();
+    if (snapshots.has_island() && snapshots.island() >= island_count) {
+        return no_such("island", "subscribe_snapshots.island", island_count, snapshots.island(),
                        base::Reason::IslandNotFound);
     }
-    return Watched{(*entry)->name, island_count};
+    return FoundWorld{(*entry)->name, island_count};
 }
 
-QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
-                       v1::Response& response) {
+QueryResult answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
+                         v1::Response& response) {
     const auto refuse = [&](const base::Refusal& refused) {
         *response.mutable_status() = to_proto(with_paths(refused, name_of(request)));
     };
@@ -277,6 +281,13 @@ QueryRows answer_query(const v1::Request& request, const simulation::Laboratory&
         } else {
             refuse(result.error());
         }
+    };
+    const auto later = [&]<class Part>(base::Result<Part> found) -> QueryResult {
+        if (!found) {
+            refuse(found.error());
+            return {};
+        }
+        return *std::move(found);
     };
     switch (request.kind_case()) {
     case v1::Request::kListWorlds:
@@ -294,22 +305,14 @@ QueryRows answer_query(const v1::Request& request, const simulation::Laboratory&
     case v1::Request::kGetMotion:
         put(get_motion(laboratory, request.get_motion()), &v1::Response::mutable_motion);
         break;
-    case v1::Request::kGetHistory: {
-        if (auto part = get_history(laboratory, request.get_history())) {
-            return *std::move(part);
-        } else {
-            refuse(part.error());
-        }
-        break;
-    }
-    case v1::Request::kGetPopulation: {
-        if (auto rows = get_population(laboratory, request.get_population())) {
-            return *std::move(rows);
-        } else {
-            refuse(rows.error());
-        }
-        break;
-    }
+    case v1::Request::kGetHistory:
+        return later(get_history(laboratory, request.get_history()));
+    case v1::Request::kGetPopulation:
+        return later(get_population(laboratory, request.get_population()));
+    case v1::Request::kSubscribeSnapshots:
+    case v1::Request::kSubscribeEvents:
+    case v1::Request::kRenewLease:
+        return later(find_world(laboratory, request));
     default:
         refuse(base::refusal(base::RefusalCode::Unimplemented, "not a query of the simulation",
                              base::Reason::RequestUnknown));
@@ -321,10 +324,10 @@ QueryRows answer_query(const v1::Request& request, const simulation::Laboratory&
     return {};
 }
 
-void put_rows(const QueryRows& rows, v1::Response& response) {
-    if (const auto* part = std::get_if<HistoryPart>(&rows)) {
+void put_rows(const QueryResult& result, v1::Response& response) {
+    if (const auto* part = std::get_if<HistoryPart>(&result)) {
         *response.mutable_history() = to_proto(*part);
-    } else if (const auto* columns = std::get_if<PopulationRows>(&rows)) {
+    } else if (const auto* columns = std::get_if<PopulationRows>(&result)) {
         *response.mutable_population() = to_proto(*columns);
     }
 }

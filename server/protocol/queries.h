@@ -1,6 +1,7 @@
 // Queries: answers queries by reading the laboratory between two ticks.
 //
-// Threads      get_…() and find_…() run on the simulation thread, to_proto() on the network thread.
+// Threads      answer_query(), get_…() and find_world() run on the simulation thread; put_rows() and to_proto() run on
+//              the network thread.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -9,6 +10,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -52,24 +54,25 @@ v1::Population to_proto(const PopulationRows& rows);
 
 base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query);
 
-/// The copied rows of an answer that will be converted later; monostate: the answer is already complete.
-using QueryRows = std::variant<std::monostate, HistoryPart, PopulationRows>;
+/// The world that a subscription or a RenewLease names.
+struct FoundWorld {
+    std::string name; // empty: the subscription to events is for all worlds
+    std::uint32_t island_count = 0;
+};
+base::Result<FoundWorld> find_world(const simulation::Laboratory& laboratory, const v1::Request& request);
 
-/// Answers a query that reads the laboratory. If the query is refused, the response contains the refusal.
+/// What the network thread still has to do for a request: convert copied rows, or apply the request to the world;
+/// monostate: the response is complete.
+using QueryResult = std::variant<std::monostate, HistoryPart, PopulationRows, FoundWorld>;
+
+/// Answers a request that reads the laboratory. If the request is refused, the response contains the refusal.
 ///
 /// users_only  true: the programs and addresses of other clients are removed from the response.
-QueryRows answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
-                       v1::Response& response);
-/// Converts the rows and adds them to the response.
-void put_rows(const QueryRows& rows, v1::Response& response);
+QueryResult answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
+                         v1::Response& response);
+/// If the result contains rows, converts them and adds them to the response.
+void put_rows(const QueryResult& result, v1::Response& response);
 /// Maximum size in bytes of the rows that answer_query() copies for this request.
 std::size_t row_bytes_max(const v1::Request& request);
-
-/// The world that a subscription names.
-struct Watched {
-    std::string world;
-    std::uint32_t island_count;
-};
-base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, const v1::SubscribeSnapshots& request);
 
 } // namespace evod::protocol

@@ -24,9 +24,9 @@ run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run
             .schedule = world.schedule()};
 }
 
-std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
+std::vector<Record> RunRecorder::news(const simulation::World& world) {
     // Passes the records in one batch, so that a file contains either all records of a tick or none.
-    std::vector<StorageThread::Record> records;
+    std::vector<Record> records;
     const std::uint64_t begun = news_.generations_begun();
     news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
     if (news_.generations_begun() != begun) {
@@ -65,7 +65,7 @@ run_file::JournalEntry RunRecorder::entry(CommandRecord& command) {
 }
 
 void RunRecorder::journal(CommandRecord command) {
-    std::vector<StorageThread::Record> records;
+    std::vector<Record> records;
     records.emplace_back(entry(command));
     thread_.write(number_, {std::move(records), std::move(command.done)});
 }

@@ -22,7 +22,7 @@ struct CommandRecord {
     simulation::RunControl control = {}; // run control of the world after the command
     run_file::Origin origin = {};
     std::string answer = {};
-    StorageThread::Done done = {};
+    Done done = {};
 };
 
 /// The identity of a run that begins now with this world.
@@ -72,7 +72,7 @@ class RunRecorder {
     static constexpr int checkpoint_cost_factor = 50;
 
     /// For a run that continues. `so_far` describes the records in its file.
-    RunRecorder(StorageThread& thread, StorageThread::RunNumber number, const run_file::EndMark& so_far,
+    RunRecorder(StorageThread& thread, RunNumber number, const run_file::EndMark& so_far,
                 std::uint64_t generations_ended)
         : thread_{thread}
         , number_{number}
@@ -89,7 +89,7 @@ class RunRecorder {
     }
     void journal(CommandRecord command);
     /// Calls `done` on the storage thread once all records passed so far are on the disk.
-    void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
+    void once_written(Done done) { thread_.write(number_, {{}, std::move(done)}); }
     /// Whether a checkpoint is due right after the last followed tick.
     ///
     /// spent  time that the simulation took since the previous call.
@@ -102,7 +102,7 @@ class RunRecorder {
     friend class Recorder;
     explicit RunRecorder(StorageThread& thread) : thread_{thread} {}
     void hand_over(const simulation::World& world);
-    std::vector<StorageThread::Record> news(const simulation::World& world);
+    std::vector<Record> news(const simulation::World& world);
     run_file::JournalEntry entry(CommandRecord& command);
     /// The records with which the file of a run begins.
     StorageThread::Batch first(const simulation::World& world, std::optional<CommandRecord> command);
@@ -112,7 +112,7 @@ class RunRecorder {
                                  std::optional<CommandRecord> command = {});
 
     StorageThread& thread_;
-    StorageThread::RunNumber number_ = 0;
+    RunNumber number_ = 0;
     RunNews news_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
@@ -120,7 +120,7 @@ class RunRecorder {
     std::chrono::nanoseconds since_beginning_{0};
     std::chrono::nanoseconds since_checkpoint_{0}; // time spent on simulation since the last checkpoint
     std::chrono::nanoseconds copying_took_{0};     // time that the simulation waited for the last checkpoint
-    std::shared_ptr<StorageThread::CheckpointWriting> writing_ = std::make_shared<StorageThread::CheckpointWriting>();
+    std::shared_ptr<CheckpointWriting> writing_ = std::make_shared<CheckpointWriting>();
 };
 
 /// Records all runs of a laboratory.
@@ -134,11 +134,11 @@ class Recorder {
     /// to no world of this server. Returns nullopt if the world can be created or already exists.
     std::optional<base::Refusal> refusal_of_place(const std::string& world) const;
     /// Whether worlds may be simulated, because the storage thread has room for their records.
-    bool has_room() const { return thread_.has_room(); }
+    bool has_room() const { return thread_.disk().has_room(); }
     /// The reason why nothing can be written now; nullopt if writing works.
-    std::optional<std::string> trouble() const { return thread_.trouble(); }
+    std::optional<std::string> trouble() const { return thread_.disk().trouble(); }
     /// The storage thread calls `changed` when has_room() or trouble() has changed.
-    void when_changed(std::function<void()> changed) { thread_.when_changed(std::move(changed)); }
+    void when_changed(std::function<void()> changed) { thread_.disk().when_changed(std::move(changed)); }
 
     /// The recorder of a world; nullptr if the world has no file.
     RunRecorder* of(const std::string& world);

@@ -1,7 +1,6 @@
 #include "server/recording/storage_worker.h"
 
 #include "server/log/log.h"
-#include "server/run_file/checkpoint.h"
 
 #include <pthread.h>
 
@@ -13,7 +12,7 @@
 
 namespace evod::recording {
 
-void StorageThread::Worker::work() {
+bool StorageWorker::work() {
     pthread_setname_np(pthread_self(), "storage"); // the name that `top -H` shows
     constexpr int skipped_max = 8;                 // maximum number of consecutive rounds without a background step
     int skipped = 0;
@@ -21,10 +20,10 @@ void StorageThread::Worker::work() {
         const bool stopping = take(more);
         const bool first_try = !std::exchange(failed_, false);
         for (auto& [number, run] : runs_) {
-            compress_next(run);
+            jobs_.compress_next(run);
         }
         more = write_out();
-        if (first_try && skipped < skipped_max && commands_waiting()) {
+        if (first_try && skipped < skipped_max && queue_.is_urgent()) {
             ++skipped;
             more = true;
         } else {
@@ -36,132 +35,36 @@ void StorageThread::Worker::work() {
             const bool all_written =
                 std::ranges::all_of(runs_, [](const auto& run) { return run.second.waiting.empty(); });
             if (all_written) {
-                const std::lock_guard lock{thread_.mutex_};
-                thread_.taken_since_.reset();
+                queue_.all_written();
             }
-            thread_.set_trouble({});
+            disk_.set_trouble({});
         }
         // When the server stops, retries failed records as long as any record can still be written. After that, the
         // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
-        if (stopping && !more && !is_awaiting() && !(failed_ && advanced)) {
-            if (failed_) {
-                report_lost();
-            }
-            return;
+        if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failed_ && advanced)) {
+            return !failed_ || report_lost();
         }
     }
 }
 
-bool StorageThread::Worker::take(bool more) {
-    StorageThread& thread = thread_;
-    bool stopping = false;
-    {
-        std::unique_lock lock{thread.mutex_};
-        const auto hurries = [&] {
-            return thread.urgent_ || !thread.results_.empty() || (thread.stopping_ && thread.jobs_running_ == 0);
-        };
-        if (failed_) {
-            thread.changed_.wait_for(lock, thread.retry_after_, [&] {
-                return thread.stopping_ && (thread.jobs_running_ == 0 || !thread.results_.empty());
-            });
-        } else if (!more) {
-            thread.working_ = false;
-            thread.changed_.wait(lock, [&] { return hurries() || !thread.handed_over_.records.empty(); });
-            thread.working_ = true;
-            thread.changed_.wait_for(lock, gathering_time, [&] { return hurries() || thread.stopping_; });
-        }
-        stopping = thread.stopping_;
-        const auto now = std::chrono::steady_clock::now();
-        if (!more || failed_ || thread.urgent_ || stopping ||
-            (thread.handed_over_since_ && now - *thread.handed_over_since_ >= gathering_time)) {
-            thread.urgent_ = false;
-            if (!thread.taken_since_) {
-                thread.taken_since_ = thread.handed_over_since_;
-            }
-            thread.handed_over_since_.reset();
-            HandedOver taken = std::exchange(thread.handed_over_, {});
-            runs_.merge(taken.new_runs);
-            for (auto& [number, records] : taken.records) {
-                RunLog& run = runs_[number];
-                for (WaitingRecord& record : records) {
-                    (record.writing ? run.checkpoints : run.waiting).push_back(std::move(record));
-                }
-            }
-            for (auto& [number, closing] : taken.closing) {
-                runs_[number].closing = std::move(closing);
-            }
+bool StorageWorker::take(bool more) {
+    HandedOver taken = queue_.take(more, failed_ ? std::optional{retry_after_} : std::nullopt, jobs_.are_running());
+    runs_.merge(taken.new_runs);
+    for (auto& [number, records] : taken.records) {
+        RunLog& run = runs_[number];
+        for (WaitingRecord& record : records) {
+            (record.writing ? run.checkpoints : run.waiting).push_back(std::move(record));
         }
     }
-    run_results();
-    return stopping;
-}
-
-void StorageThread::Worker::run_results() {
-    std::vector<std::function<void(Worker&)>> results;
-    {
-        const std::lock_guard lock{thread_.mutex_};
-        results.swap(thread_.results_);
+    for (auto& [number, closing] : taken.closing) {
+        runs_[number].closing = std::move(closing);
     }
-    for (const auto& result : results) {
-        result(*this);
-    }
+    jobs_.apply_results(runs_, false);
+    return taken.stopping;
 }
 
-bool StorageThread::Worker::is_awaiting() {
-    const std::lock_guard lock{thread_.mutex_};
-    return thread_.jobs_running_ > 0 || !thread_.handed_over_.records.empty() || !thread_.handed_over_.closing.empty();
-}
-
-bool StorageThread::Worker::commands_waiting() {
-    const std::lock_guard lock{thread_.mutex_};
-    return thread_.urgent_;
-}
-
-/// job  runs on the job queue. The function that it returns runs on this thread, unless the run has ended.
-void StorageThread::Worker::start_job(RunLog& run, const std::function<std::function<void(RunLog&)>()>& job) {
-    ++thread_.jobs_running_;
-    thread_.jobs_.add([&thread = thread_, number = run.number, job](const std::stop_token&) {
-        auto result = [number, apply = job()](Worker& worker) {
-            --worker.thread_.jobs_running_;
-            if (const auto found = worker.runs_.find(number); found != worker.runs_.end()) {
-                apply(found->second);
-            }
-        };
-        {
-            const std::lock_guard lock{thread.mutex_};
-            thread.results_.emplace_back(std::move(result));
-        }
-        thread.changed_.notify_one();
-    });
-}
-
-void StorageThread::Worker::compress_next(RunLog& run) {
-    WaitingRecord* next = run.next_to_compress();
-    if (next == nullptr) {
-        return;
-    }
-    next->being_compressed = run.compressing = true;
-    const auto given = std::make_shared<run_file::Checkpoint>(std::move(std::get<run_file::Checkpoint>(*next->record)));
-    start_job(run, [given]() -> std::function<void(RunLog&)> {
-        const auto began = std::chrono::steady_clock::now();
-        const auto packed = std::make_shared<run_file::StoredCheckpoint>(run_file::pack(*given));
-        *given = {};
-        const auto took = std::chrono::steady_clock::now() - began;
-        return [packed, took](RunLog& log) { log.compressed(std::move(*packed), took); };
-    });
-}
-
-void StorageThread::Worker::copy_log_if_due(RunLog& run) {
-    if (run.log_copy_due()) {
-        start_job(run, [path = run.path, options = thread_.options_]() -> std::function<void(RunLog&)> {
-            run_file::copy_log(path, options);
-            return [](RunLog& log) { log.log_copied(); };
-        });
-    }
-}
-
-bool StorageThread::Worker::write_out() {
+bool StorageWorker::write_out() {
     std::vector<RunLog*> others;
     for (auto& [number, run] : runs_) {
         if (run.closing ||
@@ -175,7 +78,7 @@ bool StorageThread::Worker::write_out() {
     std::stable_partition(others.begin(), others.end(),
                           [this](const RunLog* run) { return run->number > last_written_; });
     for (RunLog* run : others) {
-        if (run != others.front() && commands_waiting()) {
+        if (run != others.front() && queue_.is_urgent()) {
             return true;
         }
         last_written_ = run->number;
@@ -184,7 +87,7 @@ bool StorageThread::Worker::write_out() {
     return false;
 }
 
-bool StorageThread::Worker::write_out(RunLog& run) {
+bool StorageWorker::write_out(RunLog& run) {
     const auto is_uncompressed = [](const WaitingRecord& record) {
         return record.record && std::holds_alternative<run_file::Checkpoint>(*record.record);
     };
@@ -215,7 +118,7 @@ bool StorageThread::Worker::write_out(RunLog& run) {
     return true;
 }
 
-bool StorageThread::Worker::is_its_turn(const RunLog& run) {
+bool StorageWorker::is_its_turn(const RunLog& run) {
     for (auto& [number, earlier] : runs_) {
         if (number >= run.number) {
             break;
@@ -235,20 +138,20 @@ bool StorageThread::Worker::is_its_turn(const RunLog& run) {
     return true;
 }
 
-bool StorageThread::Worker::commit(RunLog& run, const std::vector<WaitingRecord>& records) {
+bool StorageWorker::commit(RunLog& run, const std::vector<WaitingRecord>& records) {
     const auto took = run.commit(records);
     if (!took) {
         return fail(took.error());
     }
     if (took->count() > 0) {
-        thread_.times_.commit.add(*took);
-        copy_log_if_due(run);
+        times_.commit.add(*took);
+        jobs_.copy_log_if_due(run);
         advanced_ = true;
     }
     return true;
 }
 
-bool StorageThread::Worker::take_name(RunLog& run) {
+bool StorageWorker::take_name(RunLog& run) {
     const auto replaced = run.creation->replaces ? runs_.find(*run.creation->replaces) : runs_.end();
     if (replaced != runs_.end()) {
         RunLog& old = replaced->second;
@@ -264,7 +167,7 @@ bool StorageThread::Worker::take_name(RunLog& run) {
     return true;
 }
 
-bool StorageThread::Worker::end(RunLog& run) {
+bool StorageWorker::end(RunLog& run) {
     Closing& closing = *run.closing;
     if (closing.finished) {
         return true;
@@ -273,18 +176,14 @@ bool StorageThread::Worker::end(RunLog& run) {
     if (last && std::holds_alternative<run_file::EndMark>(*last) && std::get<run_file::EndMark>(*last).ended) {
         for (const WaitingRecord& dropped : std::exchange(run.checkpoints, {})) {
             dropped.writing->waits = false;
-            thread_.waiting_checkpoints_.fetch_sub(1);
+            --queue_.unfinished;
         }
     }
     if (!run.checkpoints.empty()) {
         return false; // closes the file after the checkpoints are written
     }
     while (run.log_copy.running) {
-        {
-            std::unique_lock lock{thread_.mutex_};
-            thread_.changed_.wait(lock, [this] { return !thread_.results_.empty(); });
-        }
-        run_results();
+        jobs_.apply_results(runs_, true);
     }
     if (!closing.marked) {
         if (!commit(run, closing.last)) {
@@ -302,7 +201,7 @@ bool StorageThread::Worker::end(RunLog& run) {
     return true;
 }
 
-bool StorageThread::Worker::background_step() {
+bool StorageWorker::background_step() {
     std::vector<RunLog*> runs;
     for (auto& [number, run] : runs_) {
         runs.push_back(&run);
@@ -315,52 +214,46 @@ bool StorageThread::Worker::background_step() {
     });
 }
 
-bool StorageThread::Worker::background_step(RunLog& run) {
+bool StorageWorker::background_step(RunLog& run) {
     const auto step = run.background_step();
     if (!step) {
         return fail(step.error());
     }
     if (*step) {
         report_written(run.written);
-        copy_log_if_due(run);
+        jobs_.copy_log_if_due(run);
     }
     return *step;
 }
 
-void StorageThread::Worker::report_written(std::vector<WaitingRecord>& records) {
+void StorageWorker::report_written(std::vector<WaitingRecord>& records) {
     std::size_t bytes = 0;
     for (const WaitingRecord& record : std::exchange(records, {})) {
         bytes += record.bytes;
         if (record.done) {
             if (record.record) { // only a batch with a command has a record and a `done`
-                thread_.times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
+                times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
             }
             record.done();
         }
         if (record.writing) {
             record.writing->took = record.took;
             record.writing->waits = false;
-            thread_.waiting_checkpoints_.fetch_sub(1);
+            --queue_.unfinished;
         }
     }
-    const std::size_t before = thread_.waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
-    if (before < waiting_bytes_max || before - bytes >= waiting_bytes_max) {
-        return;
-    }
-    const std::lock_guard lock{thread_.mutex_};
-    if (thread_.when_changed_) {
-        thread_.when_changed_();
-    }
+    disk_.written(bytes);
 }
 
-bool StorageThread::Worker::fail(const base::Refusal& why) {
+bool StorageWorker::fail(const base::Refusal& why) {
     if (!std::exchange(failed_, true)) {
-        thread_.set_trouble(why.message); // reports only the first error of a round
+        disk_.set_trouble(why.message); // reports only the first error of a round
     }
     return false;
 }
 
-void StorageThread::Worker::report_lost() {
+bool StorageWorker::report_lost() const {
+    bool lost_any = false;
     for (const auto& [number, run] : runs_) {
         std::size_t bytes = 0, commands = 0, generations = 0;
         const auto count = [&](const std::vector<WaitingRecord>& records) {
@@ -377,7 +270,7 @@ void StorageThread::Worker::report_lost() {
         if (bytes == 0) {
             continue;
         }
-        thread_.lost_ = true;
+        lost_any = true;
         const std::string world = std::filesystem::path{run.path}.stem().string();
         const std::string lost =
             fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
@@ -397,6 +290,7 @@ void StorageThread::Worker::report_lost() {
                        world, lost, run.path);
         }
     }
+    return !lost_any;
 }
 
 } // namespace evod::recording

@@ -8,31 +8,29 @@
 
 #include "server/recording/storage_thread.h"
 
+#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace evod::recording {
 
-class StorageThread::Worker {
+class StorageWorker {
   public:
-    explicit Worker(StorageThread& thread) : thread_{thread} {}
+    StorageWorker(RecordQueue& queue, DiskState& disk, LogJobs& jobs, StorageTimes& times,
+                  std::chrono::milliseconds retry_after)
+        : queue_{queue}, disk_{disk}, jobs_{jobs}, times_{times}, retry_after_{retry_after} {}
 
     /// Runs until the thread must stop and everything that can be written is written.
-    void work();
+    ///
+    /// returns  false if something could not be written; the log contains the details.
+    bool work();
 
   private:
-    /// Takes the new records. Waits for work first, unless `more` is set.
+    /// Takes the new records and results. Waits for work first, unless `more` is set.
     ///
     /// returns  whether the server stops.
     bool take(bool more);
-    void run_results();
-    /// Whether a job is running, or new records have not been taken yet.
-    bool is_awaiting();
-    bool commands_waiting();
-    void start_job(RunLog& run, const std::function<std::function<void(RunLog&)>()>& job);
-    void compress_next(RunLog& run);
-    void copy_log_if_due(RunLog& run);
 
     /// Writes the records of all runs, until a command arrives.
     ///
@@ -55,10 +53,14 @@ class StorageThread::Worker {
     /// To be called when these records are on the disk. Calls `done` and frees the memory of the records.
     void report_written(std::vector<WaitingRecord>& records);
     bool fail(const base::Refusal& why);
-    /// Logs for each run how much could not be written.
-    void report_lost();
+    /// Logs for each run how much could not be written. Returns false if that is anything.
+    bool report_lost() const;
 
-    StorageThread& thread_;
+    RecordQueue& queue_;
+    DiskState& disk_;
+    LogJobs& jobs_;
+    StorageTimes& times_;
+    const std::chrono::milliseconds retry_after_;
     std::map<RunNumber, RunLog> runs_;
     RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
     bool failed_ = false;                              // a write has failed in this round

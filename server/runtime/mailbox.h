@@ -1,78 +1,22 @@
-// Mailbox: a queue of commands and queries for the simulation thread, in order of arrival.
+// Mailbox: a queue of commands and queries (mail.h) for the simulation thread, in order of arrival.
 //
 // Threads      any thread adds mail. The simulation thread removes it between two ticks.
 // Full         when it contains `mailbox_commands_max` entries, try_push() fails and the sender receives
 //              REASON_SERVER_BUSY.
 #pragma once
 
-#include "server/base/result.h"
-#include "server/replay/stored_run.h"
 #include "server/runtime/clock.h"
-#include "server/runtime/commands.h"
-#include "server/simulation/laboratory.h"
+#include "server/runtime/mail.h"
 
 #include <atomic>
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <optional>
-#include <variant>
 #include <vector>
 
 namespace evod::runtime {
 
 constexpr std::size_t mailbox_commands_max = 1024;
-
-/// A query. The simulation thread calls it between two ticks, when the query budget allows it. Commands do not wait for
-/// queries, so a session passes on no further requests until its query is answered.
-struct QueryMail {
-    std::function<void(const simulation::Laboratory&)> ask;
-};
-/// A short function that another part of the server runs on the simulation thread.
-struct CallMail {
-    std::function<void()> call;
-};
-
-// Requests for replays (replays.h).
-
-/// A request to open a replay of the run of the world `world`.
-struct OpenReplay {
-    std::string world;
-    replay::WantedMoment at; // the first moment to show; without fields: the first moment of the run
-    std::uint64_t owner = 0; // number of the session, >= 1
-};
-/// A request to move a replay to another moment.
-struct Seek {
-    std::string world;
-    replay::WantedMoment to;
-    std::uint64_t owner = 0; // number of the session, >= 1
-};
-struct CloseReplay {
-    std::string world;
-};
-/// A request to close all replays of a session that has ended, and to cancel its seeks.
-struct OwnerGone {
-    std::uint64_t owner = 0;
-};
-/// Called on the simulation thread with the name of the replay, once the replay shows the requested moment.
-using ReplayReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
-struct ReplayMail {
-    std::variant<OpenReplay, Seek, CloseReplay, OwnerGone> request;
-    ReplayReply reply; // not set for OwnerGone
-};
-
-struct FoundRun {
-    replay::StoredRun run;
-    std::uint64_t generation = 0; // generation of the world when the request was handled
-};
-/// A request to find the stored run of a world. The reply waits until everything recorded so far is on the disk, or until
-/// writing fails.
-struct FindRun {
-    std::string world;
-    std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread
-};
-
-using Mail = std::variant<CommandMail, QueryMail, CallMail, ReplayMail, FindRun>;
 
 class Mailbox {
   public:

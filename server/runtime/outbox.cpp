@@ -9,8 +9,8 @@ void Outbox::answer(Call call) {
     add(std::move(call));
 }
 
-void Outbox::done(CommandDone done) {
-    add(std::move(done));
+void Outbox::reply(Reply reply) {
+    add(std::move(reply));
 }
 
 void Outbox::add(Delivery delivery) {

@@ -7,7 +7,7 @@
 //              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted.
 #pragma once
 
-#include "server/runtime/commands.h"
+#include "server/runtime/replies.h"
 #include "server/runtime/snapshot.h"
 
 #include <cstdint>
@@ -20,9 +20,9 @@ namespace evod::runtime {
 
 constexpr std::size_t outbox_events_max = 4096;
 
-/// An answer to a query, or an event. The network thread calls it.
+/// An event, or the result of a background job. The network thread calls it.
 using Call = std::function<void()>;
-using Delivery = std::variant<Call, CommandDone>;
+using Delivery = std::variant<Call, Reply>;
 
 class Outbox {
   public:
@@ -31,7 +31,7 @@ class Outbox {
         : wake_{std::move(wake)}, events_max_{events_max} {}
 
     void answer(Call call);
-    void done(CommandDone done);
+    void reply(Reply reply);
     void event(Call call);
     void snapshot(SnapshotPtr snapshot);
 

@@ -1,11 +1,9 @@
 #include "server/runtime/replays.h"
 
-#include "server/base/inline_executor.h"
-#include "server/base/within_memory.h"
-
-#include <algorithm>
-#include <memory>
-#include <utility>
+#include "server/base/overloaded.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/request_rules.h"
+#include "server/protocol/worlds.h"
 
 namespace evod::runtime {
 
@@ -23,103 +21,44 @@ Refusal within(Refusal refused, const std::string& field) {
     return refused;
 }
 
-Refusal superseded() {
-    return refusal(RefusalCode::FailedPrecondition,
-                   "superseded by a later seek: seek again if this moment is still wanted",
-                   base::Reason::SeekSuperseded);
-}
-
-Refusal owner_gone() {
-    return refusal(RefusalCode::NotFound, "the session that sent the request has ended");
-}
-
-Refusal closed_since() {
-    return refusal(RefusalCode::NotFound, "the replay has been closed: open it again", base::Reason::WorldNotFound);
-}
-
 } // namespace
 
-Result<Replays::FileReplay> Replays::replay_of(const std::string& path, std::optional<std::uint64_t> generation,
-                                               base::Executor& executor) {
-    auto run = replay::StoredRun::of_file(path);
-    if (!run) {
-        return run.error();
-    }
-    const auto name = run->world_name();
-    if (!name) {
-        return name.error();
-    }
-    std::optional<replay::WantedMoment> wanted;
-    if (generation) {
-        wanted = replay::WantedMoment{.generation = generation, .tick = {}};
-    }
-    auto start = run->start_seek(wanted, {}, executor);
-    if (!start) {
-        return start.error();
-    }
-    RunningSeek running{.number = 0,
-                        .owner = 0,
-                        .rerun = std::move(start->from),
-                        .to = start->to,
-                        .there = std::move(start->there),
-                        .done = {}};
-    while (!advance(running, executor)) {
-    }
-    return FileReplay{*name, *std::move(run), std::move(running.rerun), std::move(running.there)};
+void Replays::apply(const ReplayMail& mail) {
+    std::visit(base::Overloaded{[&](const OpenReplay& request) { open(request, mail); },
+                                [&](const Seek& request) { seek(request, mail); },
+                                [&](const CloseReplay& request) { answer(mail, close(request)); }},
+               mail.request);
 }
 
-void Replays::show(FileReplay replay) {
-    show(replay.name, std::move(replay.run), 0, {std::move(replay.rerun), std::move(replay.replay)});
-}
-
-void Replays::show(const std::string& name, replay::StoredRun run, std::uint64_t owner, SeekResult result) {
-    simulation::RunControl control;
-    control.endless = control.paused = true;
-    const replay::ComingChanges& changes = result.rerun.changes();
-    replays_.emplace(name, Shown{run, changes, changes.last_entry(), owner, {}, false, 0});
-    laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
-        name, run.run_id(), control, std::move(result.rerun).take(), 0, false, std::move(result.there)}));
-    (void)entry_of(name)->world.take_events(); // discard the events that the seek caused
-}
-
-simulation::Entry* Replays::entry_of(const std::string& world) {
-    const auto found = laboratory_.find(world);
-    return found ? *found : nullptr;
-}
-
-void Replays::apply(ReplayMail mail) {
-    if (const auto* open_replay = std::get_if<OpenReplay>(&mail.request)) {
-        return open(*open_replay, mail.reply);
+void Replays::answer(const ReplayMail& mail, const Result<std::string>& world) {
+    ReplayDone done{.mail = mail, .world = world};
+    if (world && !std::holds_alternative<CloseReplay>(mail.request)) {
+        done.shown = protocol::to_proto(**laboratory_.find(*world));
     }
-    if (const auto* seek_moment = std::get_if<Seek>(&mail.request)) {
-        return seek(*seek_moment, mail.reply);
-    }
-    if (const auto* close_replay = std::get_if<CloseReplay>(&mail.request)) {
-        return mail.reply(laboratory_, close(*close_replay));
-    }
-    close_all_of(std::get<OwnerGone>(mail.request).owner);
+    reply_(std::move(done));
 }
 
 void Replays::find_run(const FindRun& mail) {
-    const auto entry = std::as_const(laboratory_).find(mail.world);
+    const auto entry = std::as_const(laboratory_).find(protocol::lookup_name(protocol::world_of(*mail.request)));
     if (!entry) {
-        return mail.found(entry.error());
+        return reply_(RunFound{mail, entry.error()});
     }
-    const auto run = replay_of((*entry)->name);
+    const auto run = run_of((*entry)->name);
     if (!run) {
-        return mail.found(run.error());
+        return reply_(RunFound{mail, run.error()});
     }
-    once_written((*entry)->name,
-                 [found = mail.found, run = FoundRun{*run, (*entry)->world.moment().generation}](bool) { found(run); });
+    reader_.once_written(
+        (*entry)->name,
+        [this, found = RunFound{mail, FoundRun{*run, (*entry)->world.moment().generation}}](bool) { reply_(found); });
 }
 
-Result<replay::StoredRun> Replays::replay_of(const std::string& world) const {
+Result<replay::StoredRun> Replays::run_of(const std::string& world) const {
     const auto entry = std::as_const(laboratory_).find(world);
     if (!entry) {
         return entry.error();
     }
-    if (const auto shown = replays_.find((*entry)->name); shown != replays_.end()) {
-        return shown->second.run;
+    if (const replay::StoredRun* run = shown_.run_of((*entry)->name)) {
+        return *run;
     }
     if (!recorder_) {
         return refusal(RefusalCode::FailedPrecondition,
@@ -127,22 +66,6 @@ Result<replay::StoredRun> Replays::replay_of(const std::string& world) const {
                        base::Reason::RunsNotKept);
     }
     return replay::StoredRun{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
-}
-
-void Replays::once_written(const std::string& world, std::function<void(bool)> then) {
-    recording::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
-    if (!recorder || recorder_->refusal()) {
-        return then(false); // nothing more will be written, so the caller reads the file in its present state
-    }
-    const std::uint64_t number = ++last_waiting_;
-    waiting_.emplace(number, std::move(then));
-    recorder->once_written([this, number] {
-        mailbox_.push(CallMail{[this, number] {
-            if (auto waited = waiting_.extract(number)) {
-                waited.mapped()(true);
-            }
-        }});
-    });
 }
 
 replay::RecordedUntil Replays::recorded_until(const std::string& world, const simulation::RunId& run_id) const {
@@ -154,344 +77,110 @@ replay::RecordedUntil Replays::recorded_until(const std::string& world, const si
     return {.generation = now.generation, .tick = now.tick};
 }
 
-void Replays::stop_waiting() {
-    for (const auto& [number, then] : std::exchange(waiting_, {})) {
-        then(false);
-    }
-}
-
-void Replays::read_and_seek(const replay::StoredRun& run, const std::optional<replay::WantedMoment>& to,
-                            replay::RecordedUntil known, std::uint64_t owner, SeekDone done, const Begun& begun) {
-    if (pending_.size() + seeks_.size() >= seeks_max) {
-        return done(refusal(RefusalCode::ResourceExhausted, "too many seeks are in progress: try again later",
-                            base::Reason::ReplaysMax));
-    }
-    const std::uint64_t number = ++last_seek_;
-    pending_.emplace(number, PendingSeek{.owner = owner, .begun = begun, .done = std::move(done)});
-    read_file([this, number, run, to, known]() -> std::function<void()> {
-        base::InlineExecutor executor;
-        const auto start = std::make_shared<Result<replay::SeekStart>>(
-            base::within_memory([&] { return run.start_seek(to, known, executor); }));
-        return [this, number, start] { begin(number, std::move(*start)); };
-    });
-}
-
-void Replays::begin(std::uint64_t number, Result<replay::SeekStart> start) {
-    const auto found = pending_.extract(number);
-    if (!found) { // the session that requested the seek has ended
-        return;
-    }
-    PendingSeek pending = std::move(found.mapped());
-    if (!start) {
-        return pending.done(start.error());
-    }
-    if (pending.begun && !pending.begun(number)) {
-        return pending.done(closed_since());
-    }
-    seeks_.push_back({.number = number,
-                      .owner = pending.owner,
-                      .rerun = std::move(start->from),
-                      .to = start->to,
-                      .there = std::move(start->there),
-                      .done = std::move(pending.done)});
-}
-
-void Replays::cancel(std::uint64_t number, const Refusal& why) {
-    const auto running = std::ranges::find(seeks_, number, &RunningSeek::number);
-    if (running == seeks_.end()) {
-        return;
-    }
-    const SeekDone cancelled = std::move(running->done);
-    seeks_.erase(running);
-    cancelled(why);
-}
-
-void Replays::begin_seek(const std::string& world, std::uint64_t generation, SeekDone done) {
-    const auto run = replay_of(world);
-    if (!run) {
-        return done(run.error());
-    }
-    const auto known = recorded_until(world, run->run_id());
-    once_written(world, [this, generation, known, run = *run, done = std::move(done)](bool all_is_written) {
-        read_and_seek(run, replay::WantedMoment{.generation = generation, .tick = {}},
-                      all_is_written ? known : replay::RecordedUntil{}, 0, done);
-    });
-}
-
-bool Replays::is_over(const RunningSeek& running) {
-    const simulation::Moment& now = running.rerun.world().moment();
-    return now.generation > running.to.generation ||
-           (now.generation == running.to.generation && now.tick >= running.to.tick);
-}
-
-bool Replays::advance(RunningSeek& running, base::Executor& executor) {
-    const simulation::World& world = running.rerun.world();
-    const simulation::Moment& now = world.moment();
-    if (is_over(running)) {
-        return true;
-    }
-    if (now.generation < running.to.generation && world.generation_over()) {
-        running.rerun.turn_over(executor);
-    } else if (world.outcome() == evolution::Outcome::Running) {
-        running.rerun.advance_tick(executor);
-    } else {
-        return true; // the run ends before the target; advance_seeks() reports it
-    }
-    return is_over(running);
-}
-
-void Replays::advance_seeks(const std::function<bool()>& stop) {
-    for (std::size_t next = 0; !seeks_.empty() && (next == 0 || !stop()); ++next) {
-        const std::size_t i = next % seeks_.size();
-        if (!advance(seeks_[i], executor_)) {
-            continue;
-        }
-        RunningSeek running = std::move(seeks_[i]);
-        seeks_.erase(seeks_.begin() + static_cast<std::ptrdiff_t>(i));
-        const simulation::Moment& there = running.rerun.world().moment();
-        if (there.generation == running.to.generation && there.tick == running.to.tick) {
-            running.done(SeekResult{std::move(running.rerun), std::move(running.there)});
-        } else {
-            running.done(
-                refusal(RefusalCode::DataLoss,
-                        "the run file contains this moment, but a new simulation of the run does not reach it"));
-        }
-    }
-}
-
-void Replays::move_to(simulation::Entry& entry, Shown& shown, SeekResult result) {
-    shown.changes = result.rerun.changes();
-    shown.entries_read = shown.changes.last_entry();
-    shown.refreshed = {};
-    entry.world = std::move(result.rerun).take();
-    entry.replay = std::move(result.there);
-    (void)entry.world.take_events(); // discard the events that the seek caused
-    moved_.push_back(entry.name);
-}
-
-void Replays::open(const OpenReplay& request, const ReplayReply& reply) {
+void Replays::open(const OpenReplay& request, const ReplayMail& mail) {
     const auto origin = std::as_const(laboratory_).find(request.world);
     if (!origin) {
-        return reply(laboratory_, origin.error());
+        return answer(mail, origin.error());
     }
-    std::size_t of_owner = 0, of_all = replays_.size();
-    for (const auto& [name, shown] : replays_) {
-        of_owner += shown.owner == request.owner;
-    }
-    for (const auto& [owner, count] : opening_) {
-        of_owner += owner == request.owner ? count : 0;
-        of_all += count;
-    }
-    if (of_owner >= replays_max || of_all >= replays_of_all_max) {
-        return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
-                                          of_owner >= replays_max
-                                              ? "this session has " + std::to_string(replays_max) +
-                                                    " replays open already: close one first"
-                                              : "all clients together have " + std::to_string(replays_of_all_max) +
-                                                    " replays open already: try again when one of them is closed",
-                                          base::Reason::ReplaysMax));
+    const bool session_full = shown_.names(mail.session).size() + seeks_.opening_count(mail.session) >= replays_max;
+    if (session_full || shown_.names().size() + seeks_.opening_count() >= replays_of_all_max) {
+        return answer(mail, refusal(RefusalCode::ResourceExhausted,
+                                    session_full ? "this session has " + std::to_string(replays_max) +
+                                                       " replays open already: close one first"
+                                                 : "all clients together have " + std::to_string(replays_of_all_max) +
+                                                       " replays open already: try again when one of them is closed",
+                                    base::Reason::ReplaysMax));
     }
     const std::string name = (*origin)->replays_another_world() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;
-    const auto run = replay_of(world);
+    const auto run = run_of(world);
     if (!run) {
-        return reply(laboratory_, run.error());
+        return answer(mail, run.error());
     }
-    ++opening_[request.owner];
-    const auto opened = [this, owner = request.owner, reply](const Result<std::string>& shown) {
-        if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0) {
-            opening_.erase(opening);
+    std::optional<replay::WantedMoment> at;
+    if (request.at.generation || request.at.tick) {
+        at = request.at;
+    }
+    const auto done = [this, mail, name, run = *run](Result<SeekResult> result) {
+        if (!result) {
+            return answer(mail, within(result.error(), "at"));
         }
-        reply(laboratory_, shown);
+        result->there.replay_of = name;
+        const std::string replay_name = name + "@" + std::to_string(++last_name_);
+        shown_.show(replay_name, run, mail.session, *std::move(result));
+        answer(mail, replay_name);
     };
-    const auto known = recorded_until(world, run->run_id());
-    once_written(world, [this, name, known, run = *run, request, opened](bool all_is_written) {
-        std::optional<replay::WantedMoment> at;
-        if (request.at.generation || request.at.tick) {
-            at = request.at;
-        }
-        const auto done = [this, name, run, owner = request.owner, opened](Result<SeekResult> result) {
-            if (!result) {
-                return opened(within(result.error(), "at"));
-            }
-            result->there.replay_of = name;
-            const std::string replay_name = name + "@" + std::to_string(++last_name_);
-            show(replay_name, run, owner, *std::move(result));
-            opened(replay_name);
-        };
-        if (!opening_.contains(request.owner)) {
-            return opened(owner_gone());
-        }
-        read_and_seek(run, at, all_is_written ? known : replay::RecordedUntil{}, request.owner, done);
-    });
+    seeks_.begin(world, {.session = mail.session,
+                         .opens = true,
+                         .run = *run,
+                         .to = at,
+                         .known = recorded_until(world, run->run_id()),
+                         .done = done});
 }
 
-void Replays::seek(const Seek& request, const ReplayReply& reply) {
+void Replays::seek(const Seek& request, const ReplayMail& mail) {
     const auto entry = std::as_const(laboratory_).find(request.world);
     if (!entry) {
-        return reply(laboratory_, entry.error());
+        return answer(mail, entry.error());
     }
     const std::string name = (*entry)->name;
-    if (!replays_.contains(name)) {
-        return reply(
-            laboratory_,
-            Refusal{.code = RefusalCode::FailedPrecondition,
-                    .message = "this world is live and cannot be moved to another moment: open a replay of its run, as "
-                               "evoview and evoctl stats --at-generation do, or serve its run file with evod replay",
-                    .violations = {},
-                    .reason = base::Reason::WorldIsLive});
+    const replay::StoredRun* run = shown_.run_of(name);
+    if (!run) {
+        return answer(mail, Refusal{.code = RefusalCode::FailedPrecondition,
+                                    .message = "this world lives and cannot be taken to another moment: open its "
+                                               "run, as evoview and evoctl stats --at-generation do, or serve its "
+                                               "file with evod replay",
+                                    .violations = {},
+                                    .reason = base::Reason::WorldIsLive});
     }
-    const std::string& replay_of = (*entry)->replay->replay_of;
-    const std::string origin = replay_of.empty() ? name : replay_of;
-    const auto known_now = recorded_until(origin, replays_.find(name)->second.run.run_id());
-    ++seeking_[request.owner];
-    const auto sought = [this, owner = request.owner, reply](const Result<std::string>& world) {
-        if (const auto seeking = seeking_.find(owner); seeking != seeking_.end() && --seeking->second == 0) {
-            seeking_.erase(seeking);
+    const simulation::Replay& seen = *(*entry)->replay;
+    const std::string origin = seen.replay_of.empty() ? name : seen.replay_of;
+    const auto done = [this, mail, name](Result<SeekResult> result) {
+        if (!result) {
+            return answer(mail, within(result.error(), "to"));
         }
-        reply(laboratory_, world);
+        shown_.move_to(name, *std::move(result));
+        answer(mail, name);
     };
-    once_written(origin, [this, name, known_now, request, sought](bool all_is_written) {
-        const auto shown = replays_.find(name);
-        if (shown == replays_.end()) {
-            return sought(closed_since());
-        }
-        if (!seeking_.contains(request.owner)) {
-            return sought(owner_gone());
-        }
-        const replay::StoredRun& run = shown->second.run;
-        // The world may have begun a new run in the meantime. The replay still shows the run for which it was opened.
-        const simulation::Replay& seen = *entry_of(name)->replay;
-        replay::RecordedUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
-        if (all_is_written) {
-            known.generation = std::max(known.generation, known_now.generation);
-            known.tick = std::max(known.tick, known_now.tick);
-        }
-        const auto done = [this, name, replay_of = seen.replay_of, sought](Result<SeekResult> result) {
-            if (!result) {
-                return sought(within(result.error(), "to"));
-            }
-            const auto seen_from = replays_.find(name);
-            if (seen_from == replays_.end()) {
-                return sought(closed_since());
-            }
-            result->there.replay_of = replay_of;
-            move_to(*entry_of(name), seen_from->second, *std::move(result));
-            sought(name);
-        };
-        read_and_seek(run, request.to, known, request.owner, done, [this, name](std::uint64_t running) {
-            const auto shown_now = replays_.find(name);
-            if (shown_now == replays_.end()) {
-                return false;
-            }
-            cancel(std::exchange(shown_now->second.running, running), superseded());
-            return true;
-        });
-    });
+    seeks_.begin(origin, {.session = mail.session,
+                          .moves = name,
+                          .run = *run, // the world may begin a new run; the replay still shows this one
+                          .to = request.to,
+                          .known = recorded_until(origin, run->run_id()),
+                          .shown = {.generation = seen.last_generation, .tick = seen.last_tick},
+                          .done = done});
+}
+
+void Replays::seek_for_fork(const std::string& world, std::uint64_t generation,
+                            std::function<void(Result<SeekResult>)> done) {
+    const auto run = run_of(world);
+    if (!run) {
+        return done(run.error());
+    }
+    seeks_.begin(world, {.run = *run,
+                         .to = replay::WantedMoment{.generation = generation, .tick = {}},
+                         .known = recorded_until(world, run->run_id()),
+                         .done = std::move(done)});
 }
 
 Result<std::string> Replays::close(const CloseReplay& request) {
-    const auto shown = replays_.find(request.world);
-    if (shown == replays_.end() || shown->second.owner == 0) {
+    if (!shown_.is_owned(request.world)) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "there is no such replay",
                        .violations = {{"world", "one that was opened with OpenReplay", request.world}},
                        .reason = base::Reason::WorldNotFound};
     }
-    cancel(shown->second.running, closed_since());
-    laboratory_.dismiss(request.world);
-    replays_.erase(shown);
+    shown_.close(request.world);
+    seeks_.cancel_of_replay(request.world);
     return request.world;
 }
 
-void Replays::close_all_of(std::uint64_t owner) {
-    std::erase_if(replays_, [&](const auto& item) {
-        if (item.second.owner != owner) {
-            return false;
-        }
-        laboratory_.dismiss(item.first);
-        return true;
-    });
-    opening_.erase(owner);
-    seeking_.erase(owner);
-    std::vector<SeekDone> cancelled;
-    std::erase_if(pending_, [&](auto& item) {
-        if (item.second.owner != owner) {
-            return false;
-        }
-        cancelled.push_back(std::move(item.second.done));
-        return true;
-    });
-    std::erase_if(seeks_, [&](RunningSeek& running) {
-        if (running.owner != owner) {
-            return false;
-        }
-        cancelled.push_back(std::move(running.done));
-        return true;
-    });
-    for (const SeekDone& done : cancelled) {
-        done(owner_gone());
+void Replays::forget(std::uint64_t session) {
+    seeks_.cancel_of_session(session);
+    for (const std::string& name : shown_.names(session)) {
+        shown_.close(name);
+        seeks_.cancel_of_replay(name);
     }
-}
-
-void Replays::follow(simulation::Entry& entry) {
-    if (const auto shown = replays_.find(entry.name); shown != replays_.end()) {
-        shown->second.changes.make_due(entry.world);
-    }
-}
-
-std::optional<Clock::time_point> Replays::refresh(Clock::time_point now) {
-    std::optional<Clock::time_point> next;
-    for (auto& [name, shown] : replays_) {
-        simulation::Entry& entry = *entry_of(name);
-        const bool at_its_end = entry.world.moment().tick >= entry.replay->last_tick;
-        if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || shown.being_read) {
-            continue;
-        }
-        if (now >= shown.refreshed + refresh_time) {
-            shown.refreshed = now;
-            read_new_records(name, shown);
-        }
-        const auto again = shown.refreshed + refresh_time;
-        next = next ? std::min(*next, again) : again;
-    }
-    return next;
-}
-
-void Replays::read_new_records(const std::string& name, Shown& shown) {
-    shown.being_read = true;
-    read_file([this, name, run = shown.run, after = shown.entries_read]() -> std::function<void()> {
-        return [this, name, records = base::within_memory([&] { return run.new_records(after); })] {
-            const auto shown_now = replays_.find(name);
-            if (shown_now == replays_.end()) {
-                return;
-            }
-            shown_now->second.being_read = false;
-            if (records) {
-                extend(*entry_of(name), shown_now->second, *records);
-            }
-        };
-    });
-}
-
-void Replays::read_file(std::function<std::function<void()>()> read) {
-    reader_.add([this, read = std::move(read)](const std::stop_token&) { mailbox_.push(CallMail{read()}); });
-}
-
-void Replays::extend(simulation::Entry& entry, Shown& shown, const replay::NewRecords& records) {
-    // If a seek has moved the replay since the records were requested, they may start after the end of its known
-    // records.
-    if (records.there.last_tick <= entry.replay->last_tick || records.after_entry > shown.entries_read) {
-        return;
-    }
-    if (!shown.changes.extend(records.path, records.changes)) {
-        return;
-    }
-    shown.entries_read = std::max(shown.entries_read, records.last_entry);
-    shown.changes.make_due(entry.world);
-    const std::string replay_of = entry.replay->replay_of;
-    entry.replay = records.there;
-    entry.replay->replay_of = replay_of;
 }
 
 } // namespace evod::runtime

@@ -5,6 +5,7 @@
 #include "server/log/log.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
+#include "server/protocol/queries.h"
 
 #include <algorithm>
 #include <memory>
@@ -57,7 +58,7 @@ bool changes_something(const simulation::Command& command) {
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
-                               std::optional<Replays::FileReplay> replay)
+                               std::optional<FileReplay> replay)
     : mailbox_{mailbox}
     , demand_{demand}
     , executor_{executor}
@@ -65,21 +66,20 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
-    , replays_{laboratory_, mailbox, executor, recorder} {
+    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
     if (replay) {
-        replays_.show(*std::move(replay));
+        replays_.shown().show(replay->name, replay->run, 0, std::move(replay->shown));
     }
 }
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
+    poll_storage();
     poll_mailbox();
     answer_queries();
     poll_demand();
-    poll_storage();
-    follow_worlds();
 
     // Paced live worlds come first, because their ticks are due at fixed times.
     std::optional<Clock::time_point> next;
@@ -117,7 +117,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
                (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
     };
     auto shares = std::ranges::count_if(laboratory_.entries(), [&](const auto& entry) { return wants_share(*entry); }) +
-                  (replays_.under_way() ? 1 : 0);
+                  (replays_.seeks().under_way() ? 1 : 0);
     const auto end_of_share = [&](std::optional<Clock::time_point> until) {
         const auto now = clock_.now();
         const auto share = until ? (*until - now) / std::max<std::ptrdiff_t>(shares--, 1) : slice;
@@ -136,19 +136,18 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
             at_latest(entry->control.speed ? track.due : clock_.now());
         }
     }
-    if (replays_.under_way()) {
+    if (replays_.seeks().under_way()) {
         // Seeks share the processor with worlds that cannot keep their pace.
         const auto end = end_of_share(in_time);
-        replays_.advance_seeks([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
+        replays_.seeks().advance([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }
-    announce_finished_seeks();
     if (const auto again = answer_queries()) { // answers queries until the next tick is due
         at_latest(*again);
     }
 
     const auto now = clock_.now();
-    if (const auto again = replays_.refresh(now)) {
+    if (const auto again = replays_.shown().refresh(now)) {
         at_latest(*again);
     }
     for (const auto& entry : laboratory_.entries()) {
@@ -162,9 +161,8 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     return next;
 }
 
-void SimulationLoop::announce_finished_seeks() {
-    follow_worlds(); // a finished seek may have opened a replay
-    for (const std::string& name : replays_.take_moved()) {
+void SimulationLoop::announce_moved_replays() {
+    for (const std::string& name : replays_.shown().take_moved()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
@@ -177,19 +175,27 @@ void SimulationLoop::announce_finished_seeks() {
 }
 
 void SimulationLoop::poll_mailbox() {
-    if (!mailbox_.pending()) {
-        return;
+    replays_.seeks().finish();
+    if (mailbox_.pending()) {
+        mail_ = mailbox_.drain(std::move(mail_));
+        for (Mail& mail : mail_) {
+            std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
+                                        [this](QueryMail& query) { queries_.push_back(std::move(query)); },
+                                        [this](FindRun& run) { replays_.find_run(run); },
+                                        [this](ReplayMail& request) { replays_.apply(request); },
+                                        [this](SessionEnded& ended) {
+                                            std::erase_if(queries_, [&](const QueryMail& query) {
+                                                return query.session == ended.session;
+                                            });
+                                            replays_.forget(ended.session);
+                                        },
+                                        [](CallMail& call) { call.call(); }},
+                       mail);
+        }
+        mail_.clear();
     }
-    mail_ = mailbox_.drain(std::move(mail_));
-    for (Mail& mail : mail_) {
-        std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
-                                    [this](QueryMail& query) { queries_.push_back(std::move(query)); },
-                                    [](CallMail& call) { call.call(); },
-                                    [this](ReplayMail& past) { replays_.apply(std::move(past)); },
-                                    [this](FindRun& run) { replays_.find_run(run); }},
-                   mail);
-    }
-    mail_.clear();
+    follow_worlds();
+    announce_moved_replays();
 }
 
 std::optional<Clock::time_point> SimulationLoop::answer_queries() {
@@ -213,8 +219,7 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
             query_budget_.spend(now - began);
         }
         if (mailbox_.pending()) {
-            poll_mailbox();  // commands do not wait for queries
-            follow_worlds(); // a command may have created a world
+            poll_mailbox(); // commands do not wait for queries
             woken = true;
         }
     }
@@ -222,18 +227,20 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
 }
 
 void SimulationLoop::answer_query() {
-    const QueryMail query = std::move(queries_.front());
+    QueryDone done{.mail = std::move(queries_.front()), .response = {}, .result = {}};
     queries_.pop_front();
-    query.ask(laboratory_);
+    const QueryMail& query = done.mail;
+    done.response.set_request_id(query.request->request_id());
+    done.result = protocol::answer_query(*query.request, laboratory_, query.users_only, done.response);
+    outputs_.reply(std::move(done));
 }
 
 bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
-    return replays_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+    return replays_.seeks().under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
                if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
                }
-               const auto track = tracks_.find(entry->name);
-               return !entry->control.speed || track == tracks_.end() || track->second.due <= now;
+               return !entry->control.speed || tracks_.find(entry->name)->second.due <= now;
            });
 }
 
@@ -330,7 +337,7 @@ void SimulationLoop::fork(CommandMail& mail) {
     // The seek runs in slices, so that the thread can serve other clients meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    replays_.begin_seek(origin->name, generation, [this, waiting, before](base::Result<Replays::SeekResult> arrival) {
+    replays_.seek_for_fork(origin->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
         if (arrival) {
             return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
@@ -355,7 +362,7 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
     if (recorder_ && applied && changes_something(done.mail.command)) {
         record(std::move(done), before);
     } else {
-        outputs_.done(std::move(done));
+        outputs_.reply(std::move(done));
     }
 }
 
@@ -380,14 +387,14 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
     if (entry && (*entry)->replay) {
-        return outputs_.done(std::move(done)); // commands to replays are not stored in the journal
+        return outputs_.reply(std::move(done)); // commands to replays are not stored in the journal
     }
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,
                                     .answer = done.frame};
     // After the command was written to the disk, the storage thread passes it on.
-    record.done = [hand_on = outputs_.done, done = std::move(done)]() mutable { hand_on(std::move(done)); };
+    record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
     switch (effect) {
     case RunEffect::Begins:
         return recorder_->begin(**entry, std::move(record));
@@ -441,7 +448,7 @@ void SimulationLoop::poll_storage() {
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,
-               std::to_string(recording::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
+               std::to_string(recording::DiskState::waiting_bytes_max >> 20) + " MiB wait to be written"};
     }
     const simulation::Storage before = *laboratory_.storage();
     if (now == before) {
@@ -523,7 +530,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
                 track.recorder->follow(entry.world);
             }
             if (entry.replay) {
-                replays_.follow(entry);
+                replays_.shown().follow(entry);
             }
             ++taken;
             stopped = !entry.wants_tick();

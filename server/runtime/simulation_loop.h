@@ -1,7 +1,7 @@
 // Simulation loop: pass() is one pass of the simulation thread. The loop owns the laboratory and decides when each
 // world advances. The laboratory decides what happens in a tick.
 //
-//   commands → queries → state of the disk → paced worlds that are due → worlds at full speed and replays, a slice each
+//   state of the disk → commands → queries → paced worlds that are due → worlds at full speed and replays, a slice each
 //   → seeks of replays, a slice → queries → events and snapshots into the outbox → sleep until the next world is due
 //
 // Pace         a world with the speed factor f simulates a tick every tick_s / f. A late world catches up by at most
@@ -22,6 +22,7 @@
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
 #include "server/runtime/replays.h"
+#include "server/runtime/replies.h"
 #include "server/runtime/snapshot.h"
 #include "server/simulation/laboratory.h"
 
@@ -38,9 +39,9 @@ namespace evod::runtime {
 struct LoopOutputs {
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
     std::function<void(SnapshotPtr)> snapshot;
-    /// Receives a command that was refused, or that was applied and stored if runs are stored. Also called on the
-    /// storage thread.
-    std::function<void(CommandDone)> done = [](CommandDone) {};
+    /// Receives the replies. The reply to a command comes once the command was refused, or was applied and stored if
+    /// runs are stored. Also called on the storage thread.
+    std::function<void(Reply)> reply = [](Reply) {};
     /// Receives a new state of the disk.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
     /// The metrics of each live world. Must outlive the loop; nullptr: no metrics.
@@ -66,13 +67,14 @@ class SimulationLoop {
     /// replay      a replay that is shown from the start.
     SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                    simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
-                   std::optional<Replays::FileReplay> replay = {});
+                   std::optional<FileReplay> replay = {});
 
     /// Handles the mail and advances each world that is due by about one slice. Returns the time at which the next pass
     /// is due if no mail arrives; nullopt: no pass is due before mail arrives.
     std::optional<Clock::time_point> pass();
 
-    /// Applies the commands in the mailbox, and queues the queries for answer_queries().
+    /// Finishes the seeks that have reached their moments, applies the commands in the mailbox, and queues the queries
+    /// for answer_queries(). Then follows all worlds: nothing else creates or deletes one.
     void poll_mailbox();
     /// Handles the remaining mail and closes the recorder. Called when the server shuts down.
     void close();
@@ -126,7 +128,7 @@ class SimulationLoop {
     CommandDone done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const;
     /// Writes an applied command to the journal.
     void record(CommandDone done, const std::optional<RunBefore>& before);
-    void announce_finished_seeks();
+    void announce_moved_replays();
     void poll_demand();
     void poll_storage();
     /// Whether the world must wait for the disk.

@@ -8,7 +8,7 @@ namespace evod::runtime {
 
 SimulationThread::SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                    LoopOutputs outputs, simulation::Laboratory laboratory,
-                                   recording::Recorder* recorder, std::optional<Replays::FileReplay> replay)
+                                   recording::Recorder* recorder, std::optional<FileReplay> replay)
     : mailbox_{mailbox}
     , recorder_{recorder}
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}

@@ -16,7 +16,7 @@ class SimulationThread {
     /// Starts the thread. All arguments must outlive it.
     SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                      LoopOutputs outputs, simulation::Laboratory laboratory = {},
-                     recording::Recorder* recorder = nullptr, std::optional<Replays::FileReplay> replay = {});
+                     recording::Recorder* recorder = nullptr, std::optional<FileReplay> replay = {});
     ~SimulationThread() { stop(); }
 
     /// Ends the thread after it has handled the remaining mail.

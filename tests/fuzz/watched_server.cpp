@@ -104,7 +104,7 @@ WatchedServer::WatchedServer()
     , dispatcher_{context_,
                   mailbox_,
                   outbox_,
-                  demand_,
+                  sessions_,
                   streams_,
                   limit_counters_,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
@@ -115,7 +115,7 @@ WatchedServer::WatchedServer()
             clock(),
             {.events = streams_.outlet(outbox_),
              .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
-             .done = [this](runtime::CommandDone command) { done(std::move(command)); }}} {
+             .reply = [this](runtime::Reply reply) { check_reply(std::move(reply)); }}} {
     drawn = 0;
     host_.limits = network::limits_message({});
     host_.instance_id = "fuzz";
@@ -175,7 +175,8 @@ void WatchedServer::watch_mail() {
                     base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large");
                 const v1::Response answer =
                     protocol::answer_of(command->origin.request_id, command->request_name, loop_.laboratory(), refused);
-                outbox_.done({.mail = std::move(*command), .outcome = refused, .frame = protocol::frame_of(answer)});
+                outbox_.reply(runtime::CommandDone{
+                    .mail = std::move(*command), .outcome = refused, .frame = protocol::frame_of(answer)});
                 continue;
             }
             mailbox_.push(runtime::CallMail{[this] { state_before_ = state_of_all(); }});
@@ -184,13 +185,15 @@ void WatchedServer::watch_mail() {
     }
 }
 
-void WatchedServer::done(runtime::CommandDone done) {
-    if (done.outcome) {
-        follow(done.mail.command, *done.outcome);
-    } else {
-        require(state_of_all() == state_before_);
+void WatchedServer::check_reply(runtime::Reply reply) {
+    if (const auto* done = std::get_if<runtime::CommandDone>(&reply)) {
+        if (done->outcome) {
+            follow(done->mail.command, *done->outcome);
+        } else {
+            require(state_of_all() == state_before_);
+        }
     }
-    outbox_.done(std::move(done));
+    outbox_.reply(std::move(reply));
 }
 
 std::string WatchedServer::state_of_all() const {

@@ -44,7 +44,8 @@ class WatchedServer {
   private:
     /// Records the state of the worlds before each command that waits.
     void watch_mail();
-    void done(runtime::CommandDone done);
+    /// Checks the effect of a command and passes the reply on.
+    void check_reply(runtime::Reply reply);
     void follow(const simulation::Command& command, const simulation::Applied& applied);
     /// Advances the twin to the world's tick.
     simulation::Entry& catch_up(const simulation::Entry& entry);

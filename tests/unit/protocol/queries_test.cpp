@@ -35,7 +35,7 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
     v1::Request request;
     request.mutable_get_population()->set_first_organism(1);
     v1::Response response;
-    const QueryRows rows = answer_query(request, laboratory, false, response);
+    const QueryResult rows = answer_query(request, laboratory, false, response);
     EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
     EXPECT_EQ(std::get<PopulationRows>(rows).first, 1);
     put_rows(rows, response);
@@ -55,6 +55,26 @@ TEST_F(Queries, ThatFailNameTheirField) {
     EXPECT_EQ(response.status().code(), v1::CODE_NOT_FOUND);
     EXPECT_EQ(response.status().violations(0).field(), "get_organism.island");
     EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
+}
+
+TEST_F(Queries, OfSubscriptionsAndLeasesFindTheirWorld) {
+    v1::Request request;
+    v1::Response response;
+    const auto found = [&] { return std::get<FoundWorld>(answer_query(request, laboratory, false, response)); };
+    request.mutable_subscribe_snapshots()->set_island(2);
+    EXPECT_EQ(found().name, "w") << "the only world";
+    EXPECT_EQ(found().island_count, 3u);
+    request.mutable_renew_lease()->set_world("w");
+    EXPECT_EQ(found().name, "w");
+    request.mutable_subscribe_events()->set_world("w");
+    EXPECT_EQ(found().name, "w");
+    request.mutable_subscribe_events()->clear_world();
+    EXPECT_EQ(found().name, "") << "all worlds";
+    EXPECT_FALSE(response.has_status());
+    request.mutable_subscribe_snapshots()->set_island(3);
+    EXPECT_EQ(answer(request).status().violations(0).field(), "subscribe_snapshots.island");
+    request.mutable_renew_lease()->set_world("other");
+    EXPECT_EQ(answer(request).status().code(), v1::CODE_NOT_FOUND);
 }
 
 TEST_F(Queries, OfAViewerShowNoProgramsOfOthers) {

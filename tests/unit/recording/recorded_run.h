@@ -99,7 +99,7 @@ class RecordedRun {
 
     /// Creates the world "fork", a fork of the present moment.
     void fork(
-        const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        const simulation::RunId& run_id, Done done = [] {}) {
         v1::Request request;
         request.mutable_fork_world()->set_world("w");
         request.mutable_fork_world()->set_name("fork");
@@ -111,7 +111,7 @@ class RecordedRun {
 
     /// Resets the world; the new run has a file of its own.
     void reset(
-        base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        base::Seed seed, const simulation::RunId& run_id, Done done = [] {}) {
         const simulation::RunId before = entry().run_id;
         const std::uint64_t tick = world().moment().tick;
         v1::Request request;
@@ -122,7 +122,7 @@ class RecordedRun {
     }
 
     void command(
-        v1::Request request, StorageThread::Done done = [] {}) {
+        v1::Request request, Done done = [] {}) {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
@@ -133,7 +133,7 @@ class RecordedRun {
         recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
     }
 
-    void delete_world(StorageThread::Done done = [] {}) {
+    void delete_world(Done done = [] {}) {
         v1::Request request;
         request.mutable_delete_world()->set_world("w");
         const simulation::RunId run_id = entry().run_id;
@@ -148,7 +148,7 @@ class RecordedRun {
         request.set_request_id(++requests_);
         return request;
     }
-    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, StorageThread::Done done) {
+    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, Done done) {
         if (request.client_key().empty()) {
             with_key(request);
         }

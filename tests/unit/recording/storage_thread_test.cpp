@@ -71,14 +71,14 @@ TEST_F(StorageThreadTest, TheOldestWaitingRecordDeterminesTheAge) {
     {
         StorageThread thread{{.vfs = failing_disk()}, 1h};
         RecordedRun run{data, thread};
-        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
+        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }));
         const auto since = thread.waiting_since();
         ASSERT_TRUE(since);
         EXPECT_LE(*since, std::chrono::steady_clock::now());
-        const std::size_t bytes = thread.waiting_bytes();
+        const std::size_t bytes = thread.disk().waiting_bytes();
         run.command(set_parameter("food_health", 1.0));
         EXPECT_EQ(thread.waiting_since(), since);
-        EXPECT_GT(thread.waiting_bytes(), bytes);
+        EXPECT_GT(thread.disk().waiting_bytes(), bytes);
     }
     fail_operation(0, Failure::Full);
 }
@@ -97,19 +97,20 @@ TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
         if (another) {
             std::ofstream{path} << "another file";
         }
-        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // the name is checked once a second
+        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }, // the name is checked once a second
                                [&] {
                                    command();
                                    std::this_thread::sleep_for(10ms);
                                }));
-        EXPECT_THAT(*thread.trouble(), testing::HasSubstr(path + (another ? " is not the file that the server writes"
-                                                                          : " has been moved or deleted")));
+        EXPECT_THAT(*thread.disk().trouble(),
+                    testing::HasSubstr(
+                        path + (another ? " is not the file that the server writes" : " has been moved or deleted")));
         const int at_trouble = written;
         command();
         std::this_thread::sleep_for(20ms);
         EXPECT_EQ(written, at_trouble) << "done is not called while the file is lost";
         std::filesystem::rename(away, path);
-        ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && !thread.trouble(); }));
+        ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && !thread.disk().trouble(); }));
     }
     EXPECT_EQ((*RunFile::open_read_only(path))->journal().read()->size(), static_cast<std::size_t>(value));
 }
@@ -125,7 +126,7 @@ TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
         fail_operation(1, Failure::Gone); // and all after it
         bool late = false;
         run.command(set_parameter("food_health", 2.0), [&] { late = true; });
-        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
+        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }));
         run.command(set_parameter("food_health", 3.0), [&] { late = true; });
         EXPECT_FALSE(late);
     }
@@ -145,7 +146,7 @@ TEST_F(StorageThreadTest, ItIsIdleOnceEverythingIsWritten) {
     run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
     written.get_future().wait();
     ASSERT_TRUE(wait_until([&] { return !thread.waiting_since(); }));
-    EXPECT_EQ(thread.waiting_bytes(), 0u);
+    EXPECT_EQ(thread.disk().waiting_bytes(), 0u);
 }
 
 TEST_F(StorageThreadTest, EachOfSeveralResetsEndsTheRunBefore) {
@@ -433,8 +434,8 @@ TEST_F(StorageThreadTest, AfterAKillTheFileHasExactlyWhatWasAnswered) {
                 return [&] { ++written; };
             };
             const auto wait = [&] {
-                EXPECT_TRUE(wait_until([&] { return written == asked || thread.trouble(); }));
-                return !thread.trouble();
+                EXPECT_TRUE(wait_until([&] { return written == asked || thread.disk().trouble(); }));
+                return !thread.disk().trouble();
             };
             const auto advance = [&] {
                 for (int tick = 0; tick < 70; ++tick) {

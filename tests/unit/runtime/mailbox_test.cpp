@@ -4,64 +4,63 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace evod::runtime {
 namespace {
 
-Mail note(std::vector<int>& read, int number) {
-    return QueryMail{[&read, number](const simulation::Laboratory&) { read.push_back(number); }};
+Mail note(const char* text) {
+    return CommandMail{.command = {}, .origin = {}, .request_name = text};
 }
 
-void read_all(std::vector<Mail> mail) {
-    const simulation::Laboratory laboratory;
-    for (Mail& one : mail) {
-        std::get<QueryMail>(one).ask(laboratory);
+std::vector<std::string> texts_of(const std::vector<Mail>& mail) {
+    std::vector<std::string> texts;
+    for (const Mail& one : mail) {
+        texts.push_back(std::get<CommandMail>(one).request_name);
     }
+    return texts;
 }
 
 TEST(Mailbox, ReturnsMailInOrder) {
     Mailbox mailbox;
-    std::vector<int> read;
     EXPECT_FALSE(mailbox.pending());
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_TRUE(mailbox.try_push(note(read, i)));
+    for (const char* text : {"first", "second", "third"}) {
+        EXPECT_TRUE(mailbox.try_push(note(text)));
     }
     EXPECT_TRUE(mailbox.pending());
-    read_all(mailbox.drain());
-    EXPECT_EQ(read, (std::vector{0, 1, 2}));
+    EXPECT_EQ(texts_of(mailbox.drain()), (std::vector<std::string>{"first", "second", "third"}));
     EXPECT_FALSE(mailbox.pending());
     EXPECT_TRUE(mailbox.drain().empty());
 }
 
 TEST(Mailbox, RefusesMailBeyondItsCapacity) {
     Mailbox mailbox{2};
-    std::vector<int> read;
-    EXPECT_TRUE(mailbox.try_push(note(read, 0)));
-    EXPECT_TRUE(mailbox.try_push(note(read, 1)));
-    Mail third = note(read, 2);
+    EXPECT_TRUE(mailbox.try_push(note("first")));
+    EXPECT_TRUE(mailbox.try_push(note("second")));
+    Mail third = note("third");
     EXPECT_FALSE(mailbox.try_push(std::move(third)));
-    EXPECT_TRUE(std::get<QueryMail>(third).ask) << "refused mail is unchanged";
-    read_all(mailbox.drain());
+    EXPECT_EQ(std::get<CommandMail>(third).request_name, "third") << "refused mail is unchanged";
+    EXPECT_EQ(texts_of(mailbox.drain()), (std::vector<std::string>{"first", "second"}));
     EXPECT_TRUE(mailbox.try_push(std::move(third)));
-    read_all(mailbox.drain());
-    EXPECT_EQ(read, (std::vector{0, 1, 2}));
+    EXPECT_EQ(texts_of(mailbox.drain()), std::vector<std::string>{"third"});
 }
 
 TEST(Mailbox, WakesTheWaitingThread) {
     Mailbox mailbox;
-    std::vector<int> read;
+    std::vector<std::string> read;
     std::thread waiting{[&] {
         mailbox.wait(std::nullopt); // for mail
-        read_all(mailbox.drain());
+        read = texts_of(mailbox.drain());
         mailbox.wait(std::nullopt); // for a call
         EXPECT_TRUE(mailbox.drain().empty());
     }};
-    mailbox.try_push(note(read, 1));
+    mailbox.try_push(note("mail"));
     EXPECT_TRUE(wait_until([&] { return !mailbox.pending(); }));
     mailbox.wake();
     waiting.join();
-    EXPECT_EQ(read, (std::vector{1}));
+    EXPECT_EQ(read, std::vector<std::string>{"mail"});
     mailbox.wait(Clock::time_point{}); // a time that has passed
 }
 

@@ -21,14 +21,14 @@ TEST(Outbox, KeepsAnswersAndEventsInOneOrder) {
     outbox.event([&] { order.push_back(2); });
     outbox.answer([&] { order.push_back(3); });
     EXPECT_EQ(woken, 1) << "once until it is taken";
-    outbox.done({.mail = {}, .outcome = simulation::Applied{}, .frame = "answer"});
+    outbox.reply(CommandDone{.mail = {}, .outcome = simulation::Applied{}, .frame = "answer"});
     const auto taken = outbox.take().deliveries;
     ASSERT_EQ(taken.size(), 4);
     for (std::size_t i = 0; i < 3; ++i) {
         std::get<Call>(taken[i])();
     }
     EXPECT_EQ(order, (std::vector{1, 2, 3}));
-    EXPECT_EQ(std::get<CommandDone>(taken[3]).frame, "answer");
+    EXPECT_EQ(std::get<CommandDone>(std::get<Reply>(taken[3])).frame, "answer");
     EXPECT_TRUE(outbox.take().deliveries.empty());
     outbox.answer([] {});
     EXPECT_EQ(woken, 2);

@@ -18,6 +18,8 @@
 #include <fstream>
 #include <functional>
 #include <future>
+#include <map>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -34,6 +36,14 @@ simulation::CreateWorld create(const char* name, std::uint64_t seed = 1) {
     return command;
 }
 
+/// A query for the list of the worlds.
+QueryMail query(std::uint64_t session = 1) {
+    v1::Request request;
+    request.set_request_id(1);
+    request.mutable_list_worlds();
+    return {.session = session, .request = std::make_shared<const v1::Request>(std::move(request))};
+}
+
 class Loop : public testing::Test {
   protected:
     Loop()
@@ -46,14 +56,24 @@ class Loop : public testing::Test {
                         events.insert(events.end(), reported.begin(), reported.end());
                     },
                 .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
-                .done =
-                    [this](CommandDone done) {
-                        EXPECT_TRUE(done.outcome) << to_text(done.outcome.error());
-                        answers.push_back(std::move(done));
+                .reply =
+                    [this](Reply reply) {
+                        if (auto* done = std::get_if<CommandDone>(&reply)) {
+                            EXPECT_TRUE(done->outcome) << to_text(done->outcome.error());
+                            answers.push_back(std::move(*done));
+                        } else if (const auto* answered = std::get_if<QueryDone>(&reply)) {
+                            on_query(answered->response);
+                        }
                     },
                 .counted = &counted}} {}
 
     void send(simulation::Command command) { mailbox.try_push(CommandMail{std::move(command), {}, "command"}); }
+    /// Sends queries. The simulation calls on_query() while it answers them.
+    void send_queries(int count) {
+        for (int i = 0; i < count; ++i) {
+            mailbox.push(query());
+        }
+    }
     const simulation::Entry& world(std::string_view name = "") { return **loop.laboratory().find(name); }
     std::uint64_t tick(std::string_view name = "") { return world(name).world.moment().tick; }
     void watch(const char* name, double rate_hz, std::uint64_t newcomers = 1) {
@@ -75,6 +95,7 @@ class Loop : public testing::Test {
     std::vector<simulation::Event> events;
     std::vector<SnapshotPtr> snapshots;
     std::vector<CommandDone> answers;
+    std::function<void(const v1::Response&)> on_query = [](const v1::Response&) {};
     metrics::Worlds counted;
     SimulationLoop loop;
 };
@@ -214,33 +235,25 @@ TEST_F(Loop, APacedWorldKeepsItsPaceBesideAFastOne) {
     EXPECT_GT(tick("busy"), 3000);
 }
 
-/// A client that always has a query waiting, each taking `cost`.
-class Asker {
-  public:
-    Asker(Mailbox& mailbox, support::ManualClock& clock, Clock::duration cost)
-        : mailbox_{mailbox}, clock_{clock}, cost_{cost} {
-        ask();
+/// Always has a query waiting, each taking 4 ms.
+class LoopWithAsker : public Loop {
+  protected:
+    void begin_asking() {
+        on_query = [this](const v1::Response&) {
+            ++answered;
+            clock.advance(4ms);
+            send_queries(1);
+        };
+        send_queries(1);
     }
     int answered = 0;
-
-  private:
-    void ask() {
-        mailbox_.push(QueryMail{[this](const Laboratory&) {
-            ++answered;
-            clock_.advance(cost_);
-            ask();
-        }});
-    }
-    Mailbox& mailbox_;
-    support::ManualClock& clock_;
-    const Clock::duration cost_;
 };
 
-TEST_F(Loop, QueriesGetAllIdleTime) {
+TEST_F(LoopWithAsker, QueriesGetAllIdleTime) {
     send(create("w"));
     send(simulation::Run{"w", {}});
     loop.pass();
-    const Asker asker{mailbox, clock, 4ms};
+    begin_asking();
     const auto began = clock.now();
     auto next = loop.pass();
     while (clock.now() - began < 2s) {
@@ -250,47 +263,45 @@ TEST_F(Loop, QueriesGetAllIdleTime) {
         next = loop.pass();
     }
     EXPECT_NEAR(static_cast<double>(tick()), 201, 2);
-    EXPECT_NEAR(asker.answered, 500, 10) << "no world needed the time";
+    EXPECT_NEAR(answered, 500, 10) << "no world needed the time";
     EXPECT_FALSE(world().slowed);
 }
 
-TEST_F(Loop, QueriesCostAFastWorldOnlyAShareOfTheTime) {
+TEST_F(LoopWithAsker, QueriesCostAFastWorldOnlyAShareOfTheTime) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
     clock.per_look = 100us; // the length of a tick
     loop.pass();
-    const Asker asker{mailbox, clock, 4ms};
+    begin_asking();
     const auto began = clock.now();
     while (clock.now() - began < 2s) {
         loop.pass();
     }
-    EXPECT_NEAR(asker.answered * 4.0, 2000.0 / QueryBudget::share, 12);
+    EXPECT_NEAR(answered * 4.0, 2000.0 / QueryBudget::share, 12);
 }
 
 TEST_F(Loop, CommandsDoNotWaitForQueries) {
     send(create("w"));
     loop.pass();
-    std::vector<std::string> order;
-    for (const char* name : {"first", "second"}) {
-        mailbox.push(QueryMail{[&, name](const Laboratory& laboratory) {
-            order.emplace_back(name);
-            if (order.size() == 1) {
-                send(simulation::Run{"w", {}});
-            } else {
-                EXPECT_TRUE((*laboratory.find("w"))->wants_tick());
-            }
-        }});
-    }
+    std::vector<bool> running;
+    on_query = [&](const v1::Response&) {
+        running.push_back(world("w").wants_tick());
+        if (running.size() == 1) {
+            send(simulation::Run{"w", {}});
+        }
+    };
+    send_queries(2);
     loop.pass();
-    EXPECT_EQ(order, (std::vector<std::string>{"first", "second"}));
+    EXPECT_EQ(running, (std::vector{false, true}));
 }
 
 TEST_F(Loop, FollowsAWorldThatIsCreatedBetweenQueries) {
     send(create("w"));
     watch("late", 60);
     loop.pass();
-    mailbox.push(QueryMail{[&](const Laboratory&) { send(create("late", 2)); }});
+    on_query = [&](const v1::Response&) { send(create("late", 2)); };
+    send_queries(1);
     loop.pass();
     ASSERT_EQ(snapshots.size(), 1u);
     EXPECT_EQ(snapshots[0]->world, "late");
@@ -302,13 +313,19 @@ TEST_F(Loop, AWakeUpDuringQueriesCausesAnotherPass) {
     loop.pass();
     snapshots.clear();
     clock.advance(10ms);
-    mailbox.push(QueryMail{[&](const Laboratory&) { clock.advance(40ms); }}); // more than the saved budget
-    mailbox.push(QueryMail{[&](const Laboratory&) {                           // so the next waits for the due ticks
-        EXPECT_GT(tick(), 1u);
+    int answered = 0;
+    on_query = [&](const v1::Response& response) {
+        if (++answered == 1) {
+            clock.advance(40ms); // more than the saved budget, so the next query waits for the due ticks
+            return;
+        }
+        EXPECT_GT(response.worlds().worlds(0).tick(), 1u);
         watch("w", 60);
         mailbox.wake();
-    }});
+    };
+    send_queries(2);
     const auto next = loop.pass();
+    EXPECT_EQ(answered, 2);
     EXPECT_TRUE(snapshots.empty());
     ASSERT_TRUE(next);
     EXPECT_LE(*next, clock.now());
@@ -321,17 +338,26 @@ TEST_F(Loop, PendingQueriesAreAnsweredAtTheEnd) {
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
     int answered = 0;
-    for (int i = 0; i < 50; ++i) {
-        mailbox.push(QueryMail{[&](const Laboratory&) {
-            ++answered;
-            clock.advance(100ms);
-        }});
-    }
+    on_query = [&](const v1::Response&) {
+        ++answered;
+        clock.advance(100ms);
+    };
+    send_queries(50);
     clock.per_look = 100us;
     loop.pass();
     EXPECT_LT(answered, 50);
     loop.close();
     EXPECT_EQ(answered, 50);
+}
+
+TEST_F(Loop, TheQueryOfASessionThatEndedIsDropped) {
+    int answered = 0;
+    on_query = [&](const v1::Response&) { ++answered; };
+    mailbox.push(query(1));
+    mailbox.push(query(2));
+    mailbox.push(SessionEnded{1});
+    loop.pass();
+    EXPECT_EQ(answered, 1);
 }
 
 TEST_F(Loop, MeasuresTicksPerSecond) {
@@ -614,36 +640,41 @@ TEST(SimulationThread, ReproducesTheHash) {
     demand.set({{"w", WorldDemand{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
     base::InlineExecutor executor;
     SteadyClock clock;
+    std::optional<std::promise<v1::WorldInfo>> seen; // set before a query is sent
     SimulationThread thread{mailbox,
                             demand,
                             executor,
                             clock,
                             {.events = [](const Laboratory&, std::vector<simulation::Event>) {},
                              .snapshot = [](SnapshotPtr) {},
-                             .done = [](const CommandDone& done) { EXPECT_TRUE(done.outcome); }}};
+                             .reply =
+                                 [&](const Reply& reply) {
+                                     if (const auto* done = std::get_if<CommandDone>(&reply)) {
+                                         EXPECT_TRUE(done->outcome);
+                                     } else {
+                                         seen->set_value(std::get<QueryDone>(reply).response.worlds().worlds(0));
+                                     }
+                                 }}};
     const auto send = [&](simulation::Command command) {
         ASSERT_TRUE(mailbox.try_push(CommandMail{std::move(command), {}, "command"}));
     };
     const auto look = [&] {
-        std::promise<std::pair<std::uint64_t, base::StateHash>> seen;
-        mailbox.try_push(QueryMail{[&](const Laboratory& laboratory) {
-            const auto& world = (*laboratory.find("w"))->world;
-            seen.set_value({world.moment().tick, world.hash()});
-        }});
-        return seen.get_future().get();
+        auto info = seen.emplace().get_future();
+        mailbox.push(query());
+        return info.get();
     };
     send(create_for_comparison());
     send(simulation::SetSpeed{"w", {}});
     for (const std::uint64_t at : changes) {
         send(simulation::RunUntilTick{"w", at});
-        while (look().first < at) {
+        while (look().tick() < at) {
         }
         send(simulation::SetParameters{"w", {change_at(at)}, false, {}});
     }
     send(simulation::RunUntilTick{"w", last_tick});
-    while (look().first < last_tick) {
+    while (look().tick() < last_tick) {
     }
-    EXPECT_EQ(look().second, hash_of_a_world_advanced_directly());
+    EXPECT_EQ(look().state_hash(), to_text(hash_of_a_world_advanced_directly()));
 }
 
 TEST_F(Loop, SlowTicksGetCheckpointsThatChangeNothing) {
@@ -689,13 +720,13 @@ TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
     recording::Recorder recorder{*data, thread};
     Mailbox letters;
     std::string said; // of the last command; refusals come at once, on this thread
-    const auto on_done = [&](const CommandDone& done) {
-        if (!done.outcome) {
-            said = to_text(done.outcome.error());
+    const auto on_reply = [&](const Reply& reply) {
+        if (const auto& outcome = std::get<CommandDone>(reply).outcome; !outcome) {
+            said = to_text(outcome.error());
         }
     };
     SimulationLoop kept{
-        letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}, .done = on_done},
+        letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}, .reply = on_reply},
         {},      &recorder};
     const auto apply = [&](simulation::Command command) {
         said.clear();
@@ -746,10 +777,16 @@ class LoopWithDisk : public Loop {
                clock,
                {.events = [](auto&&...) {},
                 .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
+                .reply =
+                    [this](const Reply& reply) {
+                        if (const auto* done = std::get_if<ReplayDone>(&reply)) {
+                            waiting.extract(done->mail.request_id).mapped()(done->world);
+                        }
+                    },
                 .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); }},
                {},
                &recorder} {
-        thread.when_changed([this] { ++news; });
+        thread.disk().when_changed([this] { ++news; });
         clock.per_look = 100us; // so that slices end
     }
     ~LoopWithDisk() override { give_back(); }
@@ -781,6 +818,13 @@ class LoopWithDisk : public Loop {
         ask(std::move(request));
     }
 
+    /// replied  called with the name of the replay.
+    void ask(decltype(ReplayMail::request) request, std::uint64_t session,
+             std::function<void(const base::Result<std::string>&)> replied) {
+        waiting.emplace(++requests, std::move(replied));
+        mailbox.push(ReplayMail{.request = std::move(request), .session = session, .request_id = requests});
+    }
+
     /// Opens a replay of a paused world with 300 ticks. Returns its name.
     std::string look_at_the_past_of_a_run() {
         ask_create("long");
@@ -790,8 +834,7 @@ class LoopWithDisk : public Loop {
         pause.mutable_pause()->set_world("long");
         ask(std::move(pause));
         std::string look;
-        mailbox.push(ReplayMail{OpenReplay{.world = "long", .at = {}, .owner = 1},
-                                [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+        ask(OpenReplay{.world = "long", .at = {}}, 1, [&](const base::Result<std::string>& name) { look = *name; });
         pass_until([&] { return !look.empty(); });
         return look;
     }
@@ -835,6 +878,7 @@ class LoopWithDisk : public Loop {
     std::vector<simulation::StorageState> reported;
     std::atomic<int> news = 0;
     std::uint64_t requests = 0;
+    std::map<std::uint64_t, std::function<void(const base::Result<std::string>&)>> waiting; // key: request id
     recording::StorageThread thread;
     recording::Recorder recorder;
     SimulationLoop kept;
@@ -845,11 +889,10 @@ TEST_F(LoopWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     ask_run("w");
     pass_until([&] { return tick("w") > 300; });
     std::string look;
-    mailbox.push(ReplayMail{OpenReplay{.world = "w", .at = {}, .owner = 1},
-                            [&](const Laboratory&, const base::Result<std::string>& name) {
-                                ASSERT_TRUE(name) << to_text(name.error());
-                                look = *name;
-                            }});
+    ask(OpenReplay{.world = "w", .at = {}}, 1, [&](const base::Result<std::string>& name) {
+        ASSERT_TRUE(name) << to_text(name.error());
+        look = *name;
+    });
     pass_until([&] { return !look.empty(); });
     make_crowd();
     pass_until([&] { return thread.idle(); });
@@ -891,15 +934,15 @@ TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
     pass_until([&] { return tick("w") > 300; });
     std::size_t answered = 0, opened = 0;
     const auto open = [&](std::uint64_t owner) {
-        mailbox.push(ReplayMail{OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
-                                [&](const Laboratory&, const base::Result<std::string>& name) {
-                                    ++answered;
-                                    opened += name ? 1 : 0;
-                                }});
+        ask(OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}}, owner,
+            [&](const base::Result<std::string>& name) {
+                ++answered;
+                opened += name ? 1 : 0;
+            });
     };
     open(1);
     open(1);
-    mailbox.push(ReplayMail{OwnerGone{1}, {}});
+    mailbox.push(SessionEnded{1});
     pass_until([&] { return answered == 2; });
     EXPECT_EQ(opened, 0u);
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
@@ -908,7 +951,7 @@ TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
     }
     pass_until([&] { return answered == 2 + Replays::replays_max + 1; });
     EXPECT_EQ(opened, Replays::replays_max) << "replays being opened are counted";
-    mailbox.push(ReplayMail{OwnerGone{2}, {}});
+    mailbox.push(SessionEnded{2});
     kept.pass();
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
 }
@@ -934,8 +977,7 @@ TEST_F(LoopWithDisk, SeeksToTheEndOfARunShowItsState) {
     ask_run("quick");
     pass_until([&] { return tick("quick") > 30; });
     std::string look;
-    mailbox.push(ReplayMail{OpenReplay{.world = "quick", .at = {}, .owner = 1},
-                            [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+    ask(OpenReplay{.world = "quick", .at = {}}, 1, [&](const base::Result<std::string>& name) { look = *name; });
     pass_until([&] { return !look.empty(); });
 
     struct Shown {
@@ -944,8 +986,7 @@ TEST_F(LoopWithDisk, SeeksToTheEndOfARunShowItsState) {
     };
     const auto shown_at = [&](const replay::WantedMoment& to, bool and_change) {
         std::optional<base::Result<std::string>> answer;
-        mailbox.push(ReplayMail{Seek{.world = look, .to = to, .owner = 1},
-                                [&](const Laboratory&, const base::Result<std::string>& name) { answer = name; }});
+        ask(Seek{.world = look, .to = to}, 1, [&](const base::Result<std::string>& name) { answer = name; });
         if (and_change) {
             v1::Request change;
             change.mutable_set_parameters()->set_world("quick");
@@ -976,17 +1017,16 @@ TEST_F(LoopWithDisk, SeeksEndWithTheirOwnerOrReplay) {
     const std::string look = look_at_the_past_of_a_run();
     std::vector<base::Result<std::string>> answers;
     const auto seek = [&](std::uint64_t tick) {
-        mailbox.push(
-            ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = tick}, .owner = 2},
-                       [&](const Laboratory&, const base::Result<std::string>& name) { answers.push_back(name); }});
+        ask(Seek{.world = look, .to = {.generation = {}, .tick = tick}}, 2,
+            [&](const base::Result<std::string>& name) { answers.push_back(name); });
     };
     seek(299);
-    mailbox.push(ReplayMail{OwnerGone{2}, {}});
+    mailbox.push(SessionEnded{2});
     pass_until([&] { return answers.size() == 1; });
     EXPECT_FALSE(answers[0]);
     EXPECT_EQ(tick(look), 0u) << "the seek ended with its owner";
     seek(299);
-    mailbox.push(ReplayMail{CloseReplay{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
+    ask(CloseReplay{look}, 2, [](const base::Result<std::string>&) {});
     pass_until([&] { return answers.size() == 2; });
     EXPECT_FALSE(answers[1]);
 }
@@ -1004,11 +1044,11 @@ TEST_F(LoopWithDisk, APacedWorldKeepsItsPaceDuringSeeks) {
     while (seeks < 6 || on_the_way || clock.now() - began < 1s) {
         if (!on_the_way) {
             on_the_way = true;
-            mailbox.push(ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}},
-                                    [&](const Laboratory&, const base::Result<std::string>& there) {
-                                        EXPECT_TRUE(there);
-                                        on_the_way = false;
-                                    }});
+            ask(Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}}, 1,
+                [&](const base::Result<std::string>& there) {
+                    EXPECT_TRUE(there);
+                    on_the_way = false;
+                });
         }
         kept.pass();
     }
@@ -1037,11 +1077,10 @@ TEST_F(LoopWithDisk, ASeekFinishesWhateverElseRuns) {
     };
     const auto seek = [&](std::uint64_t to) {
         bool on_the_way = true;
-        mailbox.push(ReplayMail{Seek{.world = look, .to = {.generation = {}, .tick = to}},
-                                [&](const Laboratory&, const base::Result<std::string>& there) {
-                                    EXPECT_TRUE(there);
-                                    on_the_way = false;
-                                }});
+        ask(Seek{.world = look, .to = {.generation = {}, .tick = to}}, 1, [&](const base::Result<std::string>& there) {
+            EXPECT_TRUE(there);
+            on_the_way = false;
+        });
         pass_until([&] { return !on_the_way; });
     };
     clock.per_look = 50us;
@@ -1090,11 +1129,10 @@ TEST_F(LoopWithDisk, AReplayAtTheStartOfTroubleShowsWhatIsWritten) {
     ask_create("other");
     ask_create("another");
     bool answered = false;
-    mailbox.push(ReplayMail{OpenReplay{.world = "other", .at = {}, .owner = 1},
-                            [&](const Laboratory&, const base::Result<std::string>& name) {
-                                EXPECT_FALSE(name) << "its file could not be created";
-                                answered = true;
-                            }});
+    ask(OpenReplay{.world = "other", .at = {}}, 1, [&](const base::Result<std::string>& name) {
+        EXPECT_FALSE(name) << "its file could not be created";
+        answered = true;
+    });
     pass_until([&] { return answered; });
     EXPECT_EQ(state(), simulation::StorageState::Failing);
     // Two files that cannot be created are one failure, however often the disk is retried.

@@ -1,0 +1,41 @@
+// Disk state: whether run files can be written, and how many bytes wait to be written.
+//
+// Backpressure   if at least `waiting_bytes_max` bytes wait, has_room() is false and the caller produces no records.
+// Threads        any. The storage thread changes the state, and calls the callback of when_changed().
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace evod::recording {
+
+class DiskState {
+  public:
+    static constexpr std::size_t waiting_bytes_max = 64 << 20;
+
+    /// Size of the data that waits to be written, without checkpoints.
+    std::size_t waiting_bytes() const { return waiting_bytes_.load(std::memory_order_acquire); }
+    bool has_room() const { return waiting_bytes() < waiting_bytes_max; }
+    /// The reason why nothing can be written now; nullopt if writing works.
+    std::optional<std::string> trouble() const;
+    /// The storage thread calls `changed` when trouble() or has_room() has changed. `changed` must neither block nor
+    /// call this object. When this function returns, the previous callback is not called any more.
+    void when_changed(std::function<void()> changed);
+
+    void added(std::size_t bytes) { waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed); }
+    void written(std::size_t bytes);
+    /// why  empty: writing works.
+    void set_trouble(const std::string& why);
+
+  private:
+    std::atomic<std::size_t> waiting_bytes_ = 0;
+    mutable std::mutex mutex_; // guards the members below
+    std::string trouble_;
+    std::function<void()> when_changed_;
+};
+
+} // namespace evod::recording

@@ -1,0 +1,86 @@
+// Record queue: the records on their way from the simulation thread to the storage thread.
+//
+// Group commit   a record with a `done` is taken at once, together with all records that wait. Without one, the storage
+//                thread takes everything that arrived within `gathering_time`.
+// Full           the records have no bound here: DiskState counts their bytes.
+// Threads        the simulation thread adds records. The storage thread takes them, and the results of jobs.
+#pragma once
+
+#include "server/recording/run_log.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace evod::recording {
+
+/// The records that were added and that the storage thread has not taken yet.
+struct HandedOver {
+    std::map<RunNumber, RunLog> new_runs;
+    std::map<RunNumber, std::vector<WaitingRecord>> records;
+    std::map<RunNumber, Closing> closing;
+    bool stopping = false; // the thread must end when everything is written
+};
+
+/// The result of a job for a run. The storage thread calls it, unless the run has ended.
+struct JobResult {
+    RunNumber run = 0;
+    std::function<void(RunLog&)> apply;
+};
+
+class RecordQueue {
+  public:
+    static constexpr std::chrono::milliseconds gathering_time{200};
+    /// A larger amount is committed at once, so that a command that arrives meanwhile waits for a smaller transaction.
+    static constexpr std::size_t gathered_bytes_max = 256 << 10;
+
+    /// Adds a run with its first records, and the end of the run that it replaces. The storage thread takes either all
+    /// of this or nothing.
+    RunNumber add_run(RunLog run, std::vector<WaitingRecord> records,
+                      std::optional<std::pair<RunNumber, Closing>> old = std::nullopt);
+    void add(RunNumber run, std::vector<WaitingRecord> records);
+    void close(RunNumber run, Closing closing);
+    void stop();
+    /// The time since which the oldest waiting record has waited; nullopt if none waits.
+    std::optional<std::chrono::steady_clock::time_point> waiting_since() const;
+
+    /// Waits for records, results or stop(), then removes and returns the records that are due.
+    ///
+    /// more         does not wait for work, because other work is left.
+    /// retry_after  if set, waits for this time, because a write has failed.
+    /// jobs_run     jobs are running, whose results must be awaited before the thread ends.
+    HandedOver take(bool more, std::optional<std::chrono::milliseconds> retry_after, bool jobs_run);
+    /// Called when all records that were taken are written.
+    void all_written();
+    /// Whether a record with a `done` waits.
+    bool is_urgent() const;
+    bool is_empty() const;
+
+    void add_result(JobResult result);
+    /// wait  waits until there is a result.
+    std::vector<JobResult> take_results(bool wait);
+
+    /// The number of waiting checkpoints and running jobs, plus 1 while the storage thread works.
+    std::atomic<std::size_t> unfinished = 1;
+
+  private:
+    /// Returns whether the storage thread must be woken. The caller must hold mutex_.
+    bool enqueue(RunNumber run, std::vector<WaitingRecord> records);
+
+    mutable std::mutex mutex_; // guards the members below
+    std::condition_variable changed_;
+    HandedOver handed_over_;
+    std::vector<JobResult> results_;
+    // The time of the oldest record in handed_over_; of the oldest record that was taken but not written yet.
+    std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
+    RunNumber last_number_ = 0;
+    bool urgent_ = false;
+};
+
+} // namespace evod::recording

@@ -1,0 +1,118 @@
+#include "server/runtime/shown_replays.h"
+
+#include "server/base/within_memory.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace evod::runtime {
+
+simulation::Entry& ShownReplays::entry_of(const std::string& name) {
+    return **laboratory_.find(name);
+}
+
+void ShownReplays::show(const std::string& name, const replay::StoredRun& run, std::uint64_t owner, SeekResult result) {
+    simulation::RunControl control;
+    control.endless = control.paused = true;
+    const replay::ComingChanges& changes = result.rerun.changes();
+    replays_.emplace(name, Shown{run, changes, changes.last_entry(), owner, {}});
+    laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
+        name, run.run_id(), control, std::move(result.rerun).take(), 0, false, std::move(result.there)}));
+    (void)entry_of(name).world.take_events(); // discard the events that the seek caused
+}
+
+void ShownReplays::move_to(const std::string& name, SeekResult result) {
+    Shown& shown = replays_.find(name)->second;
+    simulation::Entry& entry = entry_of(name);
+    shown.changes = result.rerun.changes();
+    shown.entries_read = shown.changes.last_entry();
+    shown.refreshed = {};
+    result.there.replay_of = entry.replay->replay_of;
+    entry.world = std::move(result.rerun).take();
+    entry.replay = std::move(result.there);
+    (void)entry.world.take_events(); // discard the events that the seek caused
+    moved_.push_back(name);
+}
+
+void ShownReplays::close(const std::string& name) {
+    laboratory_.dismiss(name);
+    replays_.erase(name);
+}
+
+const replay::StoredRun* ShownReplays::run_of(const std::string& name) const {
+    const auto shown = replays_.find(name);
+    return shown == replays_.end() ? nullptr : &shown->second.run;
+}
+
+bool ShownReplays::is_owned(const std::string& name) const {
+    const auto shown = replays_.find(name);
+    return shown != replays_.end() && shown->second.owner != 0;
+}
+
+std::vector<std::string> ShownReplays::names(std::optional<std::uint64_t> owner) const {
+    std::vector<std::string> names;
+    for (const auto& [name, shown] : replays_) {
+        if (!owner || shown.owner == *owner) {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
+void ShownReplays::follow(simulation::Entry& entry) {
+    if (const auto shown = replays_.find(entry.name); shown != replays_.end()) {
+        shown->second.changes.make_due(entry.world);
+    }
+}
+
+std::optional<Clock::time_point> ShownReplays::refresh(Clock::time_point now) {
+    std::optional<Clock::time_point> next;
+    for (auto& [name, shown] : replays_) {
+        const simulation::Entry& entry = entry_of(name);
+        const bool at_its_end = entry.world.moment().tick >= entry.replay->last_tick;
+        if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || shown.being_read) {
+            continue;
+        }
+        if (now >= shown.refreshed + refresh_time) {
+            shown.refreshed = now;
+            read_new_records(name, shown);
+        }
+        const auto again = shown.refreshed + refresh_time;
+        next = next ? std::min(*next, again) : again;
+    }
+    return next;
+}
+
+void ShownReplays::read_new_records(const std::string& name, Shown& shown) {
+    shown.being_read = true;
+    reader_.read([this, name, run = shown.run, after = shown.entries_read]() -> std::function<void()> {
+        return [this, name, records = base::within_memory([&] { return run.new_records(after); })] {
+            const auto shown_now = replays_.find(name);
+            if (shown_now == replays_.end()) {
+                return;
+            }
+            shown_now->second.being_read = false;
+            if (records) {
+                extend(entry_of(name), shown_now->second, *records);
+            }
+        };
+    });
+}
+
+void ShownReplays::extend(simulation::Entry& entry, Shown& shown, const replay::NewRecords& records) {
+    // If a seek has moved the replay since the records were requested, they may start after the end of its known
+    // records.
+    if (records.there.last_tick <= entry.replay->last_tick || records.after_entry > shown.entries_read) {
+        return;
+    }
+    if (!shown.changes.extend(records.path, records.changes)) {
+        return;
+    }
+    shown.entries_read = std::max(shown.entries_read, records.last_entry);
+    shown.changes.make_due(entry.world);
+    const std::string replay_of = entry.replay->replay_of;
+    entry.replay = records.there;
+    entry.replay->replay_of = replay_of;
+}
+
+} // namespace evod::runtime
