@@ -150,7 +150,7 @@ class Connection::Io {
     std::deque<evod::v1::Event> events_;
     std::uint64_t events_dropped_ = 0;
     std::map<SubscriptionHandle, evod::v1::Response> answers_;
-    std::map<SubscriptionHandle, std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>> snapshots_;
+    std::map<SubscriptionHandle, std::map<std::uint32_t, std::shared_ptr<const codec::ReceivedSnapshot>>> snapshots_;
 
     /// Removes and returns the oldest event. If events were lost, first returns an EventsDropped. The caller holds the
     /// mutex.
@@ -514,7 +514,7 @@ class Connection::Io {
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
         share([&] {
             const std::uint32_t island = decoded->about.island();
-            snapshots_[handle][island] = std::make_shared<const codec::DecodedSnapshot>(*std::move(decoded));
+            snapshots_[handle][island] = std::make_shared<const codec::ReceivedSnapshot>(*std::move(decoded));
         });
     }
 
@@ -658,8 +658,8 @@ Result<evod::v1::Response> Connection::wait_subscribed(SubscriptionHandle handle
                  .what = "no reply to the subscription within " + std::to_string(timeout.count()) + " ms"};
 }
 
-std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
-                                                                        std::uint32_t island) {
+std::shared_ptr<const codec::ReceivedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
+                                                                         std::uint32_t island) {
     const std::lock_guard lock{io_->mutex_};
     const auto islands = io_->snapshots_.find(handle);
     if (islands == io_->snapshots_.end()) {
@@ -669,8 +669,8 @@ std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(Subscrip
     return newest == islands->second.end() ? nullptr : islands->second.extract(newest).mapped();
 }
 
-std::vector<std::shared_ptr<const codec::DecodedSnapshot>> Connection::take_snapshots(SubscriptionHandle handle) {
-    std::vector<std::shared_ptr<const codec::DecodedSnapshot>> taken;
+std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> Connection::take_snapshots(SubscriptionHandle handle) {
+    std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> taken;
     const std::lock_guard lock{io_->mutex_};
     if (const auto islands = io_->snapshots_.find(handle); islands != io_->snapshots_.end()) {
         for (auto& [island, snapshot] : std::exchange(islands->second, {})) {
