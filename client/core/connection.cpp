@@ -248,8 +248,8 @@ Result<evod::v1::Response> Connection::wait_subscribed(SubscriptionHandle handle
                  .what = "no reply to the subscription within " + std::to_string(timeout.count()) + " ms"};
 }
 
-std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
-                                                                        std::uint32_t island) {
+std::shared_ptr<const codec::ReceivedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
+                                                                         std::uint32_t island) {
     const auto lock = io_->lock();
     const auto islands = io_->received().snapshots.find(handle);
     auto taken =
@@ -257,8 +257,8 @@ std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(Subscrip
     return taken ? std::move(taken.mapped()) : nullptr;
 }
 
-std::vector<std::shared_ptr<const codec::DecodedSnapshot>> Connection::take_snapshots(SubscriptionHandle handle) {
-    std::vector<std::shared_ptr<const codec::DecodedSnapshot>> taken;
+std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> Connection::take_snapshots(SubscriptionHandle handle) {
+    std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> taken;
     const auto lock = io_->lock();
     if (auto islands = io_->received().snapshots.extract(handle)) {
         for (auto& [island, snapshot] : islands.mapped()) {

@@ -78,9 +78,9 @@ class Connection {
 
     /// Returns the newest snapshot of an island; null if there is none, or if it was already taken. Its run_id and
     /// state_hash are hexadecimal digits, as in a WorldInfo.
-    std::shared_ptr<const codec::DecodedSnapshot> take_snapshot(SubscriptionHandle handle, std::uint32_t island = 0);
+    std::shared_ptr<const codec::ReceivedSnapshot> take_snapshot(SubscriptionHandle handle, std::uint32_t island = 0);
     /// Returns the newest snapshot of each island, in ascending order of islands; omits islands without a new one.
-    std::vector<std::shared_ptr<const codec::DecodedSnapshot>> take_snapshots(SubscriptionHandle handle);
+    std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> take_snapshots(SubscriptionHandle handle);
 
     /// Returns all events since the last call, oldest first.
     std::vector<evod::v1::Event> take_events();

@@ -102,7 +102,7 @@ std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, Connecti
         // The same format as in WorldInfo and Event, so that the values can be compared.
         decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
-        snapshots_[known->first][island] = std::make_shared<const codec::DecodedSnapshot>(*std::move(decoded));
+        snapshots_[known->first][island] = std::make_shared<const codec::ReceivedSnapshot>(*std::move(decoded));
     } else {
         ++status.damaged_snapshot_count;
         status.last_damage = decoded.error().what;

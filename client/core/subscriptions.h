@@ -16,7 +16,7 @@ namespace evod::core {
 
 using Answers = std::map<SubscriptionHandle, evod::v1::Response>;
 /// The newest snapshot of each island.
-using IslandSnapshots = std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>;
+using IslandSnapshots = std::map<std::uint32_t, std::shared_ptr<const codec::ReceivedSnapshot>>;
 using Snapshots = std::map<SubscriptionHandle, IslandSnapshots>;
 
 class Subscriptions {

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "proto/codec/column.h"
+#include "proto/codec/steps.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace evod::codec {
 
@@ -18,6 +21,22 @@ struct Entities {
     Column x, y;
     Column width;  // organisms: radius; boxes: half width
     Column height; // organisms: health; boxes: half height
+
+    // The values of entity i.
+    std::uint32_t id_of(std::size_t i) const { return id.empty() ? static_cast<std::uint32_t>(i) : id[i]; }
+    float x_px(std::size_t i) const { return px_of(x[i]); }
+    float y_px(std::size_t i) const { return px_of(y[i]); }
+    float radius_px(std::size_t i) const { return px_of(width[i]); }
+    float health(std::size_t i) const { return px_of(height[i]); }
+    float half_width_px(std::size_t i) const { return px_of(width[i]); }
+    float half_height_px(std::size_t i) const { return px_of(height[i]); }
+
+    /// The index of the entity with this id; nullopt if there is none. Requires the column `id`.
+    std::optional<std::size_t> index_of(std::uint32_t wanted) const {
+        const auto place = std::ranges::lower_bound(id, wanted);
+        return place != id.end() && *place == wanted ? std::optional{static_cast<std::size_t>(place - id.begin())}
+                                                     : std::nullopt;
+    }
     friend bool operator==(const Entities&, const Entities&) = default;
 };
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -28,7 +28,7 @@ void set_ids(const Column& column, Ids& to) {
 void set_values(const Column& column, Floats& to) {
     to.Reserve(static_cast<int>(column.size()));
     for (const std::uint32_t steps : column) {
-        to.AddAlreadyReserved(static_cast<float>(steps) * (1 / steps_per_px));
+        to.AddAlreadyReserved(px_of(steps));
     }
 }
 
@@ -45,47 +45,46 @@ void set_boxes(const Entities& boxes, evod::v1::PlainBoxes& to) {
     set_values(boxes.height, *to.mutable_half_height_px());
 }
 
-/// Copies the columns of one kind and checks each. After the first error, all further columns are empty.
-class PlainReader {
-  public:
-    PlainReader(const char* kind, std::uint32_t count) : kind_{kind}, count_{count} {}
-
-    std::vector<std::uint32_t> ids(const Ids& column) {
-        if (has_count("id", column.size()) &&
-            std::adjacent_find(column.begin(), column.end(), std::greater_equal<>{}) != column.end()) {
-            refuse("id", "out of order", "rising");
-        }
-        return damage_ ? std::vector<std::uint32_t>{} : std::vector<std::uint32_t>{column.begin(), column.end()};
-    }
-    std::vector<float> values(const char* field, const Floats& column) {
-        if (has_count(field, column.size())) {
-            const auto bad =
-                std::find_if(column.begin(), column.end(), [](float value) { return !std::isfinite(value); });
-            if (bad != column.end()) {
-                refuse(field, std::to_string(*bad), "a finite number");
-            }
-        }
-        return damage_ ? std::vector<float>{} : std::vector<float>{column.begin(), column.end()};
-    }
-    const std::optional<Damage>& damage() const { return damage_; }
-
-  private:
-    bool has_count(const char* field, int size) {
-        if (static_cast<std::uint32_t>(size) != count_) {
-            refuse(field, std::to_string(size) + " numbers long", std::to_string(count_) + " as the count says");
-        }
-        return !damage_;
-    }
-    void refuse(const char* field, const std::string& got, const std::string& allowed) {
-        if (!damage_) {
-            damage_ = wrong(std::string{"plain."} + kind_ + "." + field, got, allowed);
-        }
-    }
-
-    const char* kind_;
-    std::uint32_t count_;
-    std::optional<Damage> damage_;
+struct PlainColumn {
+    const char* field;
+    const Floats& from;
+    Column Entities::*to;
 };
+
+/// Quantises the columns of one kind and checks each. Returns the first invalid field, if any.
+///
+/// ids  nullptr: this kind has no ids.
+std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Ids* ids,
+                                 std::initializer_list<PlainColumn> columns, Entities& to) {
+    const auto refused = [&](const std::string& field, const std::string& got, const std::string& allowed) {
+        return wrong("plain." + kind + "." + field, got, allowed);
+    };
+    const auto other_count = [&](const std::string& field, int size) {
+        return refused(field, std::to_string(size) + " numbers long", std::to_string(count) + " as the count says");
+    };
+    if (ids != nullptr) {
+        if (static_cast<std::uint32_t>(ids->size()) != count) {
+            return other_count("id", ids->size());
+        }
+        if (std::adjacent_find(ids->begin(), ids->end(), std::greater_equal<>{}) != ids->end()) {
+            return refused("id", "out of order", "rising");
+        }
+        to.id.assign(ids->begin(), ids->end());
+    }
+    for (const PlainColumn& column : columns) {
+        const Floats& from = column.from;
+        if (static_cast<std::uint32_t>(from.size()) != count) {
+            return other_count(column.field, from.size());
+        }
+        const auto bad = std::find_if(from.begin(), from.end(), [](float value) { return !std::isfinite(value); });
+        if (bad != from.end()) {
+            return refused(column.field, std::to_string(*bad), "a finite number");
+        }
+        (to.*column.to).resize(count);
+        std::transform(from.begin(), from.end(), (to.*column.to).begin(), steps_of);
+    }
+    return std::nullopt;
+}
 
 } // namespace
 
@@ -146,7 +145,7 @@ std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {
     return std::nullopt;
 }
 
-Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
+Result<ReceivedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
     if (frame.codec() != evod::v1::CODEC_PLAIN) {
         return wrong("codec", std::to_string(frame.codec()), "a known one");
     }
@@ -154,50 +153,42 @@ Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
         return *std::move(damage);
     }
     const evod::v1::PlainSnapshot& plain = frame.plain();
-    DecodedSnapshot snapshot;
-    std::optional<Damage> damage;
-    const auto read = [&](const char* kind, std::uint32_t count, const auto& columns) {
-        PlainReader reader{kind, count};
-        columns(reader);
+    auto entities = std::make_shared<QuantisedSnapshot>();
+    entities->position_bytes = position_bytes_of(frame.width_px(), frame.height_px());
+    const evod::v1::PlainOrganisms& organisms = plain.organisms();
+    std::optional<Damage> damage = read_plain("organisms", frame.organism_count(), &organisms.id(),
+                                              {{"x_px", organisms.x_px(), &Entities::x},
+                                               {"y_px", organisms.y_px(), &Entities::y},
+                                               {"radius_px", organisms.radius_px(), &Entities::width},
+                                               {"health", organisms.health(), &Entities::height}},
+                                              entities->organisms);
+    const auto read_items = [&](const char* kind, std::uint32_t count, const evod::v1::PlainItems& from, Entities& to) {
         if (!damage) {
-            damage = reader.damage();
+            damage = read_plain(kind, count, &from.id(),
+                                {{"x_px", from.x_px(), &Entities::x}, {"y_px", from.y_px(), &Entities::y}}, to);
         }
     };
-    read("organisms", frame.organism_count(), [&](PlainReader& reader) {
-        const evod::v1::PlainOrganisms& from = plain.organisms();
-        snapshot.organisms = {reader.ids(from.id()), reader.values("x_px", from.x_px()),
-                              reader.values("y_px", from.y_px()), reader.values("radius_px", from.radius_px()),
-                              reader.values("health", from.health())};
-    });
-    const auto read_items = [&](const char* kind, std::uint32_t count, const evod::v1::PlainItems& from,
-                                DecodedItems& to) {
-        read(kind, count, [&](PlainReader& reader) {
-            to = {reader.ids(from.id()), reader.values("x_px", from.x_px()), reader.values("y_px", from.y_px())};
-        });
+    read_items("food", frame.food_count(), plain.food(), entities->food);
+    read_items("poison", frame.poison_count(), plain.poison(), entities->poison);
+    const auto read_boxes = [&](const char* kind, std::uint32_t count, const evod::v1::PlainBoxes& from, Entities& to) {
+        if (!damage) {
+            damage = read_plain(kind, count, nullptr,
+                                {{"x_px", from.x_px(), &Entities::x},
+                                 {"y_px", from.y_px(), &Entities::y},
+                                 {"half_width_px", from.half_width_px(), &Entities::width},
+                                 {"half_height_px", from.half_height_px(), &Entities::height}},
+                                to);
+        }
     };
-    read_items("food", frame.food_count(), plain.food(), snapshot.food);
-    read_items("poison", frame.poison_count(), plain.poison(), snapshot.poison);
-    const auto read_boxes = [&](const char* kind, std::uint32_t count, const evod::v1::PlainBoxes& from,
-                                DecodedBoxes& to) {
-        read(kind, count, [&](PlainReader& reader) {
-            to = {.x_px = reader.values("x_px", from.x_px()),
-                  .y_px = reader.values("y_px", from.y_px()),
-                  .half_width_px = reader.values("half_width_px", from.half_width_px()),
-                  .half_height_px = reader.values("half_height_px", from.half_height_px())};
-            to.id.resize(to.x_px.size());
-            std::iota(to.id.begin(), to.id.end(), 0U);
-        });
-    };
-    read_boxes("crates", frame.crate_count(), plain.crates(), snapshot.crates);
-    read_boxes("obstacles", frame.obstacle_count(), plain.obstacles(), snapshot.obstacles);
+    read_boxes("crates", frame.crate_count(), plain.crates(), entities->crates);
+    read_boxes("obstacles", frame.obstacle_count(), plain.obstacles(), entities->obstacles);
     if (damage) {
         return *std::move(damage);
     }
     frame.clear_plain();
     frame.clear_body(); // the body has no meaning with this codec, nor have the tiles
     frame.clear_tiles();
-    snapshot.about = std::move(frame);
-    return snapshot;
+    return ReceivedSnapshot{.about = std::move(frame), .entities = std::move(entities), .tiles = {}};
 }
 
 } // namespace evod::codec

@@ -1,4 +1,4 @@
-// Snapshot codec: decoded snapshots, and the codec CODEC_PLAIN. stream.proto describes the message.
+// Snapshot codec: received snapshots, and the codec CODEC_PLAIN. stream.proto describes the message.
 //
 // The server encodes a snapshot once for all viewers, and the clients decode it. The input of the encoder must be
 // valid. The decoder checks everything.
@@ -12,6 +12,7 @@
 #include "proto/codec/result.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,19 +24,6 @@ void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame)
 
 /// Sets codec, counts and `plain` of `frame`. The snapshot must be of a whole island.
 void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
-
-struct DecodedOrganisms {
-    std::vector<std::uint32_t> id; // in rising order
-    std::vector<float> x_px, y_px, radius_px, health;
-};
-struct DecodedItems {
-    std::vector<std::uint32_t> id; // in rising order
-    std::vector<float> x_px, y_px;
-};
-struct DecodedBoxes {
-    std::vector<float> x_px, y_px, half_width_px, half_height_px;
-    std::vector<std::uint32_t> id{}; // index on the island, in rising order
-};
 
 /// A tile at DETAIL_DOTS. Positions are in 1/256 of its side.
 struct DecodedDots {
@@ -61,21 +49,19 @@ struct DecodedTile {
     DecodedDensity density;         // set at DETAIL_DENSITY
 };
 
-/// One snapshot of one island in px, for drawing. All columns of a struct have the same length, and all numbers are
-/// finite.
-struct DecodedSnapshot {
+/// One snapshot of one island, as a client stores and draws it.
+struct ReceivedSnapshot {
     evod::v1::SnapshotFrame about; // all fields of the frame except body, tiles and plain
-    // With a View, each kind contains the entities of all tiles at DETAIL_FULL.
-    DecodedOrganisms organisms;
-    DecodedItems food, poison;
-    DecodedBoxes crates, obstacles;
-    std::vector<DecodedTile> tiles; // with a View: the visible tiles, in order of their indices
+    // Never null. The decoder of CODEC_DELTA shares these columns. With a View, each kind contains the entities of all
+    // tiles at DETAIL_FULL.
+    std::shared_ptr<const QuantisedSnapshot> entities = std::make_shared<const QuantisedSnapshot>();
+    std::vector<DecodedTile> tiles{}; // with a View: the visible tiles, in order of their indices
 };
 
 /// Returns the first invalid field, if any, among those that do not contain entities. Applies to all codecs.
 std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame);
 
 /// Decodes a frame with CODEC_PLAIN. Damage names the invalid field.
-Result<DecodedSnapshot> decode_plain(evod::v1::SnapshotFrame frame);
+Result<ReceivedSnapshot> decode_plain(evod::v1::SnapshotFrame frame);
 
 } // namespace evod::codec

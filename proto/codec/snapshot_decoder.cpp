@@ -2,10 +2,8 @@
 
 #include "proto/codec/compression.h"
 #include "proto/codec/framing.h"
-#include "proto/codec/steps.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,41 +23,6 @@ Result<std::string> content_of(std::string body, evod::v1::Compression compressi
     default:
         return Damage{"a snapshot's compression is " + std::to_string(compression) + ", not a known one"};
     }
-}
-
-std::vector<float> in_px(Numbers steps) {
-    std::vector<float> values(steps.size());
-    std::transform(steps.begin(), steps.end(), values.begin(),
-                   [](std::uint32_t step) { return static_cast<float>(step) * (1 / steps_per_px); });
-    return values;
-}
-
-std::vector<std::uint32_t> kept(const Column& column) {
-    return {column.begin(), column.end()};
-}
-
-DecodedBoxes boxes_of(const Entities& entities) {
-    DecodedBoxes boxes{.x_px = in_px(entities.x),
-                       .y_px = in_px(entities.y),
-                       .half_width_px = in_px(entities.width),
-                       .half_height_px = in_px(entities.height),
-                       .id = kept(entities.id)};
-    if (boxes.id.empty()) {
-        boxes.id.resize(entities.x.size());
-        std::iota(boxes.id.begin(), boxes.id.end(), 0U);
-    }
-    return boxes;
-}
-
-DecodedSnapshot decoded_snapshot(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame about) {
-    return {.about = std::move(about),
-            .organisms = {kept(snapshot.organisms.id), in_px(snapshot.organisms.x), in_px(snapshot.organisms.y),
-                          in_px(snapshot.organisms.width), in_px(snapshot.organisms.height)},
-            .food = {kept(snapshot.food.id), in_px(snapshot.food.x), in_px(snapshot.food.y)},
-            .poison = {kept(snapshot.poison.id), in_px(snapshot.poison.x), in_px(snapshot.poison.y)},
-            .crates = boxes_of(snapshot.crates),
-            .obstacles = boxes_of(snapshot.obstacles),
-            .tiles = {}};
 }
 
 Damage keyframe_needed() {
@@ -82,7 +45,7 @@ bool is_keyframe(const evod::v1::SnapshotFrame& frame) {
            std::ranges::all_of(frame.tiles(), [](const auto& tile) { return tile.base_sequence() == 0; });
 }
 
-Result<DecodedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
+Result<ReceivedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
     if (frame.codec() != evod::v1::CODEC_DELTA) {
         return decode_plain(std::move(frame));
     }
@@ -100,7 +63,7 @@ void SnapshotDecoder::forget() {
     tiles_.reset();
 }
 
-Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame frame) {
+Result<ReceivedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame frame) {
     const bool keyframe = frame.base_sequence() == 0;
     if (!keyframe && !whole_) {
         return keyframe_needed();
@@ -139,10 +102,10 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
     forget();
     snapshot_ = baseline->snapshot;
     whole_ = Whole{.baseline = *std::move(baseline), .about = frame};
-    return decoded_snapshot(*snapshot_, std::move(frame));
+    return ReceivedSnapshot{.about = std::move(frame), .entities = snapshot_, .tiles = {}};
 }
 
-Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame frame) {
+Result<ReceivedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame frame) {
     if (auto damage = damage_of_fields(frame)) {
         return *std::move(damage);
     }
@@ -230,9 +193,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
     tiles_ = std::move(next);
     frame.clear_body();
     frame.clear_tiles();
-    DecodedSnapshot decoded = decoded_snapshot(*snapshot_, std::move(frame));
-    decoded.tiles = std::move(visible);
-    return decoded;
+    return ReceivedSnapshot{.about = std::move(frame), .entities = snapshot_, .tiles = std::move(visible)};
 }
 
 } // namespace evod::codec

@@ -27,7 +27,7 @@ bool is_keyframe(const evod::v1::SnapshotFrame& frame);
 class SnapshotDecoder {
   public:
     /// Decodes a frame. After Damage, all deltas before the next keyframe are refused.
-    Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame);
+    Result<ReceivedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
     /// Whether the decoder needs a keyframe, because it has received none or because of damage.
     bool needs_keyframe() const { return !snapshot_; }
@@ -49,8 +49,8 @@ class SnapshotDecoder {
         TileLayout layout;
         std::map<std::uint32_t, Base> bases; // key: index of a tile that was at DETAIL_FULL in the last snapshot
     };
-    Result<DecodedSnapshot> decode_whole(evod::v1::SnapshotFrame frame);
-    Result<DecodedSnapshot> decode_tiles(evod::v1::SnapshotFrame frame);
+    Result<ReceivedSnapshot> decode_whole(evod::v1::SnapshotFrame frame);
+    Result<ReceivedSnapshot> decode_tiles(evod::v1::SnapshotFrame frame);
     void forget();
 
     std::shared_ptr<const QuantisedSnapshot> snapshot_;

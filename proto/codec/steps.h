@@ -10,6 +10,20 @@ namespace evod::codec {
 constexpr unsigned steps_per_px_log2 = 4;
 constexpr float steps_per_px = 1 << steps_per_px_log2;
 
+/// Converts steps to px, or to health. The result is exact below 2^24 steps. Steps are at most 2^31 - 1; processors
+/// convert signed numbers faster.
+inline float px_of(std::uint32_t steps) {
+    return static_cast<float>(static_cast<std::int32_t>(steps)) * (1 / steps_per_px);
+}
+
+/// Converts px or health to steps. The result is rounded to the nearest step and limited to the range.
+///
+/// px  must be finite.
+inline std::uint32_t steps_of(float px) {
+    constexpr double most = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::uint32_t>(std::clamp(double{px} * steps_per_px + 0.5, 0.0, most));
+}
+
 /// The number of bytes that a position needs on an island of this size: 2 or 4.
 inline std::uint32_t position_bytes_of(double width_px, double height_px) {
     return std::max(width_px, height_px) * steps_per_px <= 65535.0 ? 2 : 4;

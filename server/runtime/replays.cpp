@@ -127,9 +127,9 @@ void Replays::seek(const Seek& request, const ReplayMail& mail) {
     const replay::StoredRun* run = shown_.run_of(name);
     if (!run) {
         return answer(mail, Refusal{.code = RefusalCode::FailedPrecondition,
-                                    .message = "this world lives and cannot be taken to another moment: open its "
-                                               "run, as evoview and evoctl stats --at-generation do, or serve its "
-                                               "file with evod replay",
+                                    .message = "this world is live and cannot be moved to another moment: open a "
+                                               "replay of its run, as evoview and evoctl stats --at-generation do, or "
+                                               "serve its run file with evod replay",
                                     .violations = {},
                                     .reason = base::Reason::WorldIsLive});
     }

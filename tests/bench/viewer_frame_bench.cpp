@@ -47,29 +47,32 @@ namespace {
 constexpr double px2_per_organism = 46'080; // and 2.5 food and 1.5 poison each: the benchmark world
 constexpr std::chrono::milliseconds snapshot_interval{33};
 
-codec::DecodedItems items(std::size_t count, double width, double step) {
-    codec::DecodedItems all;
+codec::Entities items(std::size_t count, double width, double step) {
+    codec::Entities all;
+    const auto steps = [&](double px) { return codec::steps_of(static_cast<float>(std::fmod(px, width))); };
     for (std::size_t i = 0; i < count; ++i) {
         all.id.push_back(static_cast<std::uint32_t>(i));
-        all.x_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i) * step, width)));
-        all.y_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i) * step * 1.618, width)));
+        all.x.push_back(steps(static_cast<double>(i) * step));
+        all.y.push_back(steps(static_cast<double>(i) * step * 1.618));
     }
     return all;
 }
 
-std::shared_ptr<codec::DecodedSnapshot> snapshot_at(std::size_t organism_count, std::uint64_t tick) {
-    auto made = std::make_shared<codec::DecodedSnapshot>();
+std::shared_ptr<codec::ReceivedSnapshot> snapshot_at(std::size_t organism_count, std::uint64_t tick) {
+    auto made = std::make_shared<codec::ReceivedSnapshot>();
     const double width = std::sqrt(static_cast<double>(organism_count) * px2_per_organism);
     made->about.set_width_px(width);
     made->about.set_height_px(width);
     made->about.set_item_radius_px(4);
     made->about.set_tick(tick);
     made->about.set_simulated_s(static_cast<double>(tick) / 60);
-    made->food = items(organism_count * 5 / 2, width, 311.7);
-    made->poison = items(organism_count * 3 / 2, width, 173.3);
-    const auto places = items(organism_count, width, 97.1 + 0.0001 * static_cast<double>(tick));
-    made->organisms = {places.id, places.x_px, places.y_px, std::vector<float>(organism_count, 10.f),
-                       std::vector<float>(organism_count, 87.f)};
+    codec::QuantisedSnapshot entities;
+    entities.food = items(organism_count * 5 / 2, width, 311.7);
+    entities.poison = items(organism_count * 3 / 2, width, 173.3);
+    entities.organisms = items(organism_count, width, 97.1 + 0.0001 * static_cast<double>(tick));
+    entities.organisms.width.assign(organism_count, codec::steps_of(10));
+    entities.organisms.height.assign(organism_count, codec::steps_of(87));
+    made->entities = std::make_shared<const codec::QuantisedSnapshot>(std::move(entities));
     return made;
 }
 
@@ -92,7 +95,7 @@ void draw_frame(benchmark::State& state) {
     options.connection = no_server();
     Panes panes{wanted_of(options)};
     Pane& pane = panes.focused();
-    auto now = core::WorldView::Clock::now();
+    auto now = core::SnapshotInterpolator::Clock::now();
     std::uint64_t tick = 2;
     const std::array snapshots{snapshot_at(organism_count, 0), snapshot_at(organism_count, tick)};
     pane.world.feed.view().add(snapshots[0], now);

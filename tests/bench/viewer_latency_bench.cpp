@@ -28,7 +28,7 @@
 namespace evod::viewer {
 namespace {
 
-using Clock = core::WorldView::Clock;
+using Clock = core::SnapshotInterpolator::Clock;
 using Ms = std::chrono::duration<double, std::milli>;
 
 constexpr std::chrono::milliseconds frame_min{15}; // as in Screen

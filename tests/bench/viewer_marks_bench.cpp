@@ -15,36 +15,39 @@ namespace {
 
 constexpr double px2_per_organism = 46'080;
 
-std::shared_ptr<const codec::DecodedSnapshot> snapshot(std::size_t count, std::uint64_t tick) {
-    auto made = std::make_shared<codec::DecodedSnapshot>();
+std::shared_ptr<const codec::ReceivedSnapshot> snapshot(std::size_t count, std::uint64_t tick) {
+    auto made = std::make_shared<codec::ReceivedSnapshot>();
     const double width = std::sqrt(static_cast<double>(count) * px2_per_organism);
     made->about.set_width_px(width);
     made->about.set_height_px(width);
     made->about.set_tick(tick);
     made->about.set_generation(1);
     made->about.set_simulated_s(static_cast<double>(tick) / 60);
-    auto& all = made->organisms;
+    codec::QuantisedSnapshot entities;
+    codec::Entities& all = entities.organisms;
+    const auto steps = [&](double px) { return codec::steps_of(static_cast<float>(std::fmod(px, width))); };
     for (std::size_t i = 0; i < count; ++i) {
         all.id.push_back(static_cast<std::uint32_t>(i));
-        all.x_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i * 977 + tick) * 1.1, width)));
-        all.y_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i * 1583 + tick) * 1.7, width)));
+        all.x.push_back(steps(static_cast<double>(i * 977 + tick) * 1.1));
+        all.y.push_back(steps(static_cast<double>(i * 1583 + tick) * 1.7));
     }
-    all.radius_px.assign(count, 10);
-    all.health.assign(count, 87);
+    all.width.assign(count, codec::steps_of(10));
+    all.height.assign(count, codec::steps_of(87));
+    made->entities = std::make_shared<const codec::QuantisedSnapshot>(std::move(entities));
     return made;
 }
 
 struct Setting {
     explicit Setting(std::size_t count) : before{snapshot(count, 0)}, latest{snapshot(count, 15)} {
-        const auto start = core::WorldView::Clock::now();
+        const auto start = core::SnapshotInterpolator::Clock::now();
         view.add(before, start);
         view.add(latest, start + std::chrono::milliseconds{33});
         population.add(page_of(0, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count), 1, 6));
         camera.set_viewport({0, 0, 1280, 652});
         camera.set_island(latest->about.width_px(), latest->about.height_px());
     }
-    std::shared_ptr<const codec::DecodedSnapshot> before, latest;
-    core::WorldView view;
+    std::shared_ptr<const codec::ReceivedSnapshot> before, latest;
+    core::SnapshotInterpolator view;
     Population population{6};
     Camera camera;
 };
@@ -55,16 +58,16 @@ void frames(benchmark::State& state, Frame frame) {
     double blend = 0;
     for (auto _ : state) {
         blend = blend > 0.9 ? 0 : blend + 0.1;
-        const Positions& at = setting.view.organisms_at(blend);
+        const Positions at = setting.view.organisms_at(blend);
         frame(setting, at);
     }
 }
 
 void plain(benchmark::State& state) {
     std::vector<Shape> shapes;
-    frames(state, [&](Setting& setting, const Positions& at) {
+    frames(state, [&](Setting&, const Positions& at) {
         shapes.clear();
-        add_discs(at, setting.latest->organisms.radius_px, shapes);
+        add_discs(at, shapes);
         benchmark::DoNotOptimize(shapes.data());
     });
 }
@@ -76,16 +79,16 @@ void everything(benchmark::State& state) {
     std::vector<Line> ways;
     ColouredLines arrows, targets;
     frames(state, [&](Setting& setting, const Positions& at) {
-        const auto& organisms = setting.latest->organisms;
+        const codec::Entities& organisms = setting.latest->entities->organisms;
         const Rectangle seen = setting.camera.visible();
         shapes.clear(), rings.clear(), colours.clear(), ways.clear(), arrows.clear(), targets.clear();
-        add_discs(at, organisms.radius_px, shapes);
+        add_discs(at, shapes);
         add_gene_colours(organisms, setting.population, 3, gene_scale(setting.population, 3, palette::Ramp::Viridis),
                          colours);
-        add_radii(organisms, at, setting.population, 4, seen, rings);
-        add_radii(organisms, at, setting.population, 5, seen, rings);
-        add_forces(organisms, at, setting.population, seen, arrows, targets);
-        add_paths(setting.before->organisms, organisms, at.x_px, at.y_px, ways);
+        add_radii(organisms, shapes, setting.population, 4, seen, rings);
+        add_radii(organisms, shapes, setting.population, 5, seen, rings);
+        add_forces(organisms, shapes, setting.population, seen, arrows, targets);
+        add_paths(setting.before->entities->organisms, organisms, shapes, ways);
         benchmark::DoNotOptimize(shapes.data());
         benchmark::DoNotOptimize(targets.lines.data());
     });

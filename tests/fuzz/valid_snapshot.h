@@ -1,5 +1,5 @@
-// Valid snapshots: what holds of every decoded snapshot. The columns of a struct have one length, numbers are finite, counts
-// equal those of the frame, and ids rise.
+// Valid snapshots: what holds of every decoded snapshot. The columns of a kind have one length, the numbers of dots are
+// finite, counts equal those of the frame, and ids rise.
 #pragma once
 
 #include "proto/codec/snapshot_codec.h"
@@ -23,7 +23,7 @@ inline void require_finite(const std::vector<float>& column, std::size_t size) {
     require(std::all_of(column.begin(), column.end(), [](float value) { return std::isfinite(value); }));
 }
 
-inline void require_rising(const std::vector<std::uint32_t>& ids) {
+inline void require_rising(const codec::Column& ids) {
     require(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end());
 }
 
@@ -39,21 +39,18 @@ inline void require_valid_tile(const codec::DecodedTile& tile) {
     }
 }
 
-inline void require_valid(const codec::DecodedSnapshot& snapshot) {
-    const auto& organisms = snapshot.organisms;
-    require_rising(organisms.id);
-    for (const auto* column : {&organisms.x_px, &organisms.y_px, &organisms.radius_px, &organisms.health}) {
-        require_finite(*column, organisms.id.size());
-    }
-    for (const auto* items : {&snapshot.food, &snapshot.poison}) {
-        require_rising(items->id);
-        require_finite(items->x_px, items->id.size());
-        require_finite(items->y_px, items->id.size());
-    }
-    for (const auto* boxes : {&snapshot.crates, &snapshot.obstacles}) {
-        require_rising(boxes->id);
-        for (const auto* column : {&boxes->x_px, &boxes->y_px, &boxes->half_width_px, &boxes->half_height_px}) {
-            require_finite(*column, boxes->id.size());
+inline void require_valid(const codec::ReceivedSnapshot& snapshot) {
+    const codec::QuantisedSnapshot& entities = *snapshot.entities;
+    for (const auto part : codec::snapshot_parts) {
+        const codec::Entities& kind = entities.*part;
+        const bool items = part == &codec::QuantisedSnapshot::food || part == &codec::QuantisedSnapshot::poison;
+        const bool whole_boxes = kind.id.empty() && (part == &codec::QuantisedSnapshot::crates ||
+                                                     part == &codec::QuantisedSnapshot::obstacles);
+        const std::size_t size = kind.x.size();
+        require_rising(kind.id);
+        require(kind.id.size() == (whole_boxes ? 0 : size) && kind.y.size() == size);
+        for (const codec::Column* column : {&kind.width, &kind.height}) {
+            require(column->size() == (items ? 0 : size));
         }
     }
     require(std::ranges::adjacent_find(snapshot.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
@@ -65,11 +62,7 @@ inline void require_valid(const codec::DecodedSnapshot& snapshot) {
         return; // its counts are those of the whole island
     }
     require(snapshot.tiles.empty());
-    require(organisms.id.size() == snapshot.about.organism_count());
-    require(snapshot.food.id.size() == snapshot.about.food_count());
-    require(snapshot.poison.id.size() == snapshot.about.poison_count());
-    require(snapshot.crates.id.size() == snapshot.about.crate_count());
-    require(snapshot.obstacles.id.size() == snapshot.about.obstacle_count());
+    require(codec::counts_of(entities) == codec::counts_of(snapshot.about));
 }
 
 } // namespace evod::fuzz

@@ -75,8 +75,7 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count) {
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& snapshot,
-                                       const core::WorldView::Positions& organisms, const Camera& camera) {
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
@@ -84,9 +83,10 @@ std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapsho
     const double slack = 3 / camera.zoom();
     std::optional<std::size_t> found;
     double nearest = 0; // squared distance of the nearest organism so far
-    for (std::size_t i = 0; i < organisms.x_px.size(); ++i) {
-        const double x = organisms.x_px[i] - world.x, y = organisms.y_px[i] - world.y, distance = x * x + y * y;
-        const double reach = snapshot.organisms.radius_px[i] + slack;
+    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+        const auto [x_px, y_px] = organisms[i];
+        const double x = x_px - world.x, y = y_px - world.y, distance = x * x + y * y;
+        const double reach = organisms.entities->radius_px(i) + slack;
         if (distance <= reach * reach && (!found || distance < nearest)) {
             found = i;
             nearest = distance;
@@ -95,31 +95,31 @@ std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapsho
     return found;
 }
 
-void IslandRenderer::set_circles(Layer& layer, const codec::DecodedItems& items, float radius) {
-    shapes_.resize(items.x_px.size());
+void IslandRenderer::set_circles(Layer& layer, const codec::Entities& items, float radius) {
+    shapes_.resize(items.x.size());
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
-        shapes_[i] = {items.x_px[i], items.y_px[i], radius, radius};
+        shapes_[i] = {items.x_px(i), items.y_px(i), radius, radius};
     }
     layer.set(shapes_);
 }
 
-void IslandRenderer::set_boxes(Layer& layer, const codec::DecodedBoxes& boxes, const std::vector<float>& x,
-                               const std::vector<float>& y) {
-    shapes_.resize(x.size());
+void IslandRenderer::set_boxes(Layer& layer, const Positions& boxes) {
+    shapes_.resize(boxes.size());
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
-        shapes_[i] = {x[i], y[i], boxes.half_width_px[i], boxes.half_height_px[i]};
+        const auto [x, y] = boxes[i];
+        shapes_[i] = {x, y, boxes.entities->half_width_px(i), boxes.entities->half_height_px(i)};
     }
     layer.set(shapes_);
 }
 
-void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot,
+void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
                                      const Camera& camera) {
     if (snapshot != uploaded_) {
         uploaded_ = snapshot;
         const auto item_radius = static_cast<float>(snapshot->about.item_radius_px());
-        set_circles(food_, snapshot->food, item_radius);
-        set_circles(poison_, snapshot->poison, item_radius);
-        set_boxes(obstacles_, snapshot->obstacles, snapshot->obstacles.x_px, snapshot->obstacles.y_px);
+        set_circles(food_, snapshot->entities->food, item_radius);
+        set_circles(poison_, snapshot->entities->poison, item_radius);
+        set_boxes(obstacles_, {.entities = &snapshot->entities->obstacles});
     }
     // The walls lie outside the island and have the same thickness on the screen at any zoom.
     const auto half_width = static_cast<float>(snapshot->about.width_px() / 2);
@@ -128,15 +128,15 @@ void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::DecodedS
     walls_.set(std::array{Shape{half_width, half_height, half_width + thickness, half_height + thickness}});
 }
 
-void IslandRenderer::draw(core::WorldView& view, double blend, const Camera& camera, unsigned width_pixels,
-                          unsigned height_pixels, const IslandView& island_view, const Highlighted& highlighted) {
+void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, const Camera& camera,
+                          unsigned width_pixels, unsigned height_pixels, const IslandView& island_view,
+                          const Highlighted& highlighted) {
     painter_.begin(camera, width_pixels, height_pixels, palette::background);
     density_scale_.reset();
     if (const auto& snapshot = view.latest()) {
         upload_snapshot(snapshot, camera);
-        const auto& crates = view.crates_at(blend);
-        set_boxes(crates_, snapshot->crates, crates.x_px, crates.y_px);
-        const Positions& organisms = view.organisms_at(blend);
+        set_boxes(crates_, view.crates_at(blend));
+        const Positions organisms = view.organisms_at(blend);
         painter_.draw(walls_, wall_style);
         painter_.draw(obstacles_, obstacle_style);
         painter_.draw(crates_, crate_style);
@@ -147,15 +147,18 @@ void IslandRenderer::draw(core::WorldView& view, double blend, const Camera& cam
             draw_density(*snapshot, organisms, camera, island_view);
         } else {
             draw_items(*snapshot);
-            draw_radii(*snapshot, organisms, camera, island_view);
-            draw_trails(*snapshot, organisms, camera, island_view);
-            draw_organisms(*snapshot, organisms, camera, island_view);
-            draw_forces(*snapshot, organisms, camera, island_view);
+            discs_.clear();
+            add_discs(organisms, discs_);
+            draw_radii(*organisms.entities, camera, island_view);
+            draw_trails(*snapshot, camera, island_view);
+            draw_organisms(*organisms.entities, camera, island_view);
+            draw_forces(*organisms.entities, camera, island_view);
         }
         const auto highlight = [&](std::optional<std::size_t> index, Layer& layer, const ShapeStyle& style) {
-            if (index && *index < organisms.x_px.size()) {
-                const float radius = snapshot->organisms.radius_px[*index];
-                layer.set(std::array{Shape{organisms.x_px[*index], organisms.y_px[*index], radius, radius}});
+            if (index && *index < organisms.size()) {
+                const auto [x, y] = organisms[*index];
+                const float radius = organisms.entities->radius_px(*index);
+                layer.set(std::array{Shape{x, y, radius, radius}});
                 painter_.draw(layer, style);
             }
         };
@@ -165,7 +168,7 @@ void IslandRenderer::draw(core::WorldView& view, double blend, const Camera& cam
     painter_.end();
 }
 
-void IslandRenderer::draw_items(const codec::DecodedSnapshot& snapshot) {
+void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot) {
     painter_.draw(poison_, poison_style);
     painter_.draw(food_, food_style);
     // Tiles streamed as dots contain only positions.
@@ -191,31 +194,29 @@ void IslandRenderer::draw_items(const codec::DecodedSnapshot& snapshot) {
     draw_dots(&codec::DecodedDots::organisms, typical_radius_px, organism_style);
 }
 
-void IslandRenderer::draw_organisms(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
+void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Camera& camera,
                                     const IslandView& island_view) {
-    shapes_.clear();
     colours_.clear();
-    add_discs(at, snapshot.organisms.radius_px, shapes_);
     if (island_view.options.colour_by == ColourBy::Nothing) {
-        organisms_.set(shapes_);
+        organisms_.set(discs_);
         return painter_.draw(organisms_, organism_style);
     }
     const Population* population = island_view.population();
     if (island_view.options.colour_by == ColourBy::Health) {
-        add_health_colours(snapshot.organisms, health_scale(snapshot.organisms, island_view.options.ramp), colours_);
+        add_health_colours(organisms, health_scale(organisms, island_view.options.ramp), colours_);
     } else if (population != nullptr && island_view.options.colour_by == ColourBy::Lineage) {
-        add_family_colours(snapshot.organisms, *population, island_view.family_colours(), colours_);
+        add_family_colours(organisms, *population, island_view.family_colours(), colours_);
     } else if (population != nullptr && island_view.options.gene < population->gene_count()) {
-        add_gene_colours(snapshot.organisms, *population, island_view.options.gene,
+        add_gene_colours(organisms, *population, island_view.options.gene,
                          gene_scale(*population, island_view.options.gene, island_view.options.ramp), colours_);
     } else {
-        colours_.assign(shapes_.size(), palette::unknown);
+        colours_.assign(discs_.size(), palette::unknown);
     }
-    organisms_.set(shapes_, colours_);
+    organisms_.set(discs_, colours_);
     painter_.draw(organisms_, camera.zoom() >= outline_zoom_min ? coloured_style : coloured_small_style);
 }
 
-void IslandRenderer::draw_density(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
+void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
                                   const IslandView& island_view) {
     auto grids = densities_of(snapshot);
     if (grids.empty()) { // a whole snapshot, or tiles with complete organisms
@@ -232,8 +233,7 @@ void IslandRenderer::draw_density(const codec::DecodedSnapshot& snapshot, const 
     painter_.draw(density_, density_style);
 }
 
-void IslandRenderer::draw_radii(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
-                                const IslandView& island_view) {
+void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view) {
     const Population* population = island_view.population();
     if (!island_view.options.radii || population == nullptr || camera.zoom() < marks_zoom_min) {
         return;
@@ -242,14 +242,14 @@ void IslandRenderer::draw_radii(const codec::DecodedSnapshot& snapshot, const Po
                                       {"poison_radius", poison_radius_style}}) {
         if (const auto gene = gene_named(name, island_view)) {
             shapes_.clear();
-            add_radii(snapshot.organisms, at, *population, *gene, camera.visible(), shapes_);
+            add_radii(organisms, discs_, *population, *gene, camera.visible(), shapes_);
             radii_.set(shapes_);
             painter_.draw(radii_, style);
         }
     }
 }
 
-void IslandRenderer::draw_forces(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
+void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera& camera,
                                  const IslandView& island_view) {
     const Population* population = island_view.population();
     if (!island_view.options.forces || population == nullptr || camera.zoom() < marks_zoom_min) {
@@ -257,14 +257,14 @@ void IslandRenderer::draw_forces(const codec::DecodedSnapshot& snapshot, const P
     }
     arrow_lines_.clear();
     target_lines_.clear();
-    add_forces(snapshot.organisms, at, *population, camera.visible(), arrow_lines_, target_lines_);
+    add_forces(organisms, discs_, *population, camera.visible(), arrow_lines_, target_lines_);
     targets_.set(target_lines_.lines, target_lines_.colours);
     painter_.draw(targets_, target_style);
     arrows_.set(arrow_lines_.lines, arrow_lines_.colours);
     painter_.draw(arrows_, arrow_style);
 }
 
-void IslandRenderer::draw_trails(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
+void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera,
                                  const IslandView& island_view) {
     const auto& snapshots = island_view.trails().snapshots();
     if (!island_view.options.trails || snapshots.empty() || camera.zoom() < marks_zoom_min) {
@@ -277,9 +277,11 @@ void IslandRenderer::draw_trails(const codec::DecodedSnapshot& snapshot, const P
     for (std::size_t i = 1; i < snapshots.size(); ++i) {
         if (std::ranges::find(trail_segments_, snapshots[i], &TrailSegment::to) == trail_segments_.end()) {
             trail_segments_.push_back({snapshots[i - 1], snapshots[i], std::make_unique<Layer>()});
-            const auto& to = snapshots[i]->organisms;
+            const codec::Entities& to = snapshots[i]->entities->organisms;
+            shapes_.clear();
             lines_.clear();
-            add_paths(snapshots[i - 1]->organisms, to, to.x_px, to.y_px, lines_);
+            add_discs({.entities = &to}, shapes_);
+            add_paths(snapshots[i - 1]->entities->organisms, to, shapes_, lines_);
             trail_segments_.back().layer->set(lines_);
         }
     }
@@ -288,22 +290,23 @@ void IslandRenderer::draw_trails(const codec::DecodedSnapshot& snapshot, const P
         painter_.draw(*segment.layer, trail_style((now_s - segment.to->about.simulated_s()) / Trails::kept_s));
     }
     lines_.clear();
-    add_paths(snapshots.back()->organisms, snapshot.organisms, at.x_px, at.y_px, lines_);
+    add_paths(snapshots.back()->entities->organisms, snapshot.entities->organisms, discs_, lines_);
     trail_ends_.set(lines_);
     painter_.draw(trail_ends_, trail_style(0));
 }
 
-void IslandRenderer::draw_labels(core::WorldView& view, double blend, const Camera& camera, ImDrawList& list,
-                                 ImFont& font) {
+void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera,
+                                 ImDrawList& list, ImFont& font) {
     const auto& snapshot = view.latest();
     if (!snapshot || camera.zoom() < label_zoom_min) {
         return;
     }
-    const auto& organisms = view.organisms_at(blend);
+    const Positions organisms = view.organisms_at(blend);
     const Rectangle visible = camera.visible();
     labelled_.clear();
-    for (std::size_t i = 0; i < organisms.x_px.size(); ++i) {
-        if (visible.contains({organisms.x_px[i], organisms.y_px[i]})) {
+    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+        const auto [x, y] = organisms[i];
+        if (visible.contains({x, y})) {
             labelled_.push_back(i);
         }
     }
@@ -314,10 +317,11 @@ void IslandRenderer::draw_labels(core::WorldView& view, double blend, const Came
     const Point other = camera.to_screen({snapshot->about.width_px(), snapshot->about.height_px()});
     for (const std::size_t i : labelled_) {
         std::array<char, 16> room;
-        const char* end = std::to_chars(room.begin(), room.end(), shown_health(snapshot->organisms.health[i])).ptr;
+        const char* end = std::to_chars(room.begin(), room.end(), shown_health(organisms.entities->health(i))).ptr;
         const std::string_view digits{room.data(), static_cast<std::size_t>(end - room.data())};
-        const Point centre = camera.to_screen({organisms.x_px[i], organisms.y_px[i]});
-        const double radius = snapshot->organisms.radius_px[i] * camera.zoom();
+        const auto [x, y] = organisms[i];
+        const Point centre = camera.to_screen({x, y});
+        const double radius = organisms.entities->radius_px(i) * camera.zoom();
         const double width = size_of(digits, font).x;
         // A black number is invisible on the black wall. Near a side wall the number moves inwards; near the top wall
         // it moves below the organism.

@@ -9,7 +9,7 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/core/world_view.h"
+#include "client/core/snapshot_interpolator.h"
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/island/island_view.h"
 #include "client/viewer/island/marks.h"
@@ -36,9 +36,8 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count);
 /// The organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If several
 /// organisms are hit, returns the one whose centre is nearest.
 ///
-/// returns  an index in snapshot.organisms; nullopt: no organism is there
-std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& snapshot,
-                                       const core::WorldView::Positions& organisms, const Camera& camera);
+/// returns  an index in `organisms`; nullopt: no organism is there
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);
 
 class IslandRenderer {
   public:
@@ -49,45 +48,42 @@ class IslandRenderer {
 
     /// Draws the latest snapshot of `view`, with organisms and crates interpolated at `blend`. Draws only the
     /// background if `view` has no snapshot.
-    void draw(core::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
-              const IslandView& island_view, const Highlighted& highlighted);
+    void draw(const core::SnapshotInterpolator& view, double blend, const Camera& camera, unsigned width_pixels,
+              unsigned height_pixels, const IslandView& island_view, const Highlighted& highlighted);
 
     /// The colour scale of the densities in the last draw(); nullopt if draw() drew no densities.
     const std::optional<ColourScale>& density_scale() const { return density_scale_; }
     double density_cell_px() const { return density_cell_px_; }
 
     /// Draws the health of the visible organisms. Call after draw(), with the same view, blend and camera.
-    void draw_labels(core::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font);
+    void draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, ImDrawList& list,
+                     ImFont& font);
 
   private:
-    void upload_snapshot(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot, const Camera& camera);
-    void draw_items(const codec::DecodedSnapshot& snapshot);
-    void draw_organisms(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
-                        const IslandView& island_view);
-    void draw_density(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
+    void upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot, const Camera& camera);
+    void draw_items(const codec::ReceivedSnapshot& snapshot);
+    void draw_organisms(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
                       const IslandView& island_view);
-    void draw_radii(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
-                    const IslandView& island_view);
-    void draw_forces(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
-                     const IslandView& island_view);
-    void draw_trails(const codec::DecodedSnapshot& snapshot, const Positions& at, const Camera& camera,
-                     const IslandView& island_view);
-    void set_circles(Layer& layer, const codec::DecodedItems& items, float radius);
-    void set_boxes(Layer& layer, const codec::DecodedBoxes& boxes, const std::vector<float>& x,
-                   const std::vector<float>& y);
+    void draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_forces(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const IslandView& island_view);
+    void set_circles(Layer& layer, const codec::Entities& items, float radius);
+    void set_boxes(Layer& layer, const Positions& boxes);
 
     ShapePainter painter_;
     Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
     Layer dots_, density_, radii_, arrows_, targets_, trail_ends_;
     /// The trail lines between two consecutive snapshots; uploaded once.
     struct TrailSegment {
-        std::shared_ptr<const codec::DecodedSnapshot> from, to;
+        std::shared_ptr<const codec::ReceivedSnapshot> from, to;
         std::unique_ptr<Layer> layer;
     };
     std::deque<TrailSegment> trail_segments_;
-    std::shared_ptr<const codec::DecodedSnapshot> uploaded_;
+    std::shared_ptr<const codec::ReceivedSnapshot> uploaded_;
     std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
+    std::vector<Shape> discs_;  // the organisms in this frame
     std::vector<Shape> shapes_; // buffers, reused for every layer
     std::vector<Line> lines_;
     std::vector<Colour> colours_;

@@ -109,7 +109,7 @@ void IslandView::forget() {
     *this = std::move(fresh);
 }
 
-void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::DecodedSnapshot>& snapshot) {
+void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
     const auto& about = snapshot->about;
     if (shown_.run_id != about.run_id()) {
         if (!shown_.run_id.empty()) { // the world was reset
@@ -204,12 +204,9 @@ void IslandView::follow(ViewedWorld& world, Camera& camera, double blend) {
         followed_.reset();
         return;
     }
-    const auto& ids = world.feed.snapshot()->organisms.id;
-    const auto place = std::ranges::lower_bound(ids, followed_->id);
-    if (place != ids.end() && *place == followed_->id) {
-        const auto index = static_cast<std::size_t>(place - ids.begin());
-        const auto& at = world.feed.view().organisms_at(blend);
-        camera.look_at({at.x_px[index], at.y_px[index]});
+    if (const auto index = world.feed.snapshot()->entities->organisms.index_of(followed_->id)) {
+        const auto [x, y] = world.feed.view().organisms_at(blend)[*index];
+        camera.look_at({x, y});
     }
     followed_->centre = camera.centre();
     followed_->zoom = camera.zoom();

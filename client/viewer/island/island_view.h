@@ -33,7 +33,7 @@ struct ViewOptions {
 /// as the visible part, so that a small pan stays inside it. The region changes at most once per `interval`.
 class StreamedRegion {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
     static constexpr std::chrono::milliseconds interval{200};
 
     /// The view to request now; nullopt if the view returned last is still suitable.
@@ -48,7 +48,7 @@ class StreamedRegion {
 
 class IslandView {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     ViewOptions options;
     /// Switches to the next colouring in this cycle: nothing, each gene, health, lineage.
@@ -98,14 +98,14 @@ class IslandView {
     PopulationPoll::Of population_of(const ViewedWorld& world) const;
     bool needs_population() const;
     void forget();
-    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::DecodedSnapshot>& snapshot);
+    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
     void take_population();
     void request_organism(ViewedWorld& world, Clock::time_point now);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
     Shown shown_;
-    std::uint64_t generation_ = 0, tick_ = 0;                // generation and tick of the newest snapshot
-    std::shared_ptr<const codec::DecodedSnapshot> snapshot_; // the newest snapshot
+    std::uint64_t generation_ = 0, tick_ = 0;                 // generation and tick of the newest snapshot
+    std::shared_ptr<const codec::ReceivedSnapshot> snapshot_; // the newest snapshot
 
     std::vector<std::string> gene_names_;
     PopulationPoll population_poll_{poll_interval};

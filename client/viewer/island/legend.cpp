@@ -37,7 +37,7 @@ std::string gene_title(const std::string& name) {
     return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
 }
 
-Legend legend_of(const IslandView& island_view, const codec::DecodedSnapshot& snapshot,
+Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& snapshot,
                  const std::optional<ColourScale>& density, double density_cell_px) {
     Legend legend;
     const Population* population = island_view.population();
@@ -50,7 +50,7 @@ Legend legend_of(const IslandView& island_view, const codec::DecodedSnapshot& sn
     case ColourBy::Nothing:
         break;
     case ColourBy::Health:
-        legend.ramp = {"health, points", health_scale(snapshot.organisms, island_view.options.ramp)};
+        legend.ramp = {"health, points", health_scale(snapshot.entities->organisms, island_view.options.ramp)};
         break;
     case ColourBy::Gene:
         if (population != nullptr && island_view.options.gene < population->gene_count()) {

@@ -34,7 +34,7 @@ std::string gene_title(const std::string& name);
 /// The legend for a drawn snapshot; empty if organisms are not coloured by a property.
 ///
 /// density  the colour scale of the densities; nullopt if no densities are drawn
-Legend legend_of(const IslandView& island_view, const codec::DecodedSnapshot& snapshot,
+Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& snapshot,
                  const std::optional<ColourScale>& density, double density_cell_px);
 
 /// Draws the legend unless it is empty. Call between Gui::begin() and Gui::draw().

@@ -43,10 +43,10 @@ Colour colour_of(evod::v1::Choice choice) {
 
 } // namespace
 
-ColourScale health_scale(const codec::DecodedOrganisms& organisms, palette::Ramp ramp) {
+ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp) {
     float most = 100;
-    for (const float health : organisms.health) {
-        most = std::max(most, health);
+    for (const std::uint32_t steps : organisms.height) {
+        most = std::max(most, codec::px_of(steps));
     }
     return {ramp, 0, 100 * std::ceil(most / 100.0)};
 }
@@ -77,23 +77,24 @@ Colour FamilyColours::of(std::uint8_t family) const {
     return family < colours_.size() ? palette::kinds[colours_[family]] : palette::unknown;
 }
 
-void add_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes) {
-    const std::size_t begin = shapes.size();
-    shapes.resize(begin + at.x_px.size());
-    for (std::size_t i = 0; i < at.x_px.size(); ++i) {
-        shapes[begin + i] = {at.x_px[i], at.y_px[i], radius_px[i], radius_px[i]};
+void add_discs(const Positions& organisms, std::vector<Shape>& discs) {
+    const std::size_t begin = discs.size(), count = organisms.size();
+    discs.resize(begin + count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [x, y] = organisms[i];
+        const float radius = organisms.entities->radius_px(i);
+        discs[begin + i] = {x, y, radius, radius};
     }
 }
 
-void add_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
-                        std::vector<Colour>& colours) {
+void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours) {
     const Table table{scale};
-    for (const float health : organisms.health) {
-        colours.push_back(table(health));
+    for (const std::uint32_t steps : organisms.height) {
+        colours.push_back(table(codec::px_of(steps)));
     }
 }
 
-void add_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
+void add_gene_colours(const codec::Entities& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours) {
     const Table table{scale};
     const auto values = population.gene(gene);
@@ -102,30 +103,30 @@ void add_gene_colours(const codec::DecodedOrganisms& organisms, const Population
     }
 }
 
-void add_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,
-                        const FamilyColours& families, std::vector<Colour>& colours) {
+void add_family_colours(const codec::Entities& organisms, const Population& population, const FamilyColours& families,
+                        std::vector<Colour>& colours) {
     for (const std::uint32_t id : organisms.id) {
         colours.push_back(id < population.size() ? families.of(population.family(id)) : palette::unknown);
     }
 }
 
-void add_radii(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+void add_radii(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
                std::size_t gene, const Rectangle& visible, std::vector<Shape>& shapes) {
     const auto radii = population.gene(gene);
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
         const std::uint32_t id = organisms.id[i];
-        if (id < radii.size() && may_touch(visible, at.x_px[i], at.y_px[i], radii[id])) {
-            shapes.push_back({at.x_px[i], at.y_px[i], radii[id], radii[id]});
+        if (id < radii.size() && may_touch(visible, discs[i].x, discs[i].y, radii[id])) {
+            shapes.push_back({discs[i].x, discs[i].y, radii[id], radii[id]});
         }
     }
 }
 
-void add_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
                 const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets) {
     constexpr float reach_px = 200; // no organism perceives farther than this
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
         const std::uint32_t id = organisms.id[i];
-        const float x = at.x_px[i], y = at.y_px[i];
+        const float x = discs[i].x, y = discs[i].y;
         if (id >= population.size() || !may_touch(visible, x, y, reach_px)) {
             continue;
         }
@@ -146,7 +147,7 @@ void add_forces(const codec::DecodedOrganisms& organisms, const Positions& at, c
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 
-void Trails::add(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot) {
+void Trails::add(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
     if (!snapshots_.empty()) {
         const auto& last = snapshots_.back()->about;
         const auto& next = snapshot->about;
@@ -163,15 +164,15 @@ void Trails::add(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot) 
     });
 }
 
-void add_paths(const codec::DecodedOrganisms& from, const codec::DecodedOrganisms& to, std::span<const float> to_x_px,
-               std::span<const float> to_y_px, std::vector<Line>& lines) {
+void add_paths(const codec::Entities& from, const codec::Entities& to, std::span<const Shape> discs,
+               std::vector<Line>& lines) {
     for (std::size_t i = 0, j = 0; i < from.id.size() && j < to.id.size();) {
         if (from.id[i] < to.id[j]) {
             ++i;
         } else if (to.id[j] < from.id[i]) {
             ++j;
         } else {
-            lines.push_back({from.x_px[i], from.y_px[i], to_x_px[j], to_y_px[j]});
+            lines.push_back({from.x_px(i), from.y_px(i), discs[j].x, discs[j].y});
             ++i, ++j;
         }
     }
@@ -192,17 +193,14 @@ DensityGrid grid_of(const Rectangle& part, double cell_px) {
     return grid;
 }
 
-void count(DensityGrid& grid, double x, double y, std::uint32_t amount) {
-    const double column = (x - grid.left_px) / grid.cell_px, row = (y - grid.top_px) / grid.cell_px;
+void count_cell(DensityGrid& grid, double column, double row, std::uint32_t amount) {
     if (column >= 0 && row >= 0 && column < static_cast<double>(grid.columns) && row < static_cast<double>(grid.rows)) {
         grid.counts[static_cast<std::size_t>(row) * grid.columns + static_cast<std::size_t>(column)] += amount;
     }
 }
 
-void count(DensityGrid& grid, std::span<const float> x, std::span<const float> y) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        count(grid, x[i], y[i], 1);
-    }
+void count(DensityGrid& grid, double x, double y, std::uint32_t amount) {
+    count_cell(grid, (x - grid.left_px) / grid.cell_px, (y - grid.top_px) / grid.cell_px, amount);
 }
 
 } // namespace
@@ -211,18 +209,28 @@ double density_cell_px(const Camera& camera, double cell_pixels) {
     return std::exp2(std::ceil(std::log2(cell_pixels / camera.zoom())));
 }
 
-DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_px) {
+DensityGrid density_of(const Positions& organisms, const Rectangle& part, double cell_px) {
     DensityGrid grid = grid_of(part, cell_px);
-    count(grid, at.x_px, at.y_px);
+    const double cells_per_px = 1 / cell_px; // exact, because cell_px is a power of two; multiplying is faster
+    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+        const auto [x, y] = organisms[i];
+        count_cell(grid, (x - grid.left_px) * cells_per_px, (y - grid.top_px) * cells_per_px, 1);
+    }
     return grid;
 }
 
-DensityGrid overview_of(const codec::DecodedSnapshot& snapshot, std::size_t cells_max) {
+DensityGrid overview_of(const codec::ReceivedSnapshot& snapshot, std::size_t cells_max) {
     const double width = snapshot.about.width_px(), height = snapshot.about.height_px();
     DensityGrid grid = grid_of({0, 0, width, height}, std::max(width, height) / static_cast<double>(cells_max));
-    count(grid, snapshot.organisms.x_px, snapshot.organisms.y_px);
+    const codec::Entities& organisms = snapshot.entities->organisms;
+    for (std::size_t i = 0; i < organisms.x.size(); ++i) {
+        count(grid, organisms.x_px(i), organisms.y_px(i), 1);
+    }
     for (const codec::DecodedTile& tile : snapshot.tiles) {
-        count(grid, tile.dots.organisms.x_px, tile.dots.organisms.y_px);
+        const auto& [x, y] = tile.dots.organisms;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            count(grid, x[i], y[i], 1);
+        }
     }
     for (const DensityGrid& tile : densities_of(snapshot)) {
         for (std::size_t i = 0; i < tile.counts.size(); ++i) {
@@ -248,7 +256,7 @@ void add_density(const DensityGrid& grid, Point island, const ColourScale& scale
     }
 }
 
-std::vector<DensityGrid> densities_of(const codec::DecodedSnapshot& snapshot) {
+std::vector<DensityGrid> densities_of(const codec::ReceivedSnapshot& snapshot) {
     std::vector<DensityGrid> grids;
     for (const codec::DecodedTile& tile : snapshot.tiles) {
         if (tile.detail == evod::v1::DETAIL_DENSITY) {

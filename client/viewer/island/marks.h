@@ -1,12 +1,13 @@
 // Marks: converts snapshots and populations into coloured shapes and lines.
 //
 // All work per frame that grows with the number of organisms is done here, except the drawing itself. Functions named
-// add_… append to their last arguments. Positions and colours have the same index as the organism in the snapshot.
+// add_… append to their last arguments. Positions, discs and colours have the same index as the organism in the
+// snapshot.
 //
 // Threads      none; pure functions.
 #pragma once
 
-#include "client/core/world_view.h"
+#include "client/core/snapshot_interpolator.h"
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/colour_scale.h"
 #include "client/viewer/island/shapes.h"
@@ -21,14 +22,14 @@
 
 namespace evod::viewer {
 
-using Positions = core::WorldView::Positions;
+using core::Positions;
 
 /// The property that determines the colours of organisms.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
 /// Ranges from 0 to the greatest health in the snapshot, rounded up to hundreds so that the scale rarely changes; at
 /// least 100.
-ColourScale health_scale(const codec::DecodedOrganisms& organisms, palette::Ramp ramp);
+ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp);
 
 /// Ranges from the lowest to the highest value of the gene in the population.
 ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
@@ -48,19 +49,20 @@ class FamilyColours {
     std::array<std::uint8_t, Population::shown_families_max> colours_{};
 };
 
-void add_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);
+/// Adds the disc of each organism. The functions below read positions from these discs, so that each position is
+/// computed once per frame.
+void add_discs(const Positions& organisms, std::vector<Shape>& discs);
 
-void add_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
-                        std::vector<Colour>& colours);
+void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours);
 /// Adds the colour of each organism. An organism that is not in the population gets palette::unknown, also in
 /// add_family_colours().
-void add_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
+void add_gene_colours(const codec::Entities& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
-void add_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,
-                        const FamilyColours& families, std::vector<Colour>& colours);
+void add_family_colours(const codec::Entities& organisms, const Population& population, const FamilyColours& families,
+                        std::vector<Colour>& colours);
 
 /// Adds a circle around each organism, with the gene's value as its radius, if part of the circle is visible.
-void add_radii(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+void add_radii(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
                std::size_t gene, const Rectangle& visible, std::vector<Shape>& shapes);
 
 /// Length of an arrow, in px of the world, for a force of 1 kg px/s².
@@ -73,7 +75,7 @@ struct ColouredLines {
 };
 
 /// Adds, for each visible organism, an arrow along its force and a line to its target, coloured by its choice.
-void add_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
+void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
                 const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets);
 
 // ---- trails ----------------------------------------------------------------------------------------------------
@@ -86,18 +88,20 @@ class Trails {
 
     /// Adds a snapshot. Clears the older ones first if it is of another generation, run or island, or of an earlier
     /// tick.
-    void add(const std::shared_ptr<const codec::DecodedSnapshot>& snapshot);
+    void add(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
     void clear() { snapshots_.clear(); }
     /// The snapshots, oldest first.
-    const std::vector<std::shared_ptr<const codec::DecodedSnapshot>>& snapshots() const { return snapshots_; }
+    const std::vector<std::shared_ptr<const codec::ReceivedSnapshot>>& snapshots() const { return snapshots_; }
 
   private:
-    std::vector<std::shared_ptr<const codec::DecodedSnapshot>> snapshots_;
+    std::vector<std::shared_ptr<const codec::ReceivedSnapshot>> snapshots_;
 };
 
-/// Adds a line for each organism that is in both snapshots, from its position in `from` to its position in `to`.
-void add_paths(const codec::DecodedOrganisms& from, const codec::DecodedOrganisms& to, std::span<const float> to_x_px,
-               std::span<const float> to_y_px, std::vector<Line>& lines);
+/// Adds a line for each organism that is in both snapshots, from its position in `from` to its disc.
+///
+/// discs  the discs of `to`.
+void add_paths(const codec::Entities& from, const codec::Entities& to, std::span<const Shape> discs,
+               std::vector<Line>& lines);
 
 // ---- density ---------------------------------------------------------------------------------------------------
 
@@ -119,18 +123,20 @@ double density_cell_px(const Camera& camera, double cell_pixels);
 
 /// Counts the organisms in a part of the island. Cell borders are multiples of cell_px from the island's corner, so
 /// they are at the same positions for every part.
-DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_px);
+///
+/// cell_px  a power of two.
+DensityGrid density_of(const Positions& organisms, const Rectangle& part, double cell_px);
 
 /// Adds a square for each cell that is not empty, coloured by its count and clipped at the right and lower wall.
 void add_density(const DensityGrid& grid, Point island, const ColourScale& scale, std::vector<Shape>& shapes,
                  std::vector<Colour>& colours);
 
 /// The densities that the snapshot contains, one grid per tile.
-std::vector<DensityGrid> densities_of(const codec::DecodedSnapshot& snapshot);
+std::vector<DensityGrid> densities_of(const codec::ReceivedSnapshot& snapshot);
 
 /// Counts everything in the snapshot, at any level of detail. The grid has at most `cells_max` cells along the island's
 /// longer side.
-DensityGrid overview_of(const codec::DecodedSnapshot& snapshot, std::size_t cells_max);
+DensityGrid overview_of(const codec::ReceivedSnapshot& snapshot, std::size_t cells_max);
 
 /// Ranges from 0 to the greatest count, rounded up.
 ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp);

@@ -45,7 +45,7 @@ bool sees_all(const Camera& camera, double island_width, double island_height) {
 }
 
 void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int number) {
-    const std::shared_ptr<const codec::DecodedSnapshot> snapshot =
+    const std::shared_ptr<const codec::ReceivedSnapshot> snapshot =
         world.feed.overview() != nullptr ? world.feed.overview() : world.feed.view().latest();
     const double width = snapshot->about.width_px(), height = snapshot->about.height_px();
     if (sees_all(camera, width, height)) {

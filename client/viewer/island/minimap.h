@@ -48,7 +48,7 @@ class Minimap {
     bool take_press() { return std::exchange(pressed_, false); }
 
   private:
-    std::shared_ptr<const codec::DecodedSnapshot> counted_; // the snapshot whose organisms grid_ counts
+    std::shared_ptr<const codec::ReceivedSnapshot> counted_; // the snapshot whose organisms grid_ counts
     DensityGrid grid_;
     bool pressed_ = false;
 };

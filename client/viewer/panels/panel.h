@@ -21,7 +21,7 @@ class Panel {
     struct Context {
         ViewedWorld& world;
         const Gui& gui;
-        core::WorldView::Clock::time_point now;
+        core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;

@@ -43,11 +43,11 @@ class ParametersPanel : public Panel {
     std::string world_;  // the viewed world
     std::string run_id_; // the run to which edits_ belong
     std::uint64_t place_number_ = 0, connected_count_ = 0;
-    Poll registry_poll_;                        // requests the registry until it has arrived
-    Poll values_poll_;                          // requests the values when they may have changed
-    bool stale_ = true;                         // the values may have changed
-    std::uint64_t transaction_ = 0;             // number of the last transaction; answers to earlier ones are ignored
-    core::WorldView::Clock::time_point sent_{}; // time of the last transaction, which is never sent again
+    Poll registry_poll_;            // requests the registry until it has arrived
+    Poll values_poll_;              // requests the values when they may have changed
+    bool stale_ = true;             // the values may have changed
+    std::uint64_t transaction_ = 0; // number of the last transaction; answers to earlier ones are ignored
+    core::SnapshotInterpolator::Clock::time_point sent_{}; // time of the last transaction, which is never sent again
     std::array<char, 64> search_{};
     bool apply_on_release_ = false;
     bool apply_ = false; // apply the edits as soon as no transaction is pending

@@ -85,7 +85,7 @@ void RunPanel::build_state(const ViewedWorld& world) {
     }
     widgets::small_text(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
-    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         where = "generation " + with_separators(snapshot->about.generation()) + ", " + where;
     }
     const std::string seed = "seed " + std::to_string(info.seed());

@@ -21,7 +21,7 @@ class WorldsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     // Short enough for the user to see the tick numbers rise.
     static constexpr std::chrono::seconds poll_interval{1};

@@ -79,7 +79,7 @@ void Overlay::build_strips(const ViewedWorld& world, const Gui& gui, Rectangle p
     if (focused) {
         list.AddRectFilled({left, top}, {right, top + 3 * scale}, ink(palette::focus));
     }
-    const codec::DecodedSnapshot* snapshot = world.feed.snapshot();
+    const codec::ReceivedSnapshot* snapshot = world.feed.snapshot();
     if (snapshot == nullptr) {
         return;
     }
@@ -178,11 +178,11 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
     }
 }
 
-void Overlay::build_organism(const codec::DecodedSnapshot& snapshot, std::size_t organism, Point screen,
+void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen,
                              const Gui& gui) {
-    const std::string text =
-        print("organism %u\nhealth %.1f\nradius %.1f px", snapshot.organisms.id[organism],
-              double{snapshot.organisms.health[organism]}, double{snapshot.organisms.radius_px[organism]});
+    const codec::Entities& organisms = snapshot.entities->organisms;
+    const std::string text = print("organism %u\nhealth %.1f\nradius %.1f px", organisms.id[organism],
+                                   double{organisms.health(organism)}, double{organisms.radius_px(organism)});
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 size = size_of(text, gui.label());
     const float scale = gui.scale();

@@ -18,7 +18,7 @@ namespace evod::viewer {
 
 class Overlay {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     static constexpr std::chrono::seconds notice_shown{6};
     /// Shows a sentence for the duration `notice_shown`.
@@ -36,7 +36,7 @@ class Overlay {
     /// Draws the number of the island in its tile.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
     /// Draws the data of an organism beside it.
-    void build_organism(const codec::DecodedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
+    void build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
 
   private:
     struct Notice {

@@ -56,7 +56,7 @@ Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside) : wan
     }
 }
 
-void Panes::update(core::WorldView::Clock::time_point now) {
+void Panes::update(core::SnapshotInterpolator::Clock::time_point now) {
     for (const auto& pane : panes_) {
         pane->world.update(now);
     }

@@ -23,7 +23,7 @@ namespace evod::viewer {
 /// Part of a pane: shows one island.
 struct Tile {
     std::uint32_t island;
-    core::WorldView& view;
+    core::SnapshotInterpolator& view;
     Camera& camera;
 };
 
@@ -67,7 +67,7 @@ class Panes {
     explicit Panes(WantedWorld wanted, const std::optional<std::string>& beside = {});
 
     /// Processes everything that each pane has received from its server since the last call.
-    void update(core::WorldView::Clock::time_point now);
+    void update(core::SnapshotInterpolator::Clock::time_point now);
     /// Places the panes in the window.
     ///
     /// interactive  reserve space for the strip of panels and for time lines

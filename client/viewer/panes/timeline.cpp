@@ -65,7 +65,7 @@ void Timeline::build(ViewedWorld& world, const Gui& gui, Rectangle place, int nu
 
 void Timeline::find_first_ticks(ViewedWorld& world, const evod::v1::Replay& replay, std::size_t count_max) {
     first_tick_[replay.first_generation()] = replay.first_tick();
-    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         const std::uint64_t generation = snapshot->about.generation();
         first_tick_[generation] = snapshot->about.tick() - snapshot->about.generation_tick();
         shown_generation_ = generation;

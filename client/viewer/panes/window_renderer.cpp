@@ -15,13 +15,6 @@ namespace evod::viewer {
 
 namespace {
 
-std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const codec::DecodedSnapshot& snapshot) {
-    const auto& ids = snapshot.organisms.id;
-    const auto place = id ? std::ranges::lower_bound(ids, *id) : ids.end();
-    return place != ids.end() && *place == *id ? std::optional{static_cast<std::size_t>(place - ids.begin())}
-                                               : std::nullopt;
-}
-
 /// The part of the window without strips and time lines, in which panels are placed.
 Rectangle room_for_panels(Panes& panes, const WindowRenderer::Frame& frame, double scale) {
     Rectangle room = below_panel_strip(frame.width_pixels, frame.height_pixels, scale);
@@ -42,9 +35,9 @@ void clear(Colour colour, const WindowRenderer::Frame& frame) {
 
 void WindowRenderer::select_at(Pane& pane, Point screen) {
     ViewedWorld& world = pane.world;
-    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
-        const auto index = organism_at(screen, *snapshot, world.feed.view().organisms_at(pane.blend), pane.camera());
-        world.feed.select(index ? std::optional{snapshot->organisms.id[*index]} : std::nullopt);
+    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
+        const auto index = organism_at(screen, world.feed.view().organisms_at(pane.blend), pane.camera());
+        world.feed.select(index ? std::optional{snapshot->entities->organisms.id[*index]} : std::nullopt);
         if (index) {
             panels_.show(OrganismPanel::name);
         }
@@ -92,16 +85,18 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
                                int pane_number) {
     const bool chosen = tile.island == pane.world.feed.island();
     const double blend = frame.interpolate ? tile.view.blend_at(frame.now) : 1;
-    const codec::DecodedSnapshot* snapshot = tile.view.latest().get();
+    const codec::ReceivedSnapshot* snapshot = tile.view.latest().get();
     IslandRenderer::Highlighted highlighted;
     if (snapshot != nullptr && chosen) {
         pane.blend = blend;
         pane.island_view.update(pane.world, tile.camera, frame.now);
         pane.island_view.follow(pane.world, tile.camera, blend);
-        highlighted.selected = index_of(pane.world.feed.selected(), *snapshot);
+        if (const auto selected = pane.world.feed.selected()) {
+            highlighted.selected = snapshot->entities->organisms.index_of(*selected);
+        }
     }
     if (snapshot != nullptr && frame.pointed_at) {
-        highlighted.pointed_at = organism_at(*frame.pointed_at, *snapshot, tile.view.organisms_at(blend), tile.camera);
+        highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
     }
     const IslandView& island_view = pane.island_view_of(tile);
     renderer.draw(tile.view, blend, tile.camera, frame.width_pixels, frame.height_pixels, island_view, highlighted);

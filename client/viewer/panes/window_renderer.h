@@ -22,7 +22,7 @@ namespace evod::viewer {
 
 class WindowRenderer {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     /// scale  factor for the size of all text and widgets
     explicit WindowRenderer(double scale = 1) : gui_{scale} {}

@@ -22,7 +22,7 @@ namespace evod::viewer {
 
 namespace {
 
-using Clock = core::WorldView::Clock;
+using Clock = core::SnapshotInterpolator::Clock;
 
 constexpr double snapshot_rate_hz =
     60; // snapshots per second, for worlds that are not stepped; a stepped world sends one at the end of each step
@@ -158,7 +158,7 @@ class Recorder {
     }
 
     bool was_reset(std::size_t pane) {
-        const codec::DecodedSnapshot* snapshot = panes_[pane].world.feed.snapshot();
+        const codec::ReceivedSnapshot* snapshot = panes_[pane].world.feed.snapshot();
         return snapshot != nullptr && snapshot->about.run_id() != run_ids_[pane];
     }
 

@@ -23,7 +23,7 @@ sf::ContextSettings context_settings();
 
 class Screen {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     /// Throws std::runtime_error if the window cannot be opened.
     explicit Screen(const Options& options);

@@ -33,7 +33,7 @@ void check_reachable(const ViewedWorld& world, std::uint64_t tick) {
 } // namespace
 
 void take_screenshot(const Options& options, const Options::Screenshot& screenshot) {
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};

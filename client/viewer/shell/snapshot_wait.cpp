@@ -31,7 +31,7 @@ void check_reachable(const ViewedWorld& world) {
 }
 
 bool all_have_snapshots(Panes& panes) {
-    panes.update(core::WorldView::Clock::now());
+    panes.update(core::SnapshotInterpolator::Clock::now());
     bool all = true;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         const std::vector<Tile> tiles = panes[i].tiles();

@@ -23,7 +23,7 @@ Window::Window(Screen& screen, const Options& options)
     , panes_{wanted_of(options), options.beside} {}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
     now_ = Clock::now();
     bool was_connected = false;
     while (window_.isOpen() && !to_start_screen_) {
@@ -168,7 +168,7 @@ void Window::toggle_replay() {
         return renderer_.overlay().notice("This world replays a run file: there is no live world", now_);
     }
     evod::v1::RunMoment now;
-    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         now.set_tick(snapshot->about.tick());
     }
     world.replay.open(std::move(now));
@@ -177,7 +177,7 @@ void Window::toggle_replay() {
 void Window::save_screenshot() {
     const ViewedWorld& world = panes_.focused().world;
     std::string name = "evoview";
-    if (const codec::DecodedSnapshot* snapshot = world.feed.snapshot()) {
+    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         name += "-" + snapshot->about.world() + "-island-" + std::to_string(snapshot->about.island()) + "-tick-" +
                 std::to_string(snapshot->about.tick());
     }

@@ -41,8 +41,9 @@ class Window {
     WindowRenderer& renderer_;
     Panes panes_;
     Input input_;
-    core::WorldView::Clock::time_point now_{};
-    core::WorldView::Clock::time_point asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits
+    core::SnapshotInterpolator::Clock::time_point now_{};
+    core::SnapshotInterpolator::Clock::time_point
+        asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits
     bool to_start_screen_ = false;
 };
 

@@ -1,10 +1,8 @@
 #include "client/viewer/world/organism_history.h"
 
-#include <algorithm>
-
 namespace evod::viewer {
 
-void OrganismHistory::add(const codec::DecodedSnapshot& snapshot) {
+void OrganismHistory::add(const codec::ReceivedSnapshot& snapshot) {
     if (snapshot.about.generation() != generation_) {
         ended_ = true;
         // The organism's children are only in the next generation.
@@ -12,9 +10,9 @@ void OrganismHistory::add(const codec::DecodedSnapshot& snapshot) {
         return;
     }
     const double s = snapshot.about.simulated_s();
-    const auto& ids = snapshot.organisms.id;
-    const auto place = std::ranges::lower_bound(ids, id_);
-    if (ended_ || place == ids.end() || *place != id_ || (!health_.empty() && s <= health_.back().s)) {
+    const codec::Entities& organisms = snapshot.entities->organisms;
+    const auto index = organisms.index_of(id_);
+    if (ended_ || !index || (!health_.empty() && s <= health_.back().s)) {
         return;
     }
     if (health_.size() == points_max) {
@@ -23,7 +21,7 @@ void OrganismHistory::add(const codec::DecodedSnapshot& snapshot) {
         }
         health_.resize(points_max / 2);
     }
-    health_.push_back({s, snapshot.organisms.health[static_cast<std::size_t>(place - ids.begin())]});
+    health_.push_back({s, organisms.health(*index)});
 }
 
 void OrganismHistory::add(const evod::v1::OrganismInfo& info) {

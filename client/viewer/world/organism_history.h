@@ -34,7 +34,7 @@ class OrganismHistory {
 
     /// Adds a point of health from a snapshot of the organism's island. A snapshot of another generation ends the
     /// history.
-    void add(const codec::DecodedSnapshot& snapshot);
+    void add(const codec::ReceivedSnapshot& snapshot);
     /// Stores the server's description if it is about this organism. Both id and generation must match, because every
     /// generation uses the same ids.
     void add(const evod::v1::OrganismInfo& info);

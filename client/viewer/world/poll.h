@@ -20,7 +20,7 @@ namespace evod::viewer {
 
 class Poll {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
     /// Receives the answer. Null: the request was refused or not answered; problem() contains the reason. A handler may
     /// send the next request or delay it.
     using Handler = std::function<void(const evod::v1::Response*)>;

@@ -160,7 +160,8 @@ std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
     return children;
 }
 
-std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* snapshot) {
+std::optional<std::vector<std::uint32_t>> living(const Population& population,
+                                                 const codec::ReceivedSnapshot* snapshot) {
     std::vector<std::uint32_t> ids;
     for (std::uint32_t id = 0; id < population.size(); ++id) {
         if (population.choice(id) != evod::v1::CHOICE_UNSPECIFIED) {
@@ -171,10 +172,10 @@ std::optional<std::vector<std::uint32_t>> living(const Population& population, c
         return ids;
     }
     if (snapshot == nullptr || snapshot->about.generation() != population.generation() ||
-        snapshot->organisms.id.size() != snapshot->about.live().alive_count()) {
+        snapshot->entities->organisms.id.size() != snapshot->about.live().alive_count()) {
         return std::nullopt;
     }
-    for (const std::uint32_t id : snapshot->organisms.id) {
+    for (const std::uint32_t id : snapshot->entities->organisms.id) {
         if (id < population.size()) {
             ids.push_back(id);
         }

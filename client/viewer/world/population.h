@@ -96,6 +96,6 @@ class Population {
 /// this generation and contains the whole island.
 ///
 /// snapshot  the newest snapshot of the same island and run; null: there is none
-std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* snapshot);
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::ReceivedSnapshot* snapshot);
 
 } // namespace evod::viewer

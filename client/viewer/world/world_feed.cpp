@@ -109,7 +109,7 @@ void WorldFeed::choose_island(std::uint32_t island) {
 }
 
 void WorldFeed::cycle_island(int by) {
-    if (const codec::DecodedSnapshot* shown = snapshot()) {
+    if (const codec::ReceivedSnapshot* shown = snapshot()) {
         const auto count = std::max<std::int64_t>(shown->about.island_count(), 1);
         choose_island(static_cast<std::uint32_t>((std::int64_t{island_} + by + count) % count));
     } else { // perhaps the world does not have the chosen island
@@ -204,7 +204,7 @@ bool WorldFeed::take_snapshots(Clock::time_point now) {
 
 // ---- what is known ---------------------------------------------------------------------------------------------
 
-const codec::DecodedSnapshot* WorldFeed::snapshot_of(std::uint32_t island) const {
+const codec::ReceivedSnapshot* WorldFeed::snapshot_of(std::uint32_t island) const {
     const auto view = views_.find(island);
     return view == views_.end() ? nullptr : view->second.latest().get();
 }

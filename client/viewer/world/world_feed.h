@@ -8,7 +8,7 @@
 // Threads      used by the thread that draws.
 #pragma once
 
-#include "client/core/world_view.h"
+#include "client/core/snapshot_interpolator.h"
 #include "client/viewer/world/run_control.h"
 #include "client/viewer/world/server_connection.h"
 
@@ -33,7 +33,7 @@ struct WantedWorld {
 
 class WorldFeed {
   public:
-    using Clock = core::WorldView::Clock;
+    using Clock = core::SnapshotInterpolator::Clock;
 
     WorldFeed(ServerConnection& server, const WantedWorld& wanted);
     WorldFeed(const WorldFeed&) = delete;
@@ -70,15 +70,15 @@ class WorldFeed {
 
     // Data reported by the server.
 
-    core::WorldView& view() { return views_[island_]; }
-    core::WorldView& view_of(std::uint32_t island) { return views_[island]; }
+    core::SnapshotInterpolator& view() { return views_[island_]; }
+    core::SnapshotInterpolator& view_of(std::uint32_t island) { return views_[island]; }
     /// The newest snapshot of the chosen island; null until one has arrived.
-    const codec::DecodedSnapshot* snapshot() const { return snapshot_of(island_); }
-    const codec::DecodedSnapshot* snapshot_of(std::uint32_t island) const;
+    const codec::ReceivedSnapshot* snapshot() const { return snapshot_of(island_); }
+    const codec::ReceivedSnapshot* snapshot_of(std::uint32_t island) const;
     /// The number of islands of the world; 1 until a snapshot has arrived.
     std::uint32_t island_count() const;
     /// Densities of the whole island, updated about once a second while a view is set; otherwise null.
-    const std::shared_ptr<const codec::DecodedSnapshot>& overview() const { return overview_snapshot_; }
+    const std::shared_ptr<const codec::ReceivedSnapshot>& overview() const { return overview_snapshot_; }
     const RunControl& control() const { return control_; }
     RunControl& control() { return control_; }
     /// The tick range, if the world is a replay; null for a live world.
@@ -126,8 +126,8 @@ class WorldFeed {
     core::SubscriptionHandle snapshot_subscription_, event_subscription_;
     std::optional<core::SubscriptionHandle> overview_subscription_;
     std::optional<evod::v1::View> streamed_view_;
-    std::map<std::uint32_t, core::WorldView> views_; // one view per island number
-    std::shared_ptr<const codec::DecodedSnapshot> overview_snapshot_;
+    std::map<std::uint32_t, core::SnapshotInterpolator> views_; // one view per island number
+    std::shared_ptr<const codec::ReceivedSnapshot> overview_snapshot_;
     RunControl control_;
     std::optional<evod::v1::Replay> replay_;
     std::vector<std::string> gene_names_;

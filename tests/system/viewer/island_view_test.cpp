@@ -64,7 +64,7 @@ struct IslandViewTest : testing::Test {
     }
 
     using Clock = WindowRenderer::Clock;
-    const codec::DecodedSnapshot snapshot = codec::decode_plain(known_snapshot()).value();
+    const codec::ReceivedSnapshot snapshot = codec::decode_plain(known_snapshot()).value();
     PlayingServer server{known_snapshot()};
     std::optional<Panes> panes; // destroyed before the server, which waits for the disconnection
     sf::Context context{context_settings(), 1, 1};
@@ -84,8 +84,8 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsHealth) {
         island_view().options.ramp = ramp;
         const sf::Image image = draw_when([&] { return world().feed.snapshot() != nullptr; });
         std::vector<Colour> colours; // the greatest health is 100, where the ramp ends
-        for (const float health : snapshot.organisms.health) {
-            colours.push_back(palette::at(ramp, std::round(health / 100.0 * 255) / 255));
+        for (const std::uint32_t steps : snapshot.entities->organisms.height) {
+            colours.push_back(palette::at(ramp, std::round(codec::px_of(steps) / 100.0 * 255) / 255));
         }
         expect_colours(image, colours);
     }
@@ -96,7 +96,7 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsGene) {
     island_view().options.gene = 1;
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // the gene is 100 + id, and ids are 0 to 9
-    for (const std::uint32_t id : snapshot.organisms.id) {
+    for (const std::uint32_t id : snapshot.entities->organisms.id) {
         colours.push_back(palette::at(palette::Ramp::Viridis, std::round(id / 9.0 * 255) / 255));
     }
     expect_colours(image, colours);
@@ -106,7 +106,7 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
     island_view().options.colour_by = ColourBy::Lineage;
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // founders are 0, 1, 2, 0, …: families of four, three and three
-    for (const std::uint32_t id : snapshot.organisms.id) {
+    for (const std::uint32_t id : snapshot.entities->organisms.id) {
         colours.push_back(palette::kinds[id % 3]);
     }
     expect_colours(image, colours);

@@ -24,7 +24,7 @@ Camera camera_in(Rectangle viewport, const evod::v1::SnapshotFrame& snapshot) {
     return camera;
 }
 
-void expect_shown(const codec::DecodedSnapshot& snapshot, Rectangle viewport, const sf::Image& image) {
+void expect_shown(const codec::ReceivedSnapshot& snapshot, Rectangle viewport, const sf::Image& image) {
     const ExpectedFrame expected{snapshot, camera_in(viewport, snapshot.about)};
     EXPECT_GT(expected.count(palette::organism), 100u);
     const auto mismatch = expected.compare(image);
@@ -115,7 +115,7 @@ struct TimelineTest : PanesTest {
         return viewport_of({below.left, below.top, below.width, below.height - Timeline::height_pixels});
     }
 
-    bool shows(const codec::DecodedSnapshot& snapshot, Rectangle place) {
+    bool shows(const codec::ReceivedSnapshot& snapshot, Rectangle place) {
         const ExpectedFrame expected{snapshot, camera_in(place, snapshot.about)};
         return Person::looks_until([&] {
             const sf::Image seen = person.looks();

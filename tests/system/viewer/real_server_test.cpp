@@ -31,9 +31,9 @@ TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
         const ExpectedFrame expected{*snapshot, camera_of(snapshot->about, 1280, 720)};
         EXPECT_GT(expected.count(palette::background), 500'000u);
         // A ring of radius 4 px has dozens of fully covered pixels, a disc more.
-        EXPECT_GT(expected.count(palette::organism), 10 * snapshot->organisms.id.size());
-        EXPECT_GT(expected.count(palette::food), 10 * snapshot->food.id.size());
-        EXPECT_GT(expected.count(palette::poison), 10 * snapshot->poison.id.size());
+        EXPECT_GT(expected.count(palette::organism), 10 * snapshot->entities->organisms.id.size());
+        EXPECT_GT(expected.count(palette::food), 10 * snapshot->entities->food.id.size());
+        EXPECT_GT(expected.count(palette::poison), 10 * snapshot->entities->poison.id.size());
         const auto mismatch = expected.compare(image);
         EXPECT_EQ(mismatch.count, 0u) << world << " " << mismatch.first;
     }

@@ -50,9 +50,9 @@ TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
     ASSERT_TRUE(image.loadFromFile(path));
     const Camera camera = camera_of(snapshot, 1280, 720);
     const auto decoded = codec::decode_plain(snapshot).value();
-    for (std::size_t i = 0; i < decoded.organisms.id.size(); ++i) {
-        const Point top =
-            camera.to_screen({decoded.organisms.x_px[i], decoded.organisms.y_px[i] - decoded.organisms.radius_px[i]});
+    const codec::Entities& organisms = decoded.entities->organisms;
+    for (std::size_t i = 0; i < organisms.id.size(); ++i) {
+        const Point top = camera.to_screen({organisms.x_px(i), organisms.y_px(i) - organisms.radius_px(i)});
         unsigned dark_count = 0;
         for (int y = -14; y < -1; ++y) {
             for (int x = -14; x <= 14; ++x) {

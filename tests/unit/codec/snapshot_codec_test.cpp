@@ -15,8 +15,6 @@ namespace evod::codec {
 namespace {
 
 using testing::HasSubstr;
-using Ids = std::vector<std::uint32_t>;
-using Floats = std::vector<float>;
 
 QuantisedSnapshot small_snapshot() {
     return {
@@ -56,31 +54,37 @@ TEST(PlainCodec, DecodingRestoresTheSnapshot) {
     ASSERT_TRUE(snapshot) << snapshot.error().what;
     EXPECT_EQ(snapshot->about.tick(), 77U);
     EXPECT_FALSE(snapshot->about.has_plain());
-    EXPECT_EQ(snapshot->organisms.id, (Ids{3, 9}));
-    EXPECT_EQ(snapshot->organisms.x_px, (Floats{100.F, 1280.F}));
-    EXPECT_EQ(snapshot->organisms.y_px, (Floats{0.0625F, 720.F}));
-    EXPECT_EQ(snapshot->organisms.radius_px, (Floats{10.F, 8.0625F}));
-    EXPECT_EQ(snapshot->organisms.health, (Floats{100.5F, 4095.9375F}));
-    EXPECT_EQ(snapshot->food.id, (Ids{0, 4}));
-    EXPECT_EQ(snapshot->food.y_px, (Floats{3.F, 4.F}));
-    EXPECT_EQ(snapshot->poison.id, (Ids{70000}));
-    EXPECT_EQ(snapshot->crates.half_height_px, (Floats{10.F}));
-    EXPECT_EQ(snapshot->crates.id, (Ids{0}));
-    EXPECT_EQ(snapshot->obstacles.x_px, (Floats{11.F}));
-    EXPECT_EQ(snapshot->obstacles.half_width_px, (Floats{13.F}));
+    EXPECT_EQ(*snapshot->entities, small_snapshot());
+}
+
+TEST(PlainCodec, TheAccessorsConvertToPx) {
+    const QuantisedSnapshot snapshot = small_snapshot();
+    EXPECT_EQ(snapshot.organisms.x_px(1), 1280.F);
+    EXPECT_EQ(snapshot.organisms.y_px(0), 0.0625F);
+    EXPECT_EQ(snapshot.organisms.radius_px(1), 8.0625F);
+    EXPECT_EQ(snapshot.organisms.health(1), 4095.9375F);
+    EXPECT_EQ(snapshot.organisms.index_of(9), 1U);
+    EXPECT_EQ(snapshot.organisms.index_of(4), std::nullopt);
+    EXPECT_EQ(snapshot.organisms.index_of(10), std::nullopt);
+    EXPECT_EQ(snapshot.crates.half_height_px(0), 10.F);
+    EXPECT_EQ(snapshot.crates.id_of(0), 0U);
+    EXPECT_EQ(snapshot.poison.id_of(0), 70000U);
+    EXPECT_EQ(snapshot.obstacles.half_width_px(0), 13.F);
 }
 
 TEST(PlainCodec, AnEmptyIslandIsDecoded) {
     const auto snapshot = decode_plain(frame_of({}));
     ASSERT_TRUE(snapshot);
-    EXPECT_TRUE(snapshot->organisms.id.empty());
+    EXPECT_TRUE(snapshot->entities->organisms.id.empty());
 }
 
 TEST(PlainCodec, WideIslandsKeepTheirPrecision) {
     QuantisedSnapshot snapshot = small_snapshot();
     snapshot.position_bytes = 4;
     snapshot.organisms.x[1] = 16 * 499'999 + 9;
-    EXPECT_EQ(decode_plain(frame_of(snapshot))->organisms.x_px, (Floats{100.F, 499'999.5625F}));
+    const auto decoded = decode_plain(frame_of(snapshot)).value();
+    EXPECT_EQ(decoded.entities->organisms, snapshot.organisms);
+    EXPECT_EQ(decoded.entities->organisms.x_px(1), 499'999.5625F);
 }
 
 TEST(PlainCodec, TheDecoderNeedsNoKeyframeBeforeIt) {

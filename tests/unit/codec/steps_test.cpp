@@ -53,5 +53,15 @@ RC_GTEST_PROP(Steps, RoundingMovesAPositionByHalfAStepAtMost, (bool wide)) {
     RC_ASSERT(std::abs(in_steps(position) / 16.0 - position / double{px}) <= 1.0 / 32);
 }
 
+TEST(Steps, PxAndStepsConvertBothWays) {
+    for (const std::uint32_t steps : {0U, 1U, 17U, 0xffffU, (1U << 24) - 1, 1U << 30}) {
+        EXPECT_EQ(steps_of(px_of(steps)), steps);
+    }
+    EXPECT_EQ(px_of(129), 8.0625F);
+    EXPECT_EQ(steps_of(1.03125F), 17U) << "half a step is rounded up";
+    EXPECT_EQ(steps_of(-1.F), 0U);
+    EXPECT_EQ(steps_of(std::numeric_limits<float>::max()), 0x7fff'ffffU);
+}
+
 } // namespace
 } // namespace evod::codec

@@ -233,12 +233,12 @@ TEST(TiledFrame, IsDecodedTileByTile) {
     EXPECT_EQ(decoded->tiles[9].left_px, 512);
     EXPECT_EQ(decoded->tiles[9].top_px, 512);
     EXPECT_EQ(decoded->about.tiles_size(), 0);
-    std::size_t shown = decoded->organisms.id.size();
+    std::size_t shown = decoded->entities->organisms.id.size();
     for (const DecodedTile& tile : decoded->tiles) {
         shown += tile.dots.organisms.x_px.size();
         shown += std::accumulate(tile.density.organisms.begin(), tile.density.organisms.end(), std::size_t{0});
     }
-    EXPECT_GT(shown, decoded->organisms.id.size());
+    EXPECT_GT(shown, decoded->entities->organisms.id.size());
     EXPECT_EQ(shown, frame.organism_count());
 }
 
@@ -248,7 +248,7 @@ TEST(TiledFrame, MayHaveNoTiles) {
     const auto decoded = SnapshotDecoder{}.decode(frame);
     ASSERT_TRUE(decoded);
     EXPECT_TRUE(decoded->tiles.empty());
-    EXPECT_TRUE(decoded->organisms.id.empty());
+    EXPECT_TRUE(decoded->entities->organisms.id.empty());
 }
 
 TEST(TiledFrameDamage, EveryOtherByteOfATileIsRefused) {

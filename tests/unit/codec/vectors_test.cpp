@@ -3,7 +3,6 @@
 #include "proto/codec/compression.h"
 #include "proto/codec/framing.h"
 #include "proto/codec/snapshot_decoder.h"
-#include "proto/codec/steps.h"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
@@ -102,7 +101,7 @@ const std::vector<Vector>& vectors() {
 
 // ---- decoded snapshots as JSON ----------------------------------------------------------------------------------
 
-json::array numbers(const std::vector<std::uint32_t>& column) {
+json::array numbers(const Column& column) {
     return json::array(column.begin(), column.end());
 }
 
@@ -117,10 +116,6 @@ json::array whole(const std::vector<float>& column, float unit, float from = 0) 
     return whole;
 }
 
-json::array steps(const std::vector<float>& column) {
-    return whole(column, 1 / steps_per_px);
-}
-
 /// Omits a kind without entities.
 void add(json::object& to, std::string_view kind,
          std::initializer_list<std::pair<std::string_view, json::array>> columns) {
@@ -133,29 +128,29 @@ void add(json::object& to, std::string_view kind,
     }
 }
 
-void add_boxes(json::object& to, std::string_view kind, const DecodedBoxes& boxes, bool with_ids) {
+void add_boxes(json::object& to, std::string_view kind, const Entities& boxes, bool with_ids) {
     add(to, kind,
-        {{"x", steps(boxes.x_px)},
-         {"y", steps(boxes.y_px)},
-         {"half_width", steps(boxes.half_width_px)},
-         {"half_height", steps(boxes.half_height_px)}});
+        {{"x", numbers(boxes.x)},
+         {"y", numbers(boxes.y)},
+         {"half_width", numbers(boxes.width)},
+         {"half_height", numbers(boxes.height)}});
     if (with_ids && to.contains(kind)) {
         to[kind].as_object()["id"] = numbers(boxes.id);
     }
 }
 
-json::object entities_of(const DecodedSnapshot& snapshot, bool with_ids) {
+json::object entities_of(const QuantisedSnapshot& snapshot, bool with_ids) {
     json::object entities;
     add(entities, "organisms",
         {{"id", numbers(snapshot.organisms.id)},
-         {"x", steps(snapshot.organisms.x_px)},
-         {"y", steps(snapshot.organisms.y_px)},
-         {"radius", steps(snapshot.organisms.radius_px)},
-         {"health", steps(snapshot.organisms.health)}});
+         {"x", numbers(snapshot.organisms.x)},
+         {"y", numbers(snapshot.organisms.y)},
+         {"radius", numbers(snapshot.organisms.width)},
+         {"health", numbers(snapshot.organisms.height)}});
     add(entities, "food",
-        {{"id", numbers(snapshot.food.id)}, {"x", steps(snapshot.food.x_px)}, {"y", steps(snapshot.food.y_px)}});
+        {{"id", numbers(snapshot.food.id)}, {"x", numbers(snapshot.food.x)}, {"y", numbers(snapshot.food.y)}});
     add(entities, "poison",
-        {{"id", numbers(snapshot.poison.id)}, {"x", steps(snapshot.poison.x_px)}, {"y", steps(snapshot.poison.y_px)}});
+        {{"id", numbers(snapshot.poison.id)}, {"x", numbers(snapshot.poison.x)}, {"y", numbers(snapshot.poison.y)}});
     add_boxes(entities, "crates", snapshot.crates, with_ids);
     add_boxes(entities, "obstacles", snapshot.obstacles, with_ids);
     return entities;
@@ -275,7 +270,7 @@ TEST(Vectors, DecodeToTheirLines) {
         ASSERT_TRUE(snapshot) << snapshot.error().what;
         json::object shown = fields_of(snapshot->about);
         const bool in_tiles = expected.contains("tiles");
-        for (auto& part : entities_of(*snapshot, in_tiles)) {
+        for (auto& part : entities_of(*snapshot->entities, in_tiles)) {
             shown[part.key()] = part.value();
         }
         if (in_tiles) {

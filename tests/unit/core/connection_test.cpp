@@ -336,7 +336,7 @@ TEST(Subscriptions, PrecedeOtherRequestsAfterALoss) {
     session.answer(session.read_request(), 5);
     EXPECT_EQ(ran.get()->applied_tick(), 5U);
     session.send_snapshot(8, 0, 99);
-    std::shared_ptr<const codec::DecodedSnapshot> snapshot;
+    std::shared_ptr<const codec::ReceivedSnapshot> snapshot;
     EXPECT_TRUE(wait_until([&] { return (snapshot = connection.take_snapshot(handle)) != nullptr; }));
     EXPECT_EQ(snapshot->about.tick(), 99U) << "the handle outlives the session";
 }
@@ -410,9 +410,9 @@ TEST(Snapshots, ADamagedOneIsCountedAndDropped) {
     EXPECT_EQ(connection.status().state, State::Connected);
 }
 
-std::shared_ptr<const codec::DecodedSnapshot> snapshot_of_tick(Connection& connection, SubscriptionHandle handle,
-                                                               std::uint64_t tick) {
-    std::shared_ptr<const codec::DecodedSnapshot> snapshot;
+std::shared_ptr<const codec::ReceivedSnapshot> snapshot_of_tick(Connection& connection, SubscriptionHandle handle,
+                                                                std::uint64_t tick) {
+    std::shared_ptr<const codec::ReceivedSnapshot> snapshot;
     EXPECT_TRUE(wait_until([&] {
         if (auto newest = connection.take_snapshot(handle)) {
             snapshot = std::move(newest);
@@ -453,7 +453,7 @@ TEST(Snapshots, DeltasAreDecodedAndAcknowledged) {
         EXPECT_EQ(message.acknowledge_snapshot().sequence(), sequence);
         const auto snapshot = snapshot_of_tick(connection, handle, sequence);
         ASSERT_TRUE(snapshot);
-        EXPECT_EQ(snapshot->organisms.x_px, std::vector<float>{static_cast<float>(sequence - 1)});
+        EXPECT_EQ(snapshot->entities->organisms.x, codec::Column(1, codec::steps_of(static_cast<float>(sequence - 1))));
         EXPECT_EQ(snapshot->about.width_px(), 100) << "of the keyframe";
     }
 }
@@ -481,7 +481,7 @@ TEST(Snapshots, ADamagedDeltaRequestsAKeyframe) {
     session.send(snapshots.delta());
     const auto snapshot = snapshot_of_tick(connection, handle, 5);
     ASSERT_TRUE(snapshot);
-    EXPECT_EQ(snapshot->organisms.x_px, std::vector<float>{4.F});
+    EXPECT_EQ(snapshot->entities->organisms.x, codec::Column(1, codec::steps_of(4)));
     const ConnectionStatus status = connection.status();
     EXPECT_EQ(status.damaged_snapshot_count, 1U);
     EXPECT_THAT(status.last_damage, HasSubstr("checksum"));
@@ -580,7 +580,7 @@ TEST(Views, ADamagedTileRequestsAKeyframe) {
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
     const auto first = snapshot_of_tick(connection, handle, 1);
     ASSERT_TRUE(first);
-    EXPECT_EQ(first->organisms.id, (std::vector<std::uint32_t>{5, 6}));
+    EXPECT_EQ(first->entities->organisms.id, (codec::Column{5, 6}));
     EXPECT_EQ(first->tiles.size(), 1U);
     auto damaged = tile_snapshot(2, 1);
     damaged.mutable_tiles(0)->mutable_body()->back() ^= 1;

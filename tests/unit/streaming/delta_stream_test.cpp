@@ -129,8 +129,9 @@ TEST_F(DeltaStreamTest, EveryPlainSnapshotIsComplete) {
         frame_.set_generation_tick(frame_.generation_tick() + 6);
         const auto decoded = viewer.watch(*add(100ms, Form::Plain));
         ASSERT_TRUE(decoded);
-        EXPECT_EQ(decoded->organisms.id, (std::vector<std::uint32_t>{1, 2}));
-        EXPECT_EQ(decoded->organisms.x_px, std::vector<float>(2, static_cast<float>(frame_.generation_tick())));
+        EXPECT_EQ(decoded->entities->organisms.id, (codec::Column{1, 2}));
+        EXPECT_EQ(decoded->entities->organisms.x,
+                  codec::Column(2, static_cast<std::uint32_t>(16 * frame_.generation_tick())));
         EXPECT_EQ(decoded->about.base_sequence(), 0U);
     }
 }

@@ -31,12 +31,12 @@ class Viewer {
     }
     v1::SnapshotFrame send(StreamedSnapshot& snapshot) { return send(snapshot, codec::tiles_of(snapshot.layout())); }
 
-    codec::Result<codec::DecodedSnapshot> watch(StreamedSnapshot& snapshot, const codec::TileRange& seen,
-                                                v1::Detail detail = v1::DETAIL_FULL) {
+    codec::Result<codec::ReceivedSnapshot> watch(StreamedSnapshot& snapshot, const codec::TileRange& seen,
+                                                 v1::Detail detail = v1::DETAIL_FULL) {
         return decoder_.decode(send(snapshot, seen, detail));
     }
-    codec::Result<codec::DecodedSnapshot> watch(StreamedSnapshot& snapshot) { return decoder_.decode(send(snapshot)); }
-    codec::Result<codec::DecodedSnapshot> decode(v1::SnapshotFrame frame) { return decoder_.decode(std::move(frame)); }
+    codec::Result<codec::ReceivedSnapshot> watch(StreamedSnapshot& snapshot) { return decoder_.decode(send(snapshot)); }
+    codec::Result<codec::ReceivedSnapshot> decode(v1::SnapshotFrame frame) { return decoder_.decode(std::move(frame)); }
 
     void request_keyframe() { sent_.reset(); }
     const codec::QuantisedSnapshot* snapshot() const { return decoder_.snapshot(); }

@@ -27,7 +27,7 @@ class BreedingPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    using Time = core::WorldView::Clock::time_point;
+    using Time = core::SnapshotInterpolator::Clock::time_point;
 
     void choose(const Context& context);
     void request(const Context& context);

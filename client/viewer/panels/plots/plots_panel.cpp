@@ -118,7 +118,7 @@ void PlotsPanel::update(Context& context) {
     if (world.feed.control().known()) {
         own_.history.set_run(world.feed.control().world(), world.feed.control().run_id());
     }
-    const codec::DecodedSnapshot* snapshot = world.feed.snapshot();
+    const codec::ReceivedSnapshot* snapshot = world.feed.snapshot();
     if (snapshot != nullptr && snapshot->about.run_id() == own_.history.run_id() && snapshot->about.generation() > 0) {
         own_.history.set_ended(snapshot->about.generation() - 1);
     }
@@ -338,7 +338,7 @@ void PlotsPanel::update_histogram(Context& context) {
         return;
     }
     if (living_only_) {
-        const codec::DecodedSnapshot* snapshot = context.world.feed.snapshot_of(whose.island);
+        const codec::ReceivedSnapshot* snapshot = context.world.feed.snapshot_of(whose.island);
         const bool of_this_run = snapshot != nullptr && snapshot->about.run_id() == whose.run_id;
         const auto ids = living(*population, of_this_run ? snapshot : nullptr);
         if (ids && !ids->empty()) {

@@ -37,7 +37,7 @@ class ExpectedFrame {
     };
 
     /// organisms  colours by index in the snapshot, drawn as discs with a thin outline; empty: rings
-    ExpectedFrame(const codec::DecodedSnapshot& snapshot, const Camera& camera,
+    ExpectedFrame(const codec::ReceivedSnapshot& snapshot, const Camera& camera,
                   const std::vector<Colour>& organisms = {})
         : camera_{camera}
         , left_{static_cast<unsigned>(camera.viewport().left)}
@@ -48,32 +48,31 @@ class ExpectedFrame {
         const double width = snapshot.about.width_px(), height = snapshot.about.height_px();
         const double wall = Camera::wall_pixels / camera.zoom();
         box(width / 2, height / 2, width / 2 + wall, height / 2 + wall, Camera::wall_pixels, palette::wall, {});
-        for (std::size_t i = 0; i < snapshot.obstacles.x_px.size(); ++i) {
-            box(snapshot.obstacles.x_px[i], snapshot.obstacles.y_px[i], snapshot.obstacles.half_width_px[i],
-                snapshot.obstacles.half_height_px[i], 0, {}, palette::obstacle);
-        }
-        for (std::size_t i = 0; i < snapshot.crates.x_px.size(); ++i) {
-            box(snapshot.crates.x_px[i], snapshot.crates.y_px[i], snapshot.crates.half_width_px[i],
-                snapshot.crates.half_height_px[i], 2, palette::crate_edge, palette::crate);
-        }
-        const auto items = [&](const codec::DecodedItems& all, Colour colour) {
-            for (std::size_t i = 0; i < all.x_px.size(); ++i) {
-                circle(all.x_px[i], all.y_px[i], snapshot.about.item_radius_px(), 0, {}, colour);
+        const auto boxes = [&](const codec::Entities& all, double edge_pixels, Colour edge, Colour fill) {
+            for (std::size_t i = 0; i < all.x.size(); ++i) {
+                box(all.x_px(i), all.y_px(i), all.half_width_px(i), all.half_height_px(i), edge_pixels, edge, fill);
             }
         };
-        items(snapshot.poison, palette::poison);
-        items(snapshot.food, palette::food);
-        const auto& all = snapshot.organisms;
-        for (std::size_t i = 0; i < all.x_px.size(); ++i) {
+        boxes(snapshot.entities->obstacles, 0, {}, palette::obstacle);
+        boxes(snapshot.entities->crates, 2, palette::crate_edge, palette::crate);
+        const auto items = [&](const codec::Entities& all, Colour colour) {
+            for (std::size_t i = 0; i < all.x.size(); ++i) {
+                circle(all.x_px(i), all.y_px(i), snapshot.about.item_radius_px(), 0, {}, colour);
+            }
+        };
+        items(snapshot.entities->poison, palette::poison);
+        items(snapshot.entities->food, palette::food);
+        const codec::Entities& all = snapshot.entities->organisms;
+        for (std::size_t i = 0; i < all.x.size(); ++i) {
             if (organisms.empty()) {
-                circle(all.x_px[i], all.y_px[i], all.radius_px[i], 2, palette::organism, {});
+                circle(all.x_px(i), all.y_px(i), all.radius_px(i), 2, palette::organism, {});
             } else {
-                circle(all.x_px[i], all.y_px[i], all.radius_px[i], 1, palette::organism_outline, organisms[i]);
+                circle(all.x_px(i), all.y_px(i), all.radius_px(i), 1, palette::organism_outline, organisms[i]);
             }
         }
-        for (std::size_t i = 0; i < all.x_px.size(); ++i) { // numbers are drawn over everything
-            const Point centre = camera_.to_screen({all.x_px[i], all.y_px[i]});
-            const double radius = all.radius_px[i] * camera_.zoom();
+        for (std::size_t i = 0; i < all.x.size(); ++i) { // numbers are drawn over everything
+            const Point centre = camera_.to_screen({all.x_px(i), all.y_px(i)});
+            const double radius = all.radius_px(i) * camera_.zoom();
             const bool below = centre.y - radius - 15 < camera_.to_screen({0, 0}).y;
             const double top = below ? centre.y + radius : centre.y - radius - 17;
             paint(centre.x - 32, top, centre.x + 32, top + 17, [](double, double) { return open; });

@@ -17,14 +17,14 @@ inline void make_world(RealServer& server, const std::string& name, std::uint64_
 }
 
 /// The current snapshot of a world.
-inline std::shared_ptr<const codec::DecodedSnapshot> snapshot_of(RealServer& server, const std::string& world,
-                                                                 std::uint32_t island = 0) {
+inline std::shared_ptr<const codec::ReceivedSnapshot> snapshot_of(RealServer& server, const std::string& world,
+                                                                  std::uint32_t island = 0) {
     evod::v1::SubscribeSnapshots subscription;
     subscription.set_world(world);
     subscription.set_island(island);
     subscription.set_rate_hz(60);
     const auto subscription_handle = server.connection->subscribe(subscription);
-    std::shared_ptr<const codec::DecodedSnapshot> snapshot;
+    std::shared_ptr<const codec::ReceivedSnapshot> snapshot;
     EXPECT_TRUE(wait_until([&] {
         snapshot = server.connection->take_snapshot(subscription_handle, island);
         return snapshot != nullptr;
@@ -34,8 +34,8 @@ inline std::shared_ptr<const codec::DecodedSnapshot> snapshot_of(RealServer& ser
 }
 
 /// The snapshot of a world at an earlier moment.
-inline std::shared_ptr<const codec::DecodedSnapshot> replay_snapshot_of(RealServer& server, const std::string& world,
-                                                                        const evod::v1::RunMoment& moment) {
+inline std::shared_ptr<const codec::ReceivedSnapshot> replay_snapshot_of(RealServer& server, const std::string& world,
+                                                                         const evod::v1::RunMoment& moment) {
     evod::v1::Request open, close;
     open.mutable_open_replay()->set_world(world);
     *open.mutable_open_replay()->mutable_at() = moment;

@@ -1,5 +1,7 @@
 #include "client/viewer/island/island_renderer.h"
 
+#include "tests/unit/codec/px_column.h"
+
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
@@ -9,16 +11,15 @@ struct IslandRendererTest : testing::Test {
     IslandRendererTest() {
         camera.set_viewport({0, 0, 1024, 1024});
         camera.set_island(1000, 1000); // one pixel per px
-        snapshot.organisms.radius_px = {10, 10, 20};
-        organisms.x_px = {100, 112, 600};
-        organisms.y_px = {100, 100, 600};
+        organisms.x = codec::px_column({100, 112, 600});
+        organisms.y = codec::px_column({100, 100, 600});
+        organisms.width = codec::px_column({10, 10, 20});
     }
     std::optional<std::size_t> at(double x, double y) {
-        return organism_at(camera.to_screen({x, y}), snapshot, organisms, camera);
+        return organism_at(camera.to_screen({x, y}), {.entities = &organisms}, camera);
     }
     Camera camera;
-    codec::DecodedSnapshot snapshot;
-    core::WorldView::Positions organisms;
+    codec::Entities organisms;
 };
 
 TEST_F(IslandRendererTest, FindsTheOrganismUnderTheMouse) {
@@ -41,7 +42,7 @@ TEST_F(IslandRendererTest, ThreePixelsBesideIsAHitAtAnyZoom) {
 
 TEST_F(IslandRendererTest, NothingIsFoundUnderTheStripsOfText) {
     camera.set_viewport({0, 40, 1024, 900});
-    EXPECT_EQ(organism_at({512, 20}, snapshot, organisms, camera), std::nullopt);
+    EXPECT_EQ(organism_at({512, 20}, {.entities = &organisms}, camera), std::nullopt);
 }
 
 TEST(Labels, AreDrawnOnlyWhereTheyAreReadable) {

@@ -1,15 +1,16 @@
 #include "client/viewer/island/legend.h"
 
+#include "tests/unit/codec/px_column.h"
+
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
 namespace {
 
-codec::DecodedSnapshot snapshot_with_health(float health) {
-    codec::DecodedSnapshot snapshot;
-    snapshot.organisms.id = {0};
-    snapshot.organisms.x_px = snapshot.organisms.y_px = snapshot.organisms.radius_px = {1};
-    snapshot.organisms.health = {health};
+codec::ReceivedSnapshot snapshot_with_health(float health) {
+    codec::ReceivedSnapshot snapshot;
+    const codec::Column one = codec::px_column({1});
+    snapshot.entities = codec::snapshot_with({{0}, one, one, one, codec::px_column({health})});
     return snapshot;
 }
 

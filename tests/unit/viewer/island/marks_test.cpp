@@ -1,5 +1,6 @@
 #include "client/viewer/island/marks.h"
 
+#include "tests/unit/codec/px_column.h"
 #include "tests/unit/viewer/world/population_pages.h"
 
 #include <gmock/gmock.h>
@@ -25,13 +26,15 @@ constexpr palette::Ramp ramp = palette::Ramp::Viridis;
 struct MarksTest : testing::Test {
     MarksTest() {
         organisms.id = {0, 2, 9}; // 9 is not in the population
-        organisms.radius_px = {10, 11, 12};
-        organisms.health = {0, 50, 200};
-        at = {{100, 200, 300}, {10, 20, 30}};
+        organisms.x = codec::px_column({100, 200, 300});
+        organisms.y = codec::px_column({10, 20, 30});
+        organisms.width = codec::px_column({10, 11, 12});
+        organisms.height = codec::px_column({0, 50, 200});
+        add_discs({.entities = &organisms}, discs);
         EXPECT_EQ(population.add(page_of(0, 3, 3)), std::nullopt);
     }
-    codec::DecodedOrganisms organisms;
-    Positions at;
+    codec::Entities organisms;
+    std::vector<Shape> discs;
     Population population{2};
     const Rectangle everything{0, 0, 1000, 1000};
 };
@@ -46,7 +49,7 @@ TEST_F(MarksTest, HealthScalesFromZeroToTheRoundedMaximum) {
     EXPECT_EQ(colours[0], palette::at(ramp, 0));
     EXPECT_EQ(colours[1], palette::at(ramp, 64.0 / 255)); // a quarter, to 1/255
     EXPECT_EQ(colours[2], palette::at(ramp, 1));
-    organisms.health = {1, 2, 3};
+    organisms.height = codec::px_column({1, 2, 3});
     EXPECT_EQ(health_scale(organisms, ramp).high, 100) << "low health is not shown as high";
 }
 
@@ -89,18 +92,22 @@ TEST_F(MarksTest, FamiliesKeepTheirColoursWhileAmongTheLargest) {
     EXPECT_THAT(of_organisms, ElementsAre(palette::kinds[1], palette::kinds[0], palette::unknown));
 }
 
+TEST_F(MarksTest, DiscsHaveTheRadiiOfTheOrganisms) {
+    EXPECT_THAT(discs, ElementsAre(Shape{100, 10, 10, 10}, Shape{200, 20, 11, 11}, Shape{300, 30, 12, 12}));
+}
+
 TEST_F(MarksTest, RadiiAreDrawnOfVisibleOrganismsOnly) {
     std::vector<Shape> shapes;
-    add_radii(organisms, at, population, 1, everything, shapes);
+    add_radii(organisms, discs, population, 1, everything, shapes);
     EXPECT_THAT(shapes, ElementsAre(Shape{100, 10, 100, 100}, Shape{200, 20, 102, 102}));
     shapes.clear();
-    add_radii(organisms, at, population, 1, {301, 0, 100, 100}, shapes);
+    add_radii(organisms, discs, population, 1, {301, 0, 100, 100}, shapes);
     EXPECT_THAT(shapes, ElementsAre(Shape{200, 20, 102, 102}));
 }
 
 TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ColouredLines arrows, targets;
-    add_forces(organisms, at, population, everything, arrows, targets);
+    add_forces(organisms, discs, population, everything, arrows, targets);
     EXPECT_THAT(arrows.lines, ElementsAre(Line{100, 10, 100 + arrow_px_per_force, 10},
                                           Line{200, 20, 200 + arrow_px_per_force, 20 + 2 * arrow_px_per_force}));
     EXPECT_THAT(targets.lines, ElementsAre(Line{100, 10, 0, 0}, Line{200, 20, 2, 4}));
@@ -112,19 +119,19 @@ TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ASSERT_EQ(others.add(page), std::nullopt);
     arrows.clear();
     targets.clear();
-    add_forces(organisms, at, others, everything, arrows, targets);
+    add_forces(organisms, discs, others, everything, arrows, targets);
     EXPECT_THAT(arrows.colours, ElementsAre(palette::wanders, palette::flees));
     EXPECT_THAT(targets.colours, ElementsAre(palette::flees)) << "a wandering organism has no target";
     arrows.clear();
     targets.clear();
-    add_forces(organisms, at, others, {5'000, 5'000, 10, 10}, arrows, targets);
+    add_forces(organisms, discs, others, {5'000, 5'000, 10, 10}, arrows, targets);
     EXPECT_THAT(arrows.lines, IsEmpty());
 }
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 
-std::shared_ptr<codec::DecodedSnapshot> snapshot(double s, std::uint64_t generation = 1) {
-    auto made = std::make_shared<codec::DecodedSnapshot>();
+std::shared_ptr<codec::ReceivedSnapshot> snapshot(double s, std::uint64_t generation = 1) {
+    auto made = std::make_shared<codec::ReceivedSnapshot>();
     made->about.set_simulated_s(s);
     made->about.set_tick(static_cast<std::uint64_t>(s * 60));
     made->about.set_generation(generation);
@@ -158,30 +165,33 @@ TEST(Trails, RestartWithEachGeneration) {
 }
 
 TEST(Trails, ConnectEachOrganismWithItself) {
-    codec::DecodedOrganisms from, to;
+    codec::Entities from, to;
     from.id = {1, 2, 5, 6};
-    from.x_px = {10, 20, 50, 60};
-    from.y_px = {1, 2, 5, 6};
+    from.x = codec::px_column({10, 20, 50, 60});
+    from.y = codec::px_column({1, 2, 5, 6});
     to.id = {2, 3, 6};
-    const std::vector<float> x{21, 31, 61}, y{3, 4, 7};
+    const std::vector<Shape> discs{{21, 3, 1, 1}, {31, 4, 1, 1}, {61, 7, 1, 1}};
     std::vector<Line> lines;
-    add_paths(from, to, x, y, lines);
+    add_paths(from, to, discs, lines);
     EXPECT_THAT(lines, ElementsAre(Line{20, 2, 21, 3}, Line{60, 6, 61, 7}));
 }
 
 // ---- density ---------------------------------------------------------------------------------------------------
 
 TEST(Density, CellsAreAlignedToTheIsland) {
-    const Positions places{{5, 15, 16, 95, 500}, {5, 5, 6, 95, 5}};
-    const DensityGrid grid = density_of(places, {0, 0, 100, 100}, 10);
+    codec::Entities organisms;
+    organisms.x = codec::px_column({4, 12, 13, 76, 400});
+    organisms.y = codec::px_column({4, 4, 5, 76, 4});
+    const Positions places{.entities = &organisms};
+    const DensityGrid grid = density_of(places, {0, 0, 80, 80}, 8);
     EXPECT_EQ(grid.columns, 10u);
     EXPECT_EQ(grid.rows, 10u);
     EXPECT_EQ(grid.counts[0], 1u);
     EXPECT_EQ(grid.counts[1], 2u);
     EXPECT_EQ(grid.counts[99], 1u);
-    EXPECT_EQ(std::accumulate(grid.counts.begin(), grid.counts.end(), 0u), 4u) << "500 is outside";
-    const DensityGrid moved = density_of(places, {13, 3, 50, 50}, 10);
-    EXPECT_EQ(moved.left_px, 10);
+    EXPECT_EQ(std::accumulate(grid.counts.begin(), grid.counts.end(), 0u), 4u) << "400 is outside";
+    const DensityGrid moved = density_of(places, {11, 3, 40, 40}, 8);
+    EXPECT_EQ(moved.left_px, 8);
     EXPECT_EQ(moved.top_px, 0);
     EXPECT_EQ(moved.counts[0], 2u);
 }
@@ -210,12 +220,11 @@ TEST(Density, SquaresAreColouredByTheirCounts) {
 }
 
 TEST(Density, AnOverviewCountsEveryDetail) {
-    codec::DecodedSnapshot snapshot;
+    codec::ReceivedSnapshot snapshot;
     snapshot.about.set_width_px(1024);
     snapshot.about.set_height_px(512);
     snapshot.about.set_tile_px(512);
-    snapshot.organisms.x_px = {10};
-    snapshot.organisms.y_px = {20};
+    snapshot.entities = codec::snapshot_with({{0}, codec::px_column({10}), codec::px_column({20}), {}, {}});
     codec::DecodedTile dots, density;
     dots.detail = evod::v1::DETAIL_DOTS;
     dots.dots.organisms = {{300, 310}, {20, 20}};

@@ -1,6 +1,7 @@
 #include "client/viewer/world/organism_history.h"
 
 #include "client/viewer/panels/organism_panel.h"
+#include "tests/unit/codec/px_column.h"
 #include "tests/unit/viewer/world/population_pages.h"
 
 #include <gtest/gtest.h>
@@ -8,12 +9,12 @@
 namespace evod::viewer {
 namespace {
 
-codec::DecodedSnapshot snapshot(std::uint64_t generation, double s, float health) {
-    codec::DecodedSnapshot snapshot;
+codec::ReceivedSnapshot snapshot(std::uint64_t generation, double s, float health) {
+    codec::ReceivedSnapshot snapshot;
     snapshot.about.set_generation(generation);
     snapshot.about.set_simulated_s(s);
-    snapshot.organisms.id = {1, 3, 7};
-    snapshot.organisms.health = {50, health, 60};
+    snapshot.entities = codec::snapshot_with(
+        {.id = {1, 3, 7}, .x = {}, .y = {}, .width = {}, .height = codec::px_column({50, health, 60})});
     return snapshot;
 }
 
@@ -35,7 +36,7 @@ TEST(OrganismHistory, TakesHealthFromSnapshotsOfItsGeneration) {
     story.add(snapshot(4, 1, 80)); // the same tick again
     story.add(snapshot(4, 2, 70));
     auto without = snapshot(4, 3, 0);
-    without.organisms.id = {1, 2, 7};
+    without.entities = codec::snapshot_with({.id = {1, 2, 7}, .x = {}, .y = {}, .width = {}, .height = {}});
     story.add(without);
     ASSERT_EQ(story.health().size(), 2u);
     EXPECT_EQ(story.health()[1].s, 2);

@@ -1,5 +1,6 @@
 #include "client/viewer/world/population.h"
 
+#include "tests/unit/codec/px_column.h"
 #include "tests/unit/viewer/world/population_pages.h"
 
 #include <gmock/gmock.h>
@@ -48,11 +49,11 @@ TEST(Population, TheFirstGenerationHasNoParents) {
 }
 
 /// A snapshot of generation 4 in which the organisms with these ids live.
-codec::DecodedSnapshot snapshot_of(std::vector<std::uint32_t> ids) {
-    codec::DecodedSnapshot snapshot;
+codec::ReceivedSnapshot snapshot_of(codec::Column ids) {
+    codec::ReceivedSnapshot snapshot;
     snapshot.about.set_generation(4);
     snapshot.about.mutable_live()->set_alive_count(static_cast<std::uint32_t>(ids.size()));
-    snapshot.organisms.id = std::move(ids);
+    snapshot.entities = codec::snapshot_with({.id = std::move(ids), .x = {}, .y = {}, .width = {}, .height = {}});
     return snapshot;
 }
 
@@ -69,9 +70,9 @@ TEST(Living, AreThoseInTheSnapshotAfterTheGeneration) {
     auto page = page_of(0, 4, 4);
     page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_UNSPECIFIED));
     ASSERT_EQ(population.add(page), std::nullopt);
-    codec::DecodedSnapshot snapshot = snapshot_of({1, 3});
+    codec::ReceivedSnapshot snapshot = snapshot_of({1, 3});
     EXPECT_THAT(living(population, &snapshot), Optional(ElementsAre(1, 3)));
-    const codec::DecodedSnapshot empty = snapshot_of({});
+    const codec::ReceivedSnapshot empty = snapshot_of({});
     EXPECT_THAT(living(population, &empty), Optional(IsEmpty()));
     snapshot.about.mutable_live()->set_alive_count(3);
     EXPECT_EQ(living(population, &snapshot), std::nullopt) << "it contains only part of the island";
