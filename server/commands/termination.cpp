@@ -35,12 +35,12 @@ std::unique_ptr<char[]> memory_for_last_message;
 }
 
 /// Returns a text that names the exhausted resource. Aborts if the exception has another cause.
-const char* missing_resource(std::exception_ptr error) {
-    if (!error) {
+const char* missing_resource(std::exception_ptr thrown) {
+    if (!thrown) {
         std::abort();
     }
     try {
-        std::rethrow_exception(error);
+        std::rethrow_exception(thrown);
     } catch (const std::bad_alloc&) {
         return "out of memory";
     } catch (const std::system_error& error) {

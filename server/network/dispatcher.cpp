@@ -114,8 +114,8 @@ void count_cuts(const protocol::QueryResult& result, LimitCounters& counters) {
         if (part->next_generation) {
             counters.met(Limit::HistoryGenerations);
         }
-    } else if (const auto* part = std::get_if<protocol::PopulationRows>(&result)) {
-        if (part->first + part->genes.size() < part->organism_count) {
+    } else if (const auto* rows = std::get_if<protocol::PopulationRows>(&result)) {
+        if (rows->first + rows->genes.size() < rows->organism_count) {
             counters.met(Limit::PopulationRows);
         }
     }

@@ -123,7 +123,7 @@ class Commands(unittest.TestCase):
                 self.assertEqual(replay.info().generation, 2)
             self.assertEqual(world.fork("twin", at_generation=2).info().generation, 2)
             self.assertEqual(len(world.table("generations")), 3)
-            folder = next(line.split(" kept in ")[1] for line in lab.log.splitlines() if " kept in " in line)
+            folder = next(line.split(" stored in ")[1] for line in lab.log.splitlines() if " stored in " in line)
             self.assertTrue(os.path.isdir(folder))
         self.assertFalse(os.path.exists(folder))
 

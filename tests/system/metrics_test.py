@@ -446,7 +446,7 @@ class Http(Case):
         server = self.server("--data", self.folder)
         self.assertNotIn("http", server.output())
         for words, status, why in ((["--http-bind", "127.0.0.1"], 2, "--http-port"), (["--http-port", "70000"], 2, "70000"),
-                                   (["--http-port", "0", "--http-bind", "here"], 1, "give --http-bind the address"),
+                                   (["--http-port", "0", "--http-bind", "here"], 1, "allowed the IP address of an interface"),
                                    (["--http-port", str(server.port)], 1, "choose another port with --http-port")):
             done = waiting.run([EVOD, "--keep-nothing", "--port", "0", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stderr)

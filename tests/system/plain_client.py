@@ -383,7 +383,7 @@ class Handshake(WithServer):
         self.assertTrue(client.control().HasField("welcome"))
         world = self.new_world(population_size=2000, island_width_px=6000.0, island_height_px=6000.0)
         refused = client.call(EXHAUSTED, get_population=c.GetPopulation(world=world))
-        self.assertIn("the client accepts 65536", refused.status.message)
+        self.assertIn("the client accepts only 65536", refused.status.message)
         self.assertEqual(refused.status.reason, c.REASON_ANSWER_TOO_LARGE)
         client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
         large = self.new_world(population_size=20_000, island_width_px=20_000.0, island_height_px=20_000.0)

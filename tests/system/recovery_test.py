@@ -456,7 +456,7 @@ class Recovery(unittest.TestCase):
         for option in (["--start"], ["--speed", "2"]):
             refused = waiting.run([evod, "--port", "0", "--data", self.data, *option], capture_output=True, text=True)
             self.assertEqual(refused.returncode, 1)
-            self.assertIn(f"--speed and --start apply to one world, but {self.data} holds a, b: start without them",
+            self.assertIn(f"--speed and --start apply to one world, but {self.data} contains the worlds a, b: start without them",
                           refused.stderr)
         change(self.serve(), {"create_world": c.CreateWorld(name="default")})
         server = self.serve("--start")

@@ -48,7 +48,7 @@ class CertificateTest : public testing::Test {
 };
 
 TEST_F(CertificateTest, CoversAllHostsItIsMadeFor) {
-    ASSERT_TRUE(make_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
+    ASSERT_TRUE(create_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
     const Certificate certificate = read();
     ASSERT_TRUE(certificate);
     EXPECT_EQ(X509_check_host(certificate.get(), "lab.example", 0, 0, nullptr), 1);
@@ -59,7 +59,7 @@ TEST_F(CertificateTest, CoversAllHostsItIsMadeFor) {
 }
 
 TEST_F(CertificateTest, IsSignedByItsOwnKeyAndValidNow) {
-    ASSERT_TRUE(make_certificate({"localhost"}, folder));
+    ASSERT_TRUE(create_certificate({"localhost"}, folder));
     const Certificate certificate = read();
     ASSERT_TRUE(certificate);
     EXPECT_EQ(X509_verify(certificate.get(), X509_get0_pubkey(certificate.get())), 1);
@@ -75,19 +75,19 @@ TEST_F(CertificateTest, IsSignedByItsOwnKeyAndValidNow) {
 }
 
 TEST_F(CertificateTest, OnlyTheOwnerCanReadTheKey) {
-    ASSERT_TRUE(make_certificate({"localhost"}, folder));
+    ASSERT_TRUE(create_certificate({"localhost"}, folder));
     EXPECT_EQ(fs::status(folder + "/evod.key").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(CertificateTest, FilesAreNeverReplaced) {
-    ASSERT_TRUE(make_certificate({"localhost"}, folder));
+    ASSERT_TRUE(create_certificate({"localhost"}, folder));
     const std::string key = text_of("evod.key"), certificate = text_of("evod.crt");
-    const auto again = make_certificate({"localhost"}, folder);
+    const auto again = create_certificate({"localhost"}, folder);
     ASSERT_FALSE(again);
     EXPECT_EQ(again.error().code, RefusalCode::AlreadyExists);
     EXPECT_THAT(again.error().message, HasSubstr("evod.crt"));
     fs::remove(folder + "/evod.crt");
-    const auto beside_key = make_certificate({"localhost"}, folder);
+    const auto beside_key = create_certificate({"localhost"}, folder);
     ASSERT_FALSE(beside_key);
     EXPECT_THAT(beside_key.error().message, HasSubstr("evod.key exists already"));
     EXPECT_FALSE(fs::exists(folder + "/evod.crt"));
@@ -96,17 +96,17 @@ TEST_F(CertificateTest, FilesAreNeverReplaced) {
 
 TEST_F(CertificateTest, RefusesWhatIsNoHost) {
     for (const char* wrong : {"", "a b", "a,DNS:b", "lab_1", "http://lab", "1.2.3.4/8", "\xc3\xa4"}) {
-        const auto refused = make_certificate({"localhost", wrong}, folder);
+        const auto refused = create_certificate({"localhost", wrong}, folder);
         ASSERT_FALSE(refused) << wrong;
         EXPECT_EQ(refused.error().code, RefusalCode::InvalidArgument);
         EXPECT_THAT(refused.error().message, HasSubstr("\"" + std::string{wrong} + "\""));
     }
-    EXPECT_FALSE(make_certificate({std::string(254, 'a')}, folder));
+    EXPECT_FALSE(create_certificate({std::string(254, 'a')}, folder));
     EXPECT_TRUE(fs::is_empty(folder));
 }
 
 TEST_F(CertificateTest, NamesTheFileThatCannotBeWritten) {
-    const auto refused = make_certificate({"localhost"}, folder + "/nowhere");
+    const auto refused = create_certificate({"localhost"}, folder + "/nowhere");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, RefusalCode::Unavailable);
     EXPECT_THAT(refused.error().message, HasSubstr(folder + "/nowhere/evod.key"));

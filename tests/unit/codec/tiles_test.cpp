@@ -310,7 +310,7 @@ TEST(TiledFrameDamage, IsRefusedDespiteARightChecksum) {
     refused(2, "cells per row", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 3; });
     refused(2, "cells per row", [](Frame&, Tile& tile) { tile.mutable_body()->front() = 32; });
     refused(2, "surplus bytes", [](Frame&, Tile& tile) { tile.mutable_body()->push_back(0); });
-    refused(2, "differ from the counts", [](Frame&, Tile& tile) { tile.set_food_count(tile.food_count() + 1); });
+    refused(2, "do not add up to the counts", [](Frame&, Tile& tile) { tile.set_food_count(tile.food_count() + 1); });
     refused(0, "power of two", [](Frame& of, Tile&) { of.set_tile_px(500); });
     refused(0, "too small", [](Frame& of, Tile&) { of.set_width_px(1e300); });
     refused(0, "width_px", [](Frame& of, Tile&) { of.set_width_px(std::nan("")); });

@@ -2,6 +2,7 @@
 #include "server/network/dispatcher.h"
 
 #include "server/protocol/answers.h"
+#include "server/protocol/queries.h"
 #include "tests/unit/network/loopback.h"
 
 #include <string>
@@ -48,7 +49,11 @@ class DispatcherTest : public Loopback {
             if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
                 commands.push_back(std::move(*command));
             } else if (auto* query = std::get_if<runtime::QueryMail>(&mail)) {
-                query->ask(laboratory);
+                runtime::QueryDone done{.mail = std::move(*query), .response = {}, .result = {}};
+                done.response.set_request_id(done.mail.request->request_id());
+                done.result =
+                    protocol::answer_query(*done.mail.request, laboratory, done.mail.users_only, done.response);
+                outbox.reply(std::move(done));
             }
         }
         dispatcher.deliver(outbox.take().deliveries);
@@ -78,7 +83,7 @@ class DispatcherTest : public Loopback {
     Streams streams{sessions, demand, mailbox};
     int shut_downs = 0;
     Dispatcher dispatcher{
-        context, mailbox, outbox, demand, streams, counters, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
+        context, mailbox, outbox, sessions, streams, counters, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
 };
 
 TEST_F(DispatcherTest, SendsACommandToTheSimulationOnce) {

@@ -93,7 +93,7 @@ TEST(Request, AtAGenerationMustBeValidForItsBreeding) {
     EXPECT_TRUE(request_of(tournament, assignments));
     const auto refused = request_at_generation(tournament, assignments);
     ASSERT_FALSE(refused) << "a tournament of 3 needs a population of 3";
-    EXPECT_THAT(refused.error().violations[0].allowed, HasSubstr("that breeding still uses"));
+    EXPECT_THAT(refused.error().violations[0].allowed, HasSubstr("is bred with the previous values"));
 }
 
 TEST(BreedingWith, TakesOnlyTheValuesOfTheGeneration) {
