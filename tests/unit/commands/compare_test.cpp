@@ -38,7 +38,7 @@ TEST_F(Compare, PrintsTheRiseOfEveryWorld) {
     EXPECT_EQ(ended.status, 0) << ended.errors;
     EXPECT_THAT(ended.output, HasSubstr("2 replicates of 2 generations, from seed 3\nrise: mean fitness of generation "
                                         "2 minus that of generation 1\n"));
-    EXPECT_THAT(ended.errors, HasSubstr("--replicates: fewer than 20 can show large differences only"));
+    EXPECT_THAT(ended.errors, HasSubstr("--replicates: fewer than 20 replicates can show only large differences"));
     const std::string runs = contents_of(csv);
     EXPECT_GT(std::ranges::count(runs, '\n'), 2 * 2 * 2) << runs;
     EXPECT_EQ(compare_quickly({"--jobs", "2"}).output, ended.output) << "any number of jobs gives the same result";

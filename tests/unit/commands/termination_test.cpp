@@ -32,7 +32,7 @@ TEST(TerminationDeathTest, ExhaustedMemoryIsReported) {
 TEST(TerminationDeathTest, ExhaustedThreadsAreReported) {
     for (const std::errc error : {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory}) {
         EXPECT_EXIT(call_uncaught([error] { throw_system_error(error); }), testing::ExitedWithCode(exit_out_of_memory),
-                    "evod: out of memory or of threads\n");
+                    "evod: out of memory or threads\n");
     }
 }
 

@@ -27,7 +27,7 @@ TEST_F(Token, AddPrintsOnlyTheSecretToStdout) {
     ASSERT_THAT(ended.output, testing::EndsWith("\n"));
     const std::string secret = ended.output.substr(0, ended.output.size() - 1);
     EXPECT_EQ(secret.find_first_of(" \n"), std::string::npos);
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("anna, controller"), HasSubstr("EVOD_TOKEN")));
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("anna, role controller"), HasSubstr("EVOD_TOKEN")));
     const auto tokens = access::read_tokens(folder.path());
     ASSERT_TRUE(tokens) << to_text(tokens.error());
     const access::Token* found = access::find(*tokens, access::digest_of(secret));

@@ -53,11 +53,11 @@ TEST_F(CredentialsTest, TheTokenComesFromFileOrEnvironment) {
 TEST_F(CredentialsTest, ATokenFileMustBePrivateAndHoldAToken) {
     for (const fs::perms others : {fs::perms::group_read, fs::perms::others_read, fs::perms::others_write}) {
         write_token("evod_file\n", fs::perms::owner_read | others);
-        EXPECT_THAT(refusal(), HasSubstr("--token-file: " + credentials.token_file + ": other users can read it"));
+        EXPECT_THAT(refusal(), HasSubstr("--token-file: " + credentials.token_file + ": other users can read the file"));
     }
     fs::remove(credentials.token_file);
     write_token(" \n");
-    EXPECT_THAT(refusal(), HasSubstr("it contains no token"));
+    EXPECT_THAT(refusal(), HasSubstr("the file contains no token"));
     credentials.token_file = folder + "/none";
     EXPECT_THAT(refusal(), HasSubstr("/none: No such file"));
 }
@@ -79,7 +79,7 @@ TEST_F(CredentialsTest, AnyFileOfTlsAsksForTls) {
 
 TEST_F(CredentialsTest, AKeyNeedsItsCertificate) {
     credentials.files.key = "evod.key";
-    EXPECT_THAT(refusal(), HasSubstr("--key: evod.key needs its certificate: give --cert too"));
+    EXPECT_THAT(refusal(), HasSubstr("--key: evod.key requires the certificate of this key: give --cert too"));
 }
 
 } // namespace
