@@ -166,7 +166,8 @@ RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_wi
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {
-    ("client/core", "session"): "unit/core/connection_test",
+    ("client/core", "client_types session"): "unit/core/connection_test",
+    ("client/core", "request_queue subscriptions"): "unit/core/protocol_state_test: parts of the protocol state",
     ("client/core/example", "*"): "an example, which is only built",
     ("client/ctl", "*"): "system/evoctl_test: commands of evoctl, from the terminal to the server",
     ("client/viewer", "*"): "tests/system/viewer: windows, which need a display",
@@ -183,7 +184,8 @@ UNIT_TESTED_ELSEWHERE = {
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
     ("server/physics", "bodies motion_kernels"): "unit/physics/step_test and tests/determinism",
-    ("server/recording", "log_jobs record_queue run_log storage_worker waiting_record"): "unit/recording/storage_thread_test and recorder_test",
+    ("server/recording", "disk_state log_jobs record_queue run_log storage_worker waiting_record"):
+        "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "columns table"): "unit/replay/run_tables_test",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents run_database "
                         "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one file",
