@@ -18,9 +18,9 @@ namespace {
 constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
 
 ImFont* load_font(const char* name, float pixels) {
-    // Latin-1, and the other characters that evoview displays: ω, …, → and −.
-    static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026,
-                                         0x2190, 0x2193, 0x2212, 0x2212, 0};
+    // Latin-1, and the other characters that evoview displays: ω, …, →, ↗ and −.
+    static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026, 0x2190,
+                                         0x2193, 0x2197, 0x2197, 0x2212, 0x2212, 0};
     const std::string path = std::string{font_folder} + name;
     if (!std::filesystem::exists(path)) {
         throw std::runtime_error{"font not found: " + path + ": install the package fonts-dejavu-core"};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace evod::viewer {
 
@@ -14,20 +13,11 @@ double share(double whole, std::size_t count) {
                     1.0);
 }
 
-bool overlap(const Rectangle& a, const Rectangle& b) {
-    return a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height &&
-           b.top < a.top + a.height;
-}
-
 } // namespace
 
-Rectangle panel_strip_of(unsigned width_pixels, double scale) {
-    return {0, 0, double(width_pixels), std::round(panel_strip * scale)};
-}
-
-Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale) {
-    const double top = panel_strip_of(width_pixels, scale).height;
-    return {0, top, double(width_pixels), std::max(height_pixels - top, 1.0)};
+double sidebar_pixels(double wanted, unsigned window_pixels, double scale) {
+    constexpr double share_max = 0.55;
+    return std::floor(std::min(std::max(wanted, sidebar_width_min * scale), share_max * window_pixels));
 }
 
 Rectangle viewport_of(Rectangle place, double scale) {
@@ -66,36 +56,6 @@ std::vector<Rectangle> in_tiles(Rectangle place, std::size_t count, double aspec
                           place.top + static_cast<double>(i / columns) * (height + gap_pixels), width, height});
     }
     return result;
-}
-
-std::optional<Rectangle> free_place(const PlaceWanted& wanted, Rectangle room, std::span<const Rectangle> taken,
-                                    double apart) {
-    const double left = room.left + apart, right = room.left + room.width - apart - wanted.width;
-    const double top = room.top + apart, bottom = room.top + room.height - apart - wanted.height;
-    std::vector<double> lefts{left, right}, tops{top};
-    for (const Rectangle& other : taken) {
-        lefts.push_back(other.left - apart - wanted.width);
-        lefts.push_back(other.left + other.width + apart);
-        tops.push_back(other.top + other.height + apart);
-    }
-    std::optional<Rectangle> best;
-    const auto cost = [&](const Rectangle& place) {
-        const double from_left = place.left - left, from_right = right - place.left;
-        const bool at_right = from_right < from_left || (from_right == from_left && wanted.at_right);
-        return std::tuple{std::min(from_left, from_right), at_right != wanted.at_right, place.top};
-    };
-    for (const double x : lefts) {
-        for (const double y : tops) {
-            const Rectangle place{x, y, wanted.width, wanted.height};
-            const bool inside = x >= left && x <= right && y >= top && y <= bottom;
-            const bool covers =
-                std::ranges::any_of(taken, [&](const Rectangle& other) { return overlap(place, other); });
-            if (inside && !covers && (!best || cost(place) < cost(*best))) {
-                best = place;
-            }
-        }
-    }
-    return best;
 }
 
 } // namespace evod::viewer

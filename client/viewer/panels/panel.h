@@ -1,5 +1,5 @@
-// Panel: a window of widgets over the island that the user can show and hide. It sends queries and commands only
-// through the ViewedWorld, which uses the public protocol.
+// Panel: a group of widgets in the sidebar, or in a window of its own. It sends queries and commands only through the
+// ViewedWorld, which uses the public protocol.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -16,6 +16,8 @@
 
 namespace evod::viewer {
 
+class RunHistory;
+
 class Panel {
   public:
     struct Context {
@@ -23,6 +25,7 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
+        RunHistory* history = nullptr; // of the world; set by Panels
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };
@@ -42,8 +45,10 @@ class Panel {
     /// The title of the window and of its section in the help: "Parameters".
     virtual std::string_view title() const = 0;
 
-    /// The size of the panel until the user changes it.
-    virtual Size first_size() const { return {380, 480}; }
+    /// The size of the panel's own window until the user changes it.
+    virtual Size first_size() const { return {400, 480}; }
+    /// The width in pixels at scale 1 to which the sidebar grows while it shows this panel, if the window is wide enough.
+    virtual float width_min() const { return 0; }
 
     /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
     virtual std::span<const Key> keys() const { return {}; }

@@ -2,7 +2,6 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
@@ -15,9 +14,25 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 namespace evod::viewer {
+
+namespace {
+
+constexpr std::size_t tabs_per_row = 4;
+
+ImVec2 corner_of(Rectangle place) {
+    return {static_cast<float>(place.left), static_cast<float>(place.top)};
+}
+
+ImVec2 size_of(Rectangle place) {
+    return {static_cast<float>(place.width), static_cast<float>(place.height)};
+}
+
+} // namespace
 
 std::string panel_key(std::size_t index) {
     return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
@@ -37,11 +52,37 @@ Panels::Panels() {
     }
 }
 
-void Panels::toggle(std::size_t index) {
-    if (index < places_.size()) {
-        places_[index].shown = !places_[index].shown;
-        use(index);
+std::size_t Panels::tab() const {
+    const auto found = std::ranges::find(titles_, settings_.tab);
+    return found == titles_.end() ? 0 : static_cast<std::size_t>(found - titles_.begin());
+}
+
+void Panels::set(SidebarSettings settings) {
+    settings_ = std::move(settings);
+    settings_.tab = titles_[tab()]; // a stored title may be unknown
+}
+
+bool Panels::shown(std::size_t index) const {
+    return index < places_.size() && (places_[index].detached || (index == tab() && !settings_.collapsed));
+}
+
+void Panels::show(std::size_t index) {
+    if (index >= places_.size()) {
+        return;
     }
+    Place& place = places_[index];
+    place.to_front = true;
+    if (place.detached) {
+        use(index);
+    } else {
+        settings_.tab = titles_[index];
+        settings_.collapsed = false;
+    }
+}
+
+void Panels::show(std::string_view title) {
+    const auto found = std::ranges::find(titles_, title);
+    show(static_cast<std::size_t>(found - titles_.begin()));
 }
 
 void Panels::use(std::size_t index) {
@@ -49,20 +90,21 @@ void Panels::use(std::size_t index) {
     used_.push_back(index);
 }
 
-void Panels::show(std::string_view title) {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        if (titles_[i] == title && !places_[i].shown) {
-            toggle(i);
-        }
+void Panels::set_detached(std::size_t index, bool detached) {
+    places_[index].detached = detached;
+    std::erase(used_, index);
+    if (detached) {
+        used_.push_back(index);
+    } else {
+        show(index);
     }
 }
 
 bool Panels::close_front() {
-    const auto last = std::find_if(used_.rbegin(), used_.rend(), [this](std::size_t i) { return places_[i].shown; });
-    if (last == used_.rend()) {
+    if (used_.empty()) {
         return false;
     }
-    places_[*last].shown = false;
+    set_detached(used_.back(), false);
     return true;
 }
 
@@ -76,119 +118,191 @@ bool Panels::handles(const sf::Event::KeyEvent& key) const {
 void Panels::begin_session() {
     Panels fresh;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        fresh.places_[i].shown = places_[i].shown;
-        fresh.places_[i].at = places_[i].at;
-        fresh.places_[i].put_at = places_[i].put_at;
+        fresh.places_[i].detached = places_[i].detached;
     }
-    fresh.room_ = room_;
+    fresh.settings_ = std::move(settings_);
     fresh.used_ = std::move(used_);
     *this = std::move(fresh);
 }
 
-void Panels::build_strip(const Gui& gui) {
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float scale = gui.scale();
-    const Rectangle strip = panel_strip_of(static_cast<unsigned>(window.x), scale);
-    ImGui::SetNextWindowPos({0, static_cast<float>(strip.top)});
-    ImGui::SetNextWindowSize({window.x, static_cast<float>(strip.height)});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {10 * scale, 1 * scale});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 4 * scale);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * scale, 2 * scale});
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * scale, 0});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, ink(palette::strip));
-    ImGui::Begin("##panels", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);
-    const auto name_of = [&](std::size_t i) { return panel_key(i) + " " + std::string{titles_[i]}; };
-    float width = 20 * scale;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        width += ImGui::CalcTextSize(name_of(i).c_str()).x + 16 * scale;
+double Panels::width(unsigned window_pixels, double scale) const {
+    if (settings_.collapsed) {
+        return std::round(sidebar_collapsed * scale);
+    }
+    const Place& place = places_[tab()];
+    const float wanted = place.detached ? 0 : place.panel->width_min();
+    return sidebar_pixels(std::max(settings_.width, wanted) * scale, window_pixels, scale);
+}
+
+void Panels::build(Panel::Context context, Rectangle sidebar) {
+    keyboard_.reset();
+    history_.update(context.world, context.now);
+    context.history = &history_;
+    if (settings_.collapsed) {
+        build_collapsed(sidebar, context.gui.scale());
+    } else {
+        build_sidebar(context, sidebar);
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        // If the names do not fit into the strip, the buttons show only the keys, and resting the mouse on a button
-        // shows the name.
-        const std::string name = width <= window.x || panel_key(i).empty() ? name_of(i) : panel_key(i);
-        ImGui::PushStyleColor(ImGuiCol_Button,
-                              places_[i].shown ? ImGui::GetStyleColorVec4(ImGuiCol_ButtonHovered) : ImVec4{0, 0, 0, 0});
-        if (ImGui::Button(name.c_str())) {
-            toggle(i);
+        if (places_[i].detached) {
+            build_detached(i, context, sidebar);
         }
-        ImGui::PopStyleColor();
-        widgets::mark(titles_[i]);
-        if (name != name_of(i)) {
-            widgets::explain(titles_[i]);
+    }
+}
+
+void Panels::build_collapsed(Rectangle sidebar, float scale) {
+    ImGui::SetNextWindowPos(corner_of(sidebar));
+    ImGui::SetNextWindowSize(size_of(sidebar));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {1 * scale, 6 * scale});
+    ImGui::Begin("##collapsed", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
+    if (ImGui::Button("«", {24 * scale, 24 * scale})) {
+        toggle_sidebar();
+    }
+    widgets::mark("Show the sidebar");
+    widgets::explain("Shows the sidebar (F12).");
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+/// Builds the left edge of the sidebar, which the user drags to change its width.
+void Panels::build_edge(Rectangle sidebar, float scale) {
+    const float grip = 6 * scale;
+    ImGui::SetCursorScreenPos(corner_of(sidebar));
+    ImGui::InvisibleButton("##edge", {grip, static_cast<float>(sidebar.height)});
+    widgets::mark("Width of the sidebar");
+    const bool active = ImGui::IsItemActive();
+    if (active || ImGui::IsItemHovered()) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+        const ImVec2 corner = corner_of(sidebar);
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            corner, {corner.x + 2 * scale, corner.y + static_cast<float>(sidebar.height)}, ink(palette::focus));
+    }
+    if (active && ImGui::GetIO().MouseDelta.x != 0) {
+        const float window = ImGui::GetIO().DisplaySize.x;
+        const double wanted = window - ImGui::GetIO().MousePos.x;
+        settings_.width = static_cast<float>(sidebar_pixels(wanted, static_cast<unsigned>(window), scale)) / scale;
+    }
+}
+
+void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
+    const float scale = context.gui.scale();
+    ImGui::SetNextWindowPos(corner_of(sidebar));
+    ImGui::SetNextWindowSize(size_of(sidebar));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12 * scale, 8 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::Begin("##sidebar", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
+    const ImVec2 begin = ImGui::GetCursorPos();
+    build_edge(sidebar, scale);
+    ImGui::SetCursorPos(begin);
+    context.gui.widget_positions().begin_panel("Sidebar");
+    summary_.build_experiment(context);
+    build_corner(scale);
+    summary_.build_run(context);
+    ImGui::Separator();
+    context.gui.widget_positions().begin_panel("Tabs");
+    build_tabs(context.gui);
+    context.gui.widget_positions().begin_panel({});
+    const std::size_t index = tab();
+    Place& place = places_[index];
+    if (place.detached) {
+        widgets::small_text(std::string{titles_[index]} + " is in a window of its own.");
+        if (widgets::button("Return it to the sidebar")) {
+            set_detached(index, false);
         }
-        ImGui::SameLine();
+    } else {
+        if (std::exchange(place.to_front, false)) {
+            ImGui::SetNextWindowFocus();
+        }
+        ImGui::BeginChild(titles_[index].data());
+        build_panel(index, context);
+        ImGui::EndChild();
     }
     ImGui::End();
-    ImGui::PopStyleColor();
-    ImGui::PopStyleVar(7);
+    ImGui::PopStyleVar(2);
 }
 
-Rectangle Panels::place_for(std::size_t index, float scale) const {
-    const Panel::Size size = places_[index].panel->first_size();
-    const double margin = 8 * scale;
-    const PlaceWanted wanted{.width = std::min<double>(size.width * scale, std::max(room_.width - 2 * margin, 1.0)),
-                             .height = std::min<double>(size.height * scale, std::max(room_.height - 2 * margin, 1.0)),
-                             .at_right = index % 2 == 0};
-    std::vector<Rectangle> taken;
+void Panels::build_tabs(const Gui& gui) {
+    const float scale = gui.scale(), gap = 4 * scale;
+    const float width = (ImGui::GetContentRegionAvail().x - gap * (tabs_per_row - 1)) / tabs_per_row;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        if (i != index && places_[i].shown && places_[i].at.width > 0) {
-            taken.push_back(places_[i].at);
+        const bool chosen = i == tab();
+        ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
+        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
+        if (ImGui::Button(titles_[i].data(), {width, 25 * scale})) {
+            show(i);
+        }
+        ImGui::PopStyleColor(2);
+        widgets::mark(titles_[i]);
+        widgets::explain(std::string{titles_[i]} + " (" + panel_key(i) + ")");
+        if (i % tabs_per_row + 1 < tabs_per_row) {
+            ImGui::SameLine();
         }
     }
-    if (const auto free = free_place(wanted, room_, taken, margin)) {
-        return *free;
-    }
-    // Cascade the panels: each pair is placed a little lower and farther inside, so that every title bar stays visible.
-    const double step = margin + 26 * scale * static_cast<double>(index / 2 % 6);
-    const double right = room_.left + room_.width - wanted.width, bottom = room_.top + room_.height - wanted.height;
-    return {wanted.at_right ? std::max(right - step, room_.left) : std::min(room_.left + step, right),
-            std::max(std::min(room_.top + step, bottom - margin), room_.top), wanted.width, wanted.height};
+    ImGui::PopStyleVar();
 }
 
-void Panels::build(Panel::Context context, Rectangle room) {
-    build_strip(context.gui);
-    keyboard_.reset();
-    if (room != room_) {
-        room_ = room;
-        for (Place& place : places_) {
-            if (place.at == place.put_at) { // the user has not moved it
-                place.at = {};
-            }
+/// Builds the small buttons in the upper right corner of the sidebar.
+void Panels::build_corner(float scale) {
+    const float size = 24 * scale, gap = 4 * scale;
+    const bool detached = places_[tab()].detached;
+    ImGui::SameLine(std::max(ImGui::GetWindowContentRegionMax().x - (detached ? size : 2 * size + gap), 0.f));
+    if (!detached) {
+        if (ImGui::Button("↗", {size, size})) {
+            set_detached(tab(), true);
         }
+        widgets::mark("Own window");
+        widgets::explain(
+            "Moves the panel below to a window of its own, over the worlds. Closing it returns the panel.");
+        ImGui::SameLine(0, gap);
     }
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        Place& place = places_[i];
-        if (!place.shown) {
-            continue;
-        }
-        const std::string title{place.panel->title()};
-        const bool was_shown = place.built == ImGui::GetFrameCount() - 1;
-        const bool is_put = place.at.width <= 0 || (!was_shown && place.at == place.put_at);
-        if (is_put) {
-            const Rectangle to = place_for(i, context.gui.scale());
-            ImGui::SetNextWindowPos({static_cast<float>(to.left), static_cast<float>(to.top)});
-            ImGui::SetNextWindowSize({static_cast<float>(to.width), static_cast<float>(to.height)});
-        }
-        if (ImGui::Begin(title.c_str(), &place.shown, ImGuiWindowFlags_NoCollapse)) {
-            context.just_shown = !was_shown;
-            context.gui.widget_positions().begin_panel(title);
-            place.panel->build(context);
-            context.gui.widget_positions().begin_panel({});
-            place.built = ImGui::GetFrameCount();
-        }
-        const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-        place.at = {corner.x, corner.y, size.x, size.y};
-        place.put_at = is_put ? place.at : place.put_at;
-        if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) {
-            use(i);
-            keyboard_ = i;
-        }
-        ImGui::End();
+    if (ImGui::Button("»", {size, size})) {
+        toggle_sidebar();
+    }
+    widgets::mark("Collapse the sidebar");
+    widgets::explain("Collapses the sidebar (F12).");
+}
+
+void Panels::build_panel(std::size_t index, Panel::Context& context) {
+    Place& place = places_[index];
+    context.just_shown = place.built != ImGui::GetFrameCount() - 1;
+    context.gui.widget_positions().begin_panel(titles_[index]);
+    place.panel->build(context);
+    context.gui.widget_positions().begin_panel({});
+    place.built = ImGui::GetFrameCount();
+    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows)) {
+        keyboard_ = index;
+    }
+}
+
+void Panels::build_detached(std::size_t index, Panel::Context& context, Rectangle sidebar) {
+    Place& place = places_[index];
+    const float scale = context.gui.scale();
+    const Panel::Size size = place.panel->first_size();
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const float width = std::min(size.width * scale, window.x), height = std::min(size.height * scale, window.y);
+    ImGui::SetNextWindowPos({std::max(static_cast<float>(sidebar.left) - width - 12 * scale, 0.f), 60 * scale},
+                            ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({width, height}, ImGuiCond_FirstUseEver);
+    if (std::exchange(place.to_front, false)) {
+        ImGui::SetNextWindowFocus();
+    }
+    bool open = true;
+    if (ImGui::Begin(titles_[index].data(), &open, ImGuiWindowFlags_NoCollapse)) {
+        build_panel(index, context);
+    }
+    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) {
+        use(index);
+        keyboard_ = index;
+    }
+    ImGui::End();
+    if (!open) {
+        set_detached(index, false);
     }
 }
 

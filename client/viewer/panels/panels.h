@@ -1,11 +1,15 @@
-// Panels: contains all panels. The user shows and hides a panel with its key (F2 to F12), or by its button in the strip
-// at the top of the window.
+// Panels: the sidebar at the right of the window. It contains the summary of the focused world, the run controls, and
+// one panel at a time, chosen by a tab or by its key (F2 to F11). A detached panel is a window of its own over the
+// worlds; closing this window returns the panel to the sidebar.
 //
-// Owner        the stage.
+// Owner        WindowRenderer.
 // Threads      none; used on the drawing thread.
 #pragma once
 
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/panel.h"
+#include "client/viewer/panels/plots/run_history.h"
+#include "client/viewer/panels/summary.h"
 
 #include <SFML/Window/Event.hpp>
 
@@ -19,52 +23,78 @@
 
 namespace evod::viewer {
 
-/// Number of panels that have a key, F2 to F12. F1 shows the help.
-constexpr std::size_t panel_key_count = 11;
+/// Number of panels that have a key, F2 to F11. F1 shows the help, F12 collapses the sidebar.
+constexpr std::size_t panel_key_count = 10;
 /// The name of the panel's key: "F2" for the first panel; empty for panels without a key.
 std::string panel_key(std::size_t index);
+
+/// What evoview stores between two starts.
+struct SidebarSettings {
+    float width = sidebar_width; // pixels at scale 1
+    bool collapsed = false;
+    std::string tab = "Parameters"; // title of the panel that the sidebar shows
+
+    friend bool operator==(const SidebarSettings&, const SidebarSettings&) = default;
+};
 
 class Panels {
   public:
     Panels();
 
-    /// Shows or hides panel `index`; ignores an index beyond the last panel.
-    void toggle(std::size_t index);
-    bool shown(std::size_t index) const { return index < places_.size() && places_[index].shown; }
-    /// Hides the visible panel that was used last. Returns false if no panel is visible.
+    /// Shows panel `index` and gives it the keyboard: expands the sidebar and chooses the tab, or brings the detached
+    /// window to the front. Ignores an index beyond the last panel.
+    void show(std::size_t index);
+    /// Shows the panel with this title.
+    void show(std::string_view title);
+    bool shown(std::size_t index) const;
+    void toggle_sidebar() { settings_.collapsed = !settings_.collapsed; }
+    /// Detaches panel `index` from the sidebar, or returns it there.
+    void set_detached(std::size_t index, bool detached);
+    /// Returns the detached panel that was used last to the sidebar. Returns false if no panel is detached.
     bool close_front();
     /// Whether the panel with the keyboard focus handles this key. If not, the key goes to the main window.
     bool handles(const sf::Event::KeyEvent& key) const;
-    /// Call when evoview has connected to another server. Every panel clears its data; visible panels stay visible.
+    /// Call when evoview has connected to another server. Every panel clears its data; places and tab stay.
     void begin_session();
-
-    /// Shows the panel with this title.
-    void show(std::string_view title);
 
     /// The titles of all panels, in the order of their keys.
     const std::vector<std::string_view>& titles() const { return titles_; }
     std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
 
-    /// Builds the strip of names and the visible panels. Call between Gui::begin() and Gui::draw().
+    const SidebarSettings& settings() const { return settings_; }
+    void set(SidebarSettings settings);
+
+    /// The width of the sidebar in pixels, in a window of this width. A panel that needs more room widens it.
+    double width(unsigned window_pixels, double scale) const;
+
+    /// Builds the sidebar and the detached panels. Call between Gui::begin() and Gui::draw().
     ///
-    /// room  the part of the window in which panels are placed until the user moves them.
-    void build(Panel::Context context, Rectangle room);
+    /// sidebar  the part of the window beside the worlds
+    void build(Panel::Context context, Rectangle sidebar);
 
   private:
     struct Place {
         std::unique_ptr<Panel> panel;
-        bool shown = false;
-        int built = -1;           // the last frame of Dear ImGui in which it was built
-        Rectangle at{}, put_at{}; // current place, and the place chosen by place_for(); width 0: none yet
+        bool detached = false;
+        bool to_front = false; // give the panel the keyboard in the next frame
+        int built = -1;        // the last frame of Dear ImGui in which it was built
     };
-    void build_strip(const Gui& gui);
-    Rectangle place_for(std::size_t index, float scale) const;
+    void build_sidebar(Panel::Context& context, Rectangle sidebar);
+    void build_edge(Rectangle sidebar, float scale);
+    void build_collapsed(Rectangle sidebar, float scale);
+    void build_corner(float scale);
+    void build_tabs(const Gui& gui);
+    void build_detached(std::size_t index, Panel::Context& context, Rectangle sidebar);
+    void build_panel(std::size_t index, Panel::Context& context);
     void use(std::size_t index);
+    std::size_t tab() const;
 
+    SidebarSettings settings_;
     std::vector<Place> places_;
     std::vector<std::string_view> titles_;
-    Rectangle room_;
-    std::vector<std::size_t> used_;       // panel indices, the most recently used last
+    RunHistory history_; // of the focused world
+    Summary summary_;
+    std::vector<std::size_t> used_;       // indices of detached panels, the most recently used last
     std::optional<std::size_t> keyboard_; // index of the panel with the keyboard focus
 };
 

@@ -68,8 +68,6 @@ void RunPanel::build(Context& context) {
     ImGui::Separator();
     build_run(world, scale);
     ImGui::Separator();
-    build_speed(world);
-    ImGui::Separator();
     build_reset(world, scale);
     ImGui::EndDisabled();
 }
@@ -97,14 +95,6 @@ void RunPanel::build_run(ViewedWorld& world, float scale) {
     const evod::v1::RunState state = world.feed.control().state();
     const bool over = state == evod::v1::RUN_STATE_TERMINATED || world.replay.at_end();
     ImGui::BeginDisabled(over);
-    const char* label = state == evod::v1::RUN_STATE_RUNNING  ? "Pause"
-                        : state == evod::v1::RUN_STATE_PAUSED ? "Resume"
-                                                              : "Run";
-    if (ImGui::Button(label, {90 * scale, 0})) {
-        world.commands.pause_or_resume();
-    }
-    widgets::mark(label);
-    ImGui::SameLine();
     if (widgets::button("One tick")) {
         world.commands.step(1);
     }
@@ -125,45 +115,6 @@ void RunPanel::build_run(ViewedWorld& world, float scale) {
     widgets::explain("Runs this many generations to their end, then waits.");
     ImGui::EndDisabled();
     show_problem(problem_, {"ticks", "generations"});
-}
-
-void RunPanel::build_speed(ViewedWorld& world) {
-    const evod::v1::Speed& speed = world.feed.control().speed();
-    bool max = speed.max();
-    if (ImGui::Checkbox("as fast as possible", &max)) {
-        world.commands.max_speed();
-    }
-    widgets::mark("as fast as possible");
-    ImGui::BeginDisabled(speed.max());
-    double factor = factor_.value_or(speed.max() ? 1 : speed.real_time_factor());
-    const double least = RunControl::factor_min, most = RunControl::factor_max;
-    ImGui::SetNextItemWidth(-ImGui::CalcTextSize("Real time").x - 4 * ImGui::GetStyle().FramePadding.x);
-    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most,
-                            factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
-        factor_ = factor;
-    }
-    widgets::mark("speed");
-    if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
-        const bool allowed = *factor_ >= least && *factor_ <= most; // the slider does not limit a typed value
-        problem_ = allowed ? ""
-                           : "speed: got " + shown_number(*factor_) + ", allowed " + shown_number(least) + " to " +
-                                 shown_number(most) + " times real time";
-        if (allowed) {
-            world.commands.at_factor(*factor_);
-        }
-    }
-    if (!ImGui::IsItemActive()) {
-        factor_.reset();
-    }
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    if (widgets::button("Real time")) {
-        world.commands.real_time();
-    }
-    show_problem(problem_, {"speed"});
-    if (world.feed.control().info().slowed()) {
-        widgets::small_text("The server cannot keep up: the world runs slower than requested, and no tick is skipped.");
-    }
 }
 
 void RunPanel::build_reset(ViewedWorld& world, float scale) {

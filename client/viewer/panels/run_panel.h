@@ -1,4 +1,4 @@
-// RunPanel: runs, pauses, steps and resets the viewed world, and sets its speed.
+// RunPanel: runs, pauses, steps and resets the viewed world.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -22,14 +22,12 @@ class RunPanel : public Panel {
   private:
     void build_state(const ViewedWorld& world);
     void build_run(ViewedWorld& world, float scale);
-    void build_speed(ViewedWorld& world);
     void build_reset(ViewedWorld& world, float scale);
 
     using Field = std::array<char, 24>;
     Field ticks_{"60"}, generations_{"10"};
-    Field seed_{};                 // empty: keep the seed
-    std::optional<double> factor_; // set while the user drags the slider
-    std::string problem_;          // problem with the last input: "ticks: …"
+    Field seed_{};        // empty: keep the seed
+    std::string problem_; // problem with the last input: "ticks: …"
 };
 
 } // namespace evod::viewer

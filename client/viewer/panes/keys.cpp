@@ -40,6 +40,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Forces, .key = Key::G, .help = "show forces"},
     {.action = Action::Trails, .key = Key::T, .help = "show trails"},
     {.action = Action::Screenshot, .key = Key::S, .help = "save the window as PNG in the working folder"},
+    {.action = Action::Sidebar, .key = Key::F12, .help = "collapse the sidebar; again: show it"},
     {.action = Action::StartScreen,
      .key = Key::Backspace,
      .control = true,
@@ -47,7 +48,9 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Help, .key = Key::H, .help = "show or hide this help"},
     {.action = Action::Help, .key = Key::F1},
     {.action = Action::Help, .sign = '?'},
-    {.action = Action::Close, .key = Key::Escape, .help = "close a menu, the help or the last panel; twice: quit"},
+    {.action = Action::Close,
+     .key = Key::Escape,
+     .help = "close a menu, the help or a panel's own window; twice: quit"},
     {.action = Action::Quit, .key = Key::Q, .help = "quit at once; the worlds continue"},
 };
 
@@ -59,7 +62,7 @@ constexpr std::pair<std::string_view, std::string_view> gestures[] = {
     {"", "also focuses this half and chooses this island"},
 };
 
-constexpr Key::Key first_panel_key = Key::F2, last_panel_key = Key::F12;
+constexpr Key::Key first_panel_key = Key::F2, last_panel_key = Key::F11;
 static_assert(last_panel_key - first_panel_key + 1 == panel_key_count);
 
 constexpr std::pair<Key::Key, std::string_view> names[] = {
@@ -130,7 +133,7 @@ std::optional<Action> action_of_sign(sf::Uint32 sign) {
 }
 
 bool is_function_key(sf::Keyboard::Key key) {
-    return key >= Key::F1 && key <= last_panel_key;
+    return key >= Key::F1 && key <= Key::F12;
 }
 
 std::string name_of(sf::Keyboard::Key key) {
@@ -159,7 +162,7 @@ std::vector<HelpLine> help_lines() {
 std::vector<HelpLine> help_lines(const Panels& panels) {
     std::vector<HelpLine> lines;
     for (std::size_t i = 0; i < panels.titles().size(); ++i) {
-        lines.push_back({panel_key(i), "show or hide the panel " + std::string{panels.titles()[i]}});
+        lines.push_back({panel_key(i), "show the panel " + std::string{panels.titles()[i]}});
     }
     for (std::size_t i = 0; i < panels.titles().size(); ++i) {
         if (!panels.keys_of(i).empty()) {

@@ -39,6 +39,7 @@ enum class Action {
     AllIslands,
     Fit,
     Screenshot,
+    Sidebar,
     NextColouring,
     Radii,
     Forces,
@@ -46,12 +47,12 @@ enum class Action {
     Follow,
     StartScreen,
     Help,
-    Close, // closes a menu, or else the help, or else the front panel; if none is open, pressed twice: the window
+    Close, // closes a menu, or else the help, or else a detached panel; pressed twice without these: the window
     Quit,
-    FirstPanel, // FirstPanel + index shows or hides the panel with this index
+    FirstPanel, // FirstPanel + index shows the panel with this index
 };
 
-/// The panel that the action shows or hides; nullopt for any other action.
+/// The panel that the action shows; nullopt for any other action.
 std::optional<std::size_t> panel_of(Action action);
 
 constexpr unsigned step_many_ticks = 60;
@@ -68,7 +69,7 @@ struct KeyBinding {
 /// The bindings of all keys except those that show panels.
 std::span<const KeyBinding> key_bindings();
 
-/// The action of a pressed key; nullopt if it has none. F2 to F12 show or hide a panel.
+/// The action of a pressed key; nullopt if it has none. F2 to F11 show a panel.
 std::optional<Action> action_of(const sf::Event::KeyEvent& key);
 std::optional<Action> action_of_sign(sf::Uint32 sign);
 bool is_function_key(sf::Keyboard::Key key);

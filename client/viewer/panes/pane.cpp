@@ -65,12 +65,10 @@ void Panes::update(core::SnapshotInterpolator::Clock::time_point now) {
     }
 }
 
-void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale) {
-    const Rectangle whole = interactive ? below_panel_strip(width_pixels, height_pixels, scale)
-                                        : Rectangle{0, 0, double(width_pixels), double(height_pixels)};
-    const auto columns = side_by_side(whole, panes_.size());
+void Panes::lay_out(Rectangle place, bool with_timelines, double scale) {
+    const auto columns = side_by_side(place, panes_.size());
     for (std::size_t i = 0; i < panes_.size(); ++i) {
-        panes_[i]->lay_out(columns[i], interactive, scale);
+        panes_[i]->lay_out(columns[i], with_timelines, scale);
     }
 }
 

@@ -70,8 +70,9 @@ class Panes {
     void update(core::SnapshotInterpolator::Clock::time_point now);
     /// Places the panes in the window.
     ///
-    /// interactive  reserve space for the strip of panels and for time lines
-    void lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale);
+    /// place           the part of the window beside the sidebar
+    /// with_timelines  reserve space for the time lines of replays
+    void lay_out(Rectangle place, bool with_timelines, double scale);
 
     std::size_t size() const { return panes_.size(); }
     Pane& operator[](std::size_t index) { return *panes_[index]; }

@@ -203,41 +203,13 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     widgets::explain(std::to_string(replay.first_generation()) + " to " + std::to_string(replay.last_generation()) +
                      "; press Enter to go there");
     ImGui::SameLine();
-    build_fork(world);
+    fork_.build(world);
     if (world.replay.is_own()) {
         ImGui::SameLine();
         if (widgets::button("Present")) {
             world.replay.return_to_present();
         }
         widgets::explain("return to the live world: P");
-    }
-}
-
-void Timeline::build_fork(ViewedWorld& world) {
-    const bool may = world.server.may_create();
-    ImGui::BeginDisabled(!may);
-    if (widgets::button("Fork …")) {
-        ImGui::OpenPopup("fork");
-    }
-    ImGui::EndDisabled();
-    widgets::explain(may ? "create a world that starts from this tick" : "only the role admin may create worlds");
-    if (ImGui::BeginPopup("fork")) {
-        ImGui::TextUnformatted("Create a world that starts from the tick shown. Name of the new world:");
-        if (ImGui::IsWindowAppearing()) {
-            ImGui::SetKeyboardFocusHere();
-        }
-        const bool entered =
-            ImGui::InputText("##name", fork_name_.data(), fork_name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-        widgets::mark("Name of the new world");
-        ImGui::SameLine();
-        const bool named = fork_name_[0] != '\0';
-        ImGui::BeginDisabled(!named);
-        if ((widgets::button("Fork") || entered) && named) {
-            world.replay.fork(fork_name_.data());
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndDisabled();
-        ImGui::EndPopup();
     }
 }
 

@@ -7,9 +7,9 @@
 
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/gui.h"
+#include "client/viewer/panels/fork_dialog.h"
 #include "client/viewer/world/viewed_world.h"
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -32,7 +32,6 @@ class Timeline {
   private:
     void build_line(ViewedWorld& world, const Gui& gui, Rectangle place);
     void build_buttons(ViewedWorld& world, float pixel);
-    void build_fork(ViewedWorld& world);
     void find_first_ticks(ViewedWorld& world, const evod::v1::Replay& replay, std::size_t count_max);
 
     std::string world_, run_id_;                        // identify the replay that the members below describe
@@ -41,7 +40,7 @@ class Timeline {
     std::uint64_t shown_generation_ = 0;
     int typed_generation_ = 1;
     bool pressed_ = false;
-    std::array<char, 65> fork_name_{};
+    ForkDialog fork_;
 };
 
 } // namespace evod::viewer

@@ -15,16 +15,6 @@ namespace evod::viewer {
 
 namespace {
 
-/// The part of the window without strips and time lines, in which panels are placed.
-Rectangle room_for_panels(Panes& panes, const WindowRenderer::Frame& frame, double scale) {
-    Rectangle room = below_panel_strip(frame.width_pixels, frame.height_pixels, scale);
-    for (std::size_t i = 0; i < panes.size(); ++i) {
-        const Rectangle& place = panes[i].place();
-        room.height = std::min(room.height, place.top + place.height - room.top);
-    }
-    return viewport_of(room, scale);
-}
-
 void clear(Colour colour, const WindowRenderer::Frame& frame) {
     glViewport(0, 0, static_cast<int>(frame.width_pixels), static_cast<int>(frame.height_pixels));
     glClearColor(colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, 1);
@@ -51,7 +41,9 @@ Captured WindowRenderer::captured(const sf::Event& event) const {
 }
 
 void WindowRenderer::draw(Panes& panes, const Frame& frame) {
-    panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive, gui_.scale());
+    const double sidebar = frame.interactive ? panels_.width(frame.width_pixels, gui_.scale()) : 0;
+    const Rectangle worlds{0, 0, std::max(frame.width_pixels - sidebar, 1.0), double(frame.height_pixels)};
+    panes.lay_out(worlds, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
     clear(palette::strip_edge, frame); // visible between panes and tiles
@@ -76,7 +68,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
     overlay_.build(gui_, panels_, frame.now);
     if (frame.interactive) {
         panels_.build({panes.focused().world, gui_, frame.now, panes.focused().island_view},
-                      room_for_panels(panes, frame, gui_.scale()));
+                      {worlds.width, 0, sidebar, worlds.height});
     }
     gui_.draw();
 }

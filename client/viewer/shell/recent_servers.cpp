@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -21,21 +20,6 @@ constexpr std::size_t line_bytes_max = 300; // enough for a name of 255 bytes an
 constexpr std::size_t lines_max = 100;
 
 } // namespace
-
-std::optional<std::filesystem::path> RecentServers::default_file() {
-    const auto from = [](const char* variable) -> std::filesystem::path {
-        const char* value = std::getenv(variable);
-        return value == nullptr ? "" : value;
-    };
-    if (const auto state = from("XDG_STATE_HOME");
-        state.is_absolute()) { // the XDG specification requires that relative paths are ignored
-        return state / "evod" / "recent_servers";
-    }
-    if (const auto home = from("HOME"); !home.empty()) {
-        return home / ".local" / "state" / "evod" / "recent_servers";
-    }
-    return std::nullopt;
-}
 
 RecentServers::RecentServers(std::filesystem::path file) : file_{std::move(file)} {
     if (!file_.empty()) {

@@ -11,7 +11,6 @@
 #include "client/core/connection.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +22,6 @@ class RecentServers {
 
     /// Reads the file. A missing file counts as empty.
     explicit RecentServers(std::filesystem::path file);
-
-    /// The path of the file; nullopt if neither XDG_STATE_HOME nor HOME is set.
-    static std::optional<std::filesystem::path> default_file();
 
     const std::vector<std::string>& addresses() const { return addresses_; }
 

@@ -88,6 +88,7 @@ void place(sf::Window& window) {
 Screen::Screen(const Options& options)
     : window_{mode_of(options), "evoview", sf::Style::Default, context_settings()}
     , renderer_{scale_of(options)}
+    , settings_{in_state_folder("evoview.ini"), renderer_.panels()}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
     place(window_);

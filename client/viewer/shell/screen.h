@@ -8,6 +8,7 @@
 #include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/script.h"
+#include "client/viewer/shell/settings.h"
 
 #include <SFML/Window/ContextSettings.hpp>
 #include <SFML/Window/Window.hpp>
@@ -50,6 +51,7 @@ class Screen {
 
     sf::Window window_;
     WindowRenderer renderer_; // declared after window_, because it needs the OpenGL context of the window
+    Settings settings_;       // declared after renderer_, whose panels it stores
     Script script_;
     std::string script_path_;
     std::deque<sf::Event> script_events_;

@@ -23,7 +23,7 @@ void put(std::array<char, size>& field, const std::string& text) {
 StartScreen::StartScreen(Screen& screen, const core::Options& initial)
     : screen_{screen}
     , options_{initial}
-    , recent_{RecentServers::default_file().value_or(std::filesystem::path{})}
+    , recent_{in_state_folder("recent_servers").value_or(std::filesystem::path{})}
     , tls_{initial.tls.has_value()} {
     put(address_, core::to_text(initial.server));
     put(token_, initial.token);

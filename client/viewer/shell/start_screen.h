@@ -8,6 +8,7 @@
 
 #include "client/viewer/shell/recent_servers.h"
 #include "client/viewer/shell/screen.h"
+#include "client/viewer/shell/settings.h"
 
 #include <array>
 #include <optional>

@@ -76,7 +76,7 @@ void Window::handle_events() {
 
 void Window::carry_out(Action action) {
     if (const auto panel = panel_of(action)) {
-        return renderer_.panels().toggle(*panel);
+        return renderer_.panels().show(*panel);
     }
     ViewedWorld& world = panes_.focused().world;
     IslandView& island_view = panes_.focused().island_view;
@@ -102,7 +102,7 @@ void Window::carry_out(Action action) {
     case Action::NextWorld:
         return world.show_next_world();
     case Action::ReplayOrLive:
-        return toggle_replay();
+        return world.toggle_replay();
     case Action::PreviousGeneration:
         return world.replay.seek_generations(-1);
     case Action::NextGeneration:
@@ -129,6 +129,8 @@ void Window::carry_out(Action action) {
         return island_view.toggle_following(world);
     case Action::Screenshot:
         return save_screenshot();
+    case Action::Sidebar:
+        return renderer_.panels().toggle_sidebar();
     case Action::Help:
         return renderer_.overlay().toggle_help();
     case Action::StartScreen:
@@ -157,21 +159,6 @@ void Window::close_front() {
         asked_to_quit_ = now_;
         renderer_.overlay().notice("Esc again quits; the worlds continue", now_);
     }
-}
-
-void Window::toggle_replay() {
-    ViewedWorld& world = panes_.focused().world;
-    if (world.replay.is_own()) {
-        return world.replay.return_to_present();
-    }
-    if (world.replay.info() != nullptr) {
-        return renderer_.overlay().notice("This world replays a run file: there is no live world", now_);
-    }
-    evod::v1::RunMoment now;
-    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
-        now.set_tick(snapshot->about.tick());
-    }
-    world.replay.open(std::move(now));
 }
 
 void Window::save_screenshot() {

@@ -33,7 +33,6 @@ class Window {
     void handle_events();
     void carry_out(Action action);
     void close_front();
-    void toggle_replay();
     void save_screenshot();
 
     Screen& screen_;

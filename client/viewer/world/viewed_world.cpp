@@ -122,4 +122,18 @@ std::string ViewedWorld::state_text() const {
     return viewer::state_text(control.state(), feed.storage());
 }
 
+void ViewedWorld::toggle_replay() {
+    if (replay.is_own()) {
+        return replay.return_to_present();
+    }
+    if (replay.info() != nullptr) {
+        return server.notice("This world replays a run file: there is no live world");
+    }
+    evod::v1::RunMoment now;
+    if (const codec::ReceivedSnapshot* snapshot = feed.snapshot()) {
+        now.set_tick(snapshot->about.tick());
+    }
+    replay.open(std::move(now));
+}
+
 } // namespace evod::viewer

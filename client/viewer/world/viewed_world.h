@@ -38,6 +38,9 @@ class ViewedWorld {
     /// of that world. If there is none, the window shows a notice with a suggestion.
     void find_next_world(std::function<void(const std::string& world)> found);
 
+    /// Opens a replay of the world at the tick shown, or returns from it to the live world.
+    void toggle_replay();
+
     /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }
     /// Why the server sends no snapshots, as a sentence; nullopt if it sends them or has not answered yet.

@@ -170,7 +170,7 @@ key Q
 key M
 key Escape
 wait widget Apply
-key F4
+key F12
 wait gone Apply
 quit
 )");
@@ -186,6 +186,7 @@ TEST_F(PanelsTest, RunsGenerationsAndResetsWithASeed) {
     const Ran ran = play(server.address(), R"(
 wait snapshot
 key F3
+wait widget generations
 click "as fast as possible"
 set generations 2
 click "Run generations"
@@ -235,20 +236,21 @@ quit
     EXPECT_EQ(world.speed().real_time_factor(), 1);
 }
 
-TEST_F(PanelsTest, EscClosesADialogThenThePanelUsedLast) {
+TEST_F(PanelsTest, EscClosesADialogThenTheOwnWindow) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
 wait snapshot
-key F2
 key F3
+click "Own window"
+key F2
 click "Reset …"
 wait widget "Cancel"
 key Escape
 wait gone "Cancel"
 wait widget "Reset …"
 key Escape
-wait gone "Reset …"
-wait widget Worlds/default
+wait gone Worlds/default
+wait widget "Reset …"
 key Space
 wait state running
 quit
@@ -264,7 +266,6 @@ wait snapshot
 key Escape
 key F2
 wait widget Worlds/default
-key F2
 screenshot )" + path + R"(
 key Escape
 key Escape

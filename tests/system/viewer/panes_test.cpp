@@ -105,14 +105,16 @@ struct TimelineTest : PanesTest {
                         std::vector<std::string>{"--server", server.address(), "--world", "one", "--size", "800x500"});
         EXPECT_TRUE(person.finds_window());
         EXPECT_TRUE(person.sees(palette::organism));
+        person.press(XK_F12); // collapses the sidebar
         person.press(XK_p);
         EXPECT_TRUE(person.sees(palette::replay)) << "the label of the replay, and the time line";
     }
 
+    /// The part of the window beside the collapsed sidebar.
+    static constexpr Rectangle beside{0, 0, 800 - sidebar_collapsed, 500};
     /// The viewport above the time line.
     static Rectangle viewport() {
-        const Rectangle below = below_panel_strip(800, 500);
-        return viewport_of({below.left, below.top, below.width, below.height - Timeline::height_pixels});
+        return viewport_of({beside.left, beside.top, beside.width, beside.height - Timeline::height_pixels});
     }
 
     bool shows(const codec::ReceivedSnapshot& snapshot, Rectangle place) {
@@ -142,15 +144,14 @@ TEST_F(TimelineTest, KeysSeekGenerationsAndReturnToTheLiveWorld) {
     person.press(XK_period);
     EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(241)), viewport()));
     person.press(XK_p);
-    EXPECT_TRUE(shows(*snapshot_of(server, "one"), viewport_of(below_panel_strip(800, 500))))
-        << "the live world, without a time line";
+    EXPECT_TRUE(shows(*snapshot_of(server, "one"), viewport_of(beside))) << "the live world, without a time line";
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);
 }
 
 TEST_F(TimelineTest, DraggingTheLineSeeksAnyTick) {
     EXPECT_TRUE(shows(*replay_snapshot_of(server, "one", at_tick(421)), viewport()));
-    const TimeScale line{.first_tick = 0, .last_tick = 421, .left = 18, .width = 764};
+    const TimeScale line{.first_tick = 0, .last_tick = 421, .left = 18, .width = 764 - sidebar_collapsed};
     const int y = 500 - static_cast<int>(Timeline::height_pixels) + 18;
     const int from = 700, to = 300;
     ASSERT_TRUE(Person::looks_until([&] {

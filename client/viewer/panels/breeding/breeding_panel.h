@@ -22,6 +22,7 @@ class BreedingPanel : public Panel {
   public:
     std::string_view title() const override { return "Glass box"; }
     Size first_size() const override { return {900, 620}; }
+    float width_min() const override { return 640; }
     std::span<const Key> keys() const override;
     bool takes_keys() const override { return shown_.has_value(); }
     void build(Context& context) override;

@@ -62,21 +62,6 @@ std::vector<float> gene_of(const Population& population, std::size_t gene, std::
 
 // ---- data ------------------------------------------------------------------------------------------------------
 
-void PlotsPanel::poll_history(const Context& context, TrackedHistory& tracked) {
-    if (!tracked.poll.due(context.world, context.now)) {
-        return;
-    }
-    if (tracked.history.pending()) { // the answer has timed out
-        tracked.history.cancel();
-    }
-    if (auto query = tracked.history.next_query()) {
-        tracked.poll.send(context.world, std::move(query->request), context.now,
-                          [&tracked, number = query->number](const evod::v1::Response* response) {
-                              tracked.history.receive(number, response != nullptr ? &response->history() : nullptr);
-                          });
-    }
-}
-
 void PlotsPanel::poll_worlds(const Context& context) {
     if (!worlds_poll_.due(context.world, context.now) || !(worlds_stale_ || worlds_poll_.pending())) {
         return;
@@ -94,48 +79,20 @@ void PlotsPanel::poll_worlds(const Context& context) {
 }
 
 void PlotsPanel::update(Context& context) {
-    ViewedWorld& world = context.world;
-    const int frame = ImGui::GetFrameCount();
-    const std::uint64_t connected_count = world.server.status().connected_count;
-    const bool may_have_missed =
-        seen_place_ != world.feed.place_number() || frame > seen_in_frame_ + 1 || connected_count != connected_count_;
-    seen_place_ = world.feed.place_number();
-    seen_in_frame_ = frame;
-    connected_count_ = connected_count;
-    worlds_stale_ = worlds_stale_ || may_have_missed;
-    for (TrackedHistory* tracked : {&own_, other_world_.get()}) {
-        if (tracked == nullptr) {
-            continue;
-        }
-        History& history = tracked->history;
-        if (may_have_missed) {
-            history.refresh();
-        }
-        for (const evod::v1::Event& event : world.feed.events()) {
-            history.apply_event(event);
-        }
-    }
-    if (world.feed.control().known()) {
-        own_.history.set_run(world.feed.control().world(), world.feed.control().run_id());
-    }
-    const codec::ReceivedSnapshot* snapshot = world.feed.snapshot();
-    if (snapshot != nullptr && snapshot->about.run_id() == own_.history.run_id() && snapshot->about.generation() > 0) {
-        own_.history.set_ended(snapshot->about.generation() - 1);
-    }
-    own_.history.set_gene_names(world.feed.gene_names());
-    for (const evod::v1::Event& event : world.feed.events()) {
+    own_ = context.history;
+    worlds_stale_ = worlds_stale_ || context.just_shown;
+    for (const evod::v1::Event& event : context.world.feed.events()) {
         worlds_stale_ = worlds_stale_ || event.has_world_created() || event.has_world_deleted() ||
                         event.has_world_reset() || event.has_events_dropped();
     }
     poll_worlds(context);
-    poll_history(context, own_);
     if (other_world_) {
-        poll_history(context, *other_world_);
+        other_world_->update_other(context.world, context.now);
     }
 }
 
 Subject PlotsPanel::subject() const {
-    const History& history = own_.history;
+    const History& history = own_->history();
     return {history.table(), island_, history.world().empty() ? "this world" : history.world()};
 }
 
@@ -145,11 +102,11 @@ void PlotsPanel::build(Context& context) {
     update(context);
     build_choices();
     build_comparison();
-    if (!own_.poll.problem().empty()) {
-        widgets::small_text(own_.poll.problem(), palette::warning);
+    if (!own_->problem().empty()) {
+        widgets::small_text(own_->problem(), palette::warning);
     }
-    if (other_world_ && !other_world_->poll.problem().empty()) {
-        widgets::small_text(other_name_ + ": " + other_world_->poll.problem(), palette::warning);
+    if (other_world_ && !other_world_->problem().empty()) {
+        widgets::small_text(other_name_ + ": " + other_world_->problem(), palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -166,7 +123,7 @@ void PlotsPanel::build(Context& context) {
 }
 
 void PlotsPanel::build_choices() {
-    const std::uint32_t count = own_.history.table().island_count();
+    const std::uint32_t count = own_->history().table().island_count();
     if (island_ && *island_ >= std::max(count, 1u)) {
         island_.reset();
     }
@@ -190,8 +147,8 @@ void PlotsPanel::build_choices() {
         view_ = histogram_view_ = {};
     }
     ImGui::SameLine();
-    const HistoryTable& table = own_.history.table();
-    const std::string known = table.empty() ? own_.history.complete() ? "No generation has ended yet" : "…"
+    const HistoryTable& table = own_->history().table();
+    const std::string known = table.empty() ? own_->history().complete() ? "No generation has ended yet" : "…"
                                             : with_separators(table.column(std::nullopt, "generation").size()) +
                                                   " generations, up to " + with_separators(table.last_generation());
     widgets::small_text(known);
@@ -229,13 +186,13 @@ void PlotsPanel::build_comparison() {
             file_.reset();
         }
         for (const evod::v1::WorldInfo& world : worlds_) {
-            if (world.name() == own_.history.world()) {
+            if (world.name() == own_->history().world()) {
                 continue;
             }
             if (widgets::choice("compare", "world " + world.name(),
-                                other_world_ && world.name() == other_world_->history.world())) {
-                other_world_ = std::make_unique<TrackedHistory>();
-                other_world_->history.set_run(world);
+                                other_world_ && world.name() == other_world_->history().world())) {
+                other_world_ = std::make_unique<RunHistory>();
+                other_world_->set_run(world);
                 file_.reset();
                 other_name_ = world.name();
             }
@@ -268,7 +225,7 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     } else if (quantity == Quantity::Selection) {
         build_gene_choice("selection of all genes");
     }
-    const auto* other_table = other_world_ ? &other_world_->history.table() : file_ ? &*file_ : nullptr;
+    const auto* other_table = other_world_ ? &other_world_->history().table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;
     if (other_table != nullptr) {
         other.emplace(Subject{*other_table, island_, other_name_});
@@ -297,7 +254,7 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
 }
 
 void PlotsPanel::build_gene_choice(const char* all) {
-    const auto& names = own_.history.table().gene_names();
+    const auto& names = own_->history().table().gene_names();
     if (std::ranges::find(names, gene_) == names.end()) {
         gene_.clear();
     }
@@ -320,7 +277,7 @@ void PlotsPanel::update_histogram(Context& context) {
     if (gene_.empty()) {
         return;
     }
-    const History& history = own_.history;
+    const History& history = own_->history();
     const auto& names = history.table().gene_names();
     const PopulationPoll::Of whose{history.world(), history.run_id(), island_.value_or(context.world.feed.island()),
                                    names.size()};
@@ -357,7 +314,7 @@ void PlotsPanel::update_histogram(Context& context) {
 /// The name of a file to save, which contains the content and the run:
 /// "evoview-default-3f2a9c01-fitness-generation-120".
 std::string PlotsPanel::file_name(const std::string& what) const {
-    const History& history = own_.history;
+    const History& history = own_->history();
     return "evoview-" + history.world() + "-" + history.run_id().substr(0, 8) + "-" + what + "-generation-" +
            std::to_string(history.table().last_generation());
 }
@@ -366,7 +323,7 @@ void PlotsPanel::save_csv() {
     const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
     message_is_error_ = false;
     try {
-        write_file(path, own_.history.table().to_csv());
+        write_file(path, own_->history().table().to_csv());
         message_ = "Saved " + path;
     } catch (const std::runtime_error& error) {
         message_ = error.what();
@@ -377,8 +334,8 @@ void PlotsPanel::save_csv() {
 void PlotsPanel::save_png() {
     const auto save = [this](const Figure& figure, const PlotView& view, const std::string& what) {
         Plot plot = figure.plot;
-        plot.title += " – " + own_.history.world() + (island_ ? ", island " + std::to_string(*island_) : "") +
-                      ", run " + own_.history.run_id().substr(0, 8);
+        plot.title += " – " + own_->history().world() + (island_ ? ", island " + std::to_string(*island_) : "") +
+                      ", run " + own_->history().run_id().substr(0, 8);
         const std::string path = std::filesystem::absolute(file_name(what) + ".png").string();
         const auto pixels = [this](std::size_t i) {
             return static_cast<unsigned>(std::clamp(image_pixels_[i], image_pixels_min, image_pixels_max));

@@ -7,7 +7,7 @@
 
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/plots/figures.h"
-#include "client/viewer/panels/plots/history.h"
+#include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/world/population_poll.h"
 
 #include <array>
@@ -25,17 +25,9 @@ class PlotsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    static constexpr std::chrono::milliseconds poll_interval{
-        100}; // a fast world finishes more generations per second than a user can see
     static constexpr std::chrono::seconds population_interval{1}; // between requests for the living organisms
 
-    struct TrackedHistory {
-        History history;
-        Poll poll{poll_interval};
-    };
-
     void update(Context& context);
-    void poll_history(const Context& context, TrackedHistory& tracked);
     void poll_worlds(const Context& context);
 
     void build_choices();
@@ -53,20 +45,16 @@ class PlotsPanel : public Panel {
     void save_png();
     Subject subject() const;
 
-    TrackedHistory own_;
-    std::unique_ptr<TrackedHistory> other_world_; // another world to compare with; null: none
-    std::optional<HistoryTable> file_;            // an earlier run to compare with
-    std::string other_name_;                      // name of the compared history
+    const RunHistory* own_ = nullptr;         // of the viewed world; set by build()
+    std::unique_ptr<RunHistory> other_world_; // another world to compare with; null: none
+    std::optional<HistoryTable> file_;        // an earlier run to compare with
+    std::string other_name_;                  // name of the compared history
     PopulationPoll population_{population_interval};
 
     std::vector<evod::v1::WorldInfo> worlds_;
     Poll worlds_poll_;
     bool worlds_stale_ = true;
     std::vector<std::string> files_; // CSV files in the working folder
-
-    std::uint64_t seen_place_ = 0; // place whose events have been processed
-    int seen_in_frame_ = -1;       // frame number of Dear ImGui
-    std::uint64_t connected_count_ = 0;
 
     Quantity quantity_ = Quantity::Fitness;
     HistoryTable::Island island_;

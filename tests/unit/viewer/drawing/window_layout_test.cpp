@@ -63,40 +63,13 @@ TEST(Layout, TilesStayInsideAndDoNotOverlap) {
     }
 }
 
-TEST(FreePlaces, AreAtTheSidesAndCoverNothing) {
-    const Rectangle room{0, 50, 1000, 600};
-    std::vector<Rectangle> taken;
-    const auto add = [&](PlaceWanted wanted) {
-        const auto place = free_place(wanted, room, taken, 10);
-        taken.push_back(place.value_or(Rectangle{}));
-        return place;
-    };
-    EXPECT_EQ(add({300, 250, true}), (Rectangle{690, 60, 300, 250}));
-    EXPECT_EQ(add({200, 400, false}), (Rectangle{10, 60, 200, 400}));
-    EXPECT_EQ(add({300, 300, true}), (Rectangle{690, 320, 300, 300})) << "below the first";
-    EXPECT_EQ(add({200, 300, true}), (Rectangle{220, 60, 200, 300})) << "further in, because that is nearer to a side";
-    EXPECT_EQ(add({250, 250, false}), (Rectangle{220, 370, 250, 250})) << "below that";
-    EXPECT_EQ(add({400, 300, true}), std::nullopt);
-    EXPECT_EQ(add({990, 300, true}), std::nullopt) << "wider than the room";
-}
-
-TEST(FreePlaces, ALargeScreenFitsSeveralPanels) {
-    const Rectangle room = viewport_of(below_panel_strip(3840, 2160, 2), 2);
-    std::vector<Rectangle> taken;
-    for (const PlaceWanted& wanted : {PlaceWanted{920, 840, true},
-                                      {800, 560, false},
-                                      {1120, 1200, true},
-                                      {760, 960, false},
-                                      {760, 960, true},
-                                      {1120, 920, false}}) {
-        const auto place = free_place(wanted, room, taken, 16);
-        ASSERT_TRUE(place) << taken.size();
-        for (const Rectangle& other : taken) {
-            EXPECT_TRUE(place->left >= other.left + other.width || other.left >= place->left + place->width ||
-                        place->top >= other.top + other.height || other.top >= place->top + place->height);
-        }
-        taken.push_back(*place);
-    }
+TEST(Layout, TheSidebarIsNeitherNarrowNorMostOfTheWindow) {
+    EXPECT_EQ(sidebar_pixels(400, 1280), 400);
+    EXPECT_EQ(sidebar_pixels(1, 1280), sidebar_width_min);
+    EXPECT_EQ(sidebar_pixels(900, 1280), 704);
+    EXPECT_EQ(sidebar_pixels(800, 3840, 2), 800);
+    EXPECT_EQ(sidebar_pixels(1, 3840, 2), 2 * sidebar_width_min);
+    EXPECT_LT(sidebar_pixels(400, 200), 200) << "narrower than the minimum, so that the world keeps its share";
 }
 
 } // namespace

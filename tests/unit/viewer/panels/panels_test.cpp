@@ -5,29 +5,68 @@
 namespace evod::viewer {
 namespace {
 
-TEST(Panels, ClosesThePanelUsedLastFirst) {
+TEST(Panels, TheSidebarShowsThePanelOfTheChosenTab) {
     Panels panels;
-    for (const std::size_t index : {4u, 1u, 2u, 0u}) {
-        panels.toggle(index);
-    }
-    panels.toggle(2); // hidden by its own key
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_FALSE(panels.shown(0));
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_FALSE(panels.shown(1));
+    EXPECT_TRUE(panels.shown(2)) << "Parameters, until the user chooses another tab";
+    panels.show(4);
     EXPECT_TRUE(panels.shown(4));
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_FALSE(panels.close_front());
+    EXPECT_FALSE(panels.shown(2));
+    panels.show("Worlds");
+    EXPECT_TRUE(panels.shown(0));
+    panels.show("no such panel");
+    EXPECT_TRUE(panels.shown(0));
 }
 
-TEST(Panels, VisiblePanelsSurviveANewSession) {
+TEST(Panels, ACollapsedSidebarOpensForAPanel) {
     Panels panels;
-    panels.toggle(3);
-    panels.show(panels.titles()[1]);
-    panels.begin_session();
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_FALSE(panels.shown(1));
+    panels.toggle_sidebar();
+    EXPECT_FALSE(panels.shown(2));
+    EXPECT_EQ(panels.width(1280, 1), sidebar_collapsed);
+    panels.show(3);
     EXPECT_TRUE(panels.shown(3));
+    EXPECT_EQ(panels.width(1280, 1), sidebar_width);
+}
+
+TEST(Panels, ClosesTheDetachedPanelUsedLastFirst) {
+    Panels panels;
+    for (const std::size_t index : {4u, 1u}) {
+        panels.set_detached(index, true);
+    }
+    panels.show(4);
+    EXPECT_TRUE(panels.close_front());
+    EXPECT_TRUE(panels.shown(4)) << "in the sidebar";
+    EXPECT_TRUE(panels.shown(1)) << "still detached";
+    EXPECT_TRUE(panels.close_front());
+    EXPECT_FALSE(panels.close_front());
+    EXPECT_TRUE(panels.shown(1));
+    EXPECT_FALSE(panels.shown(4));
+}
+
+TEST(Panels, TheSidebarLeavesRoomForTheWorlds) {
+    Panels panels;
+    panels.set({.width = 3000});
+    EXPECT_EQ(panels.width(1000, 1), 550);
+    panels.set({.width = 10});
+    EXPECT_EQ(panels.width(1280, 2), 2 * sidebar_width_min);
+    panels.set({});
+    panels.show("Glass box");
+    EXPECT_GT(panels.width(1920, 1), sidebar_width) << "the glass box needs more room";
+}
+
+TEST(Panels, AnUnknownStoredTabIsTheFirst) {
+    Panels panels;
+    panels.set({.tab = "no such panel"});
+    EXPECT_TRUE(panels.shown(0));
+}
+
+TEST(Panels, TabAndDetachedPanelsSurviveANewSession) {
+    Panels panels;
+    panels.set_detached(1, true);
+    panels.show(3);
+    panels.begin_session();
+    EXPECT_TRUE(panels.shown(1));
+    EXPECT_TRUE(panels.shown(3));
+    EXPECT_TRUE(panels.close_front());
 }
 
 } // namespace

@@ -1,0 +1,43 @@
+// RunHistory: keeps a History up to date with the server, with one query at a time.
+//
+// Owner        Panels, for the focused world; PlotsPanel, for the world it compares with.
+// Threads      none; used on the drawing thread.
+#pragma once
+
+#include "client/viewer/panels/plots/history.h"
+#include "client/viewer/world/poll.h"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace evod::viewer {
+
+class RunHistory {
+  public:
+    /// Follows the run of the viewed world. Call it once per frame.
+    void update(ViewedWorld& world, Poll::Clock::time_point now);
+    /// Follows the run that set_run() was called with, which may be of another world of the server. Call it once per
+    /// frame.
+    void update_other(ViewedWorld& world, Poll::Clock::time_point now);
+    void set_run(const evod::v1::WorldInfo& world) { history_.set_run(world); }
+
+    const History& history() const { return history_; }
+    const HistoryTable& table() const { return history_.table(); }
+    /// Why the last query was refused or not answered, as a sentence; empty if it was answered.
+    const std::string& problem() const { return poll_.problem(); }
+
+  private:
+    // A world may finish more generations per second than a user can see.
+    static constexpr std::chrono::milliseconds poll_interval{100};
+
+    void send_query(ViewedWorld& world, Poll::Clock::time_point now);
+
+    History history_;
+    Poll poll_{poll_interval};
+    std::uint64_t place_ = 0; // place whose events have been processed
+    std::uint64_t connected_count_ = 0;
+    int frame_ = -1; // last frame number of Dear ImGui
+};
+
+} // namespace evod::viewer

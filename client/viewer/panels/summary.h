@@ -1,0 +1,36 @@
+// Summary: the top of the sidebar. It explains the focused world to a newcomer and controls its run.
+//
+//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls
+//
+// Owner        Panels.
+// Threads      none; used on the drawing thread.
+#pragma once
+
+#include "client/viewer/panels/fork_dialog.h"
+#include "client/viewer/panels/panel.h"
+#include "client/viewer/world/experiment.h"
+
+#include <optional>
+#include <string>
+
+namespace evod::viewer {
+
+class Summary {
+  public:
+    /// Builds the sentences about the experiment and the explanation of the marks.
+    void build_experiment(Panel::Context& context);
+    /// Builds the fitness curve and the run controls.
+    void build_run(Panel::Context& context);
+
+  private:
+    void build_curve(const Panel::Context& context);
+    void build_buttons(ViewedWorld& world, float scale);
+    void build_speed(ViewedWorld& world);
+
+    Experiment experiment_;
+    ForkDialog fork_;
+    std::optional<double> factor_; // speed shown by the slider while the user drags it
+    std::string problem_;          // why the typed speed is refused
+};
+
+} // namespace evod::viewer

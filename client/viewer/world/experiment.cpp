@@ -1,0 +1,78 @@
+#include "client/viewer/world/experiment.h"
+
+#include "client/viewer/text/numbers.h"
+#include "client/viewer/world/parameter_edits.h"
+
+#include <map>
+
+namespace evod::viewer {
+
+namespace {
+
+/// The name of a selection method as it is used in a sentence.
+std::string selection_text(const std::string& selection) {
+    if (selection == "random") {
+        return "Parents are chosen at random, whatever their fitness.";
+    }
+    if (selection == "truncation") {
+        return "Only the fittest have offspring.";
+    }
+    return "Fitter organisms have more offspring (" +
+           (selection == "stochastic_universal" ? std::string{"stochastic universal"} : selection) + " selection).";
+}
+
+std::string fitness_text(const std::string& fitness) {
+    if (fitness == "life") {
+        return "Fitness is the time lived plus the health at the end.";
+    }
+    return "Fitness is computed from the genes alone (" + fitness + ").";
+}
+
+} // namespace
+
+std::string experiment_text(const evod::v1::ParameterSet& set) {
+    std::map<std::string, evod::v1::ParameterValue> values;
+    for (const evod::v1::ParameterState& parameter : set.parameters()) {
+        values.emplace(parameter.name(), parameter.value());
+    }
+    const auto number = [&](const char* name) { return shown_number(number_of(values[name])); };
+    const auto choice = [&](const char* name) { return values[name].choice(); };
+    return number("population_size") + " organisms seek food (+" + number("food_health") +
+           " health) and avoid poison (−" + number("poison_harm") + "). Each loses " + number("health_loss_per_s") +
+           " health per second and dies at 0. " + fitness_text(choice("fitness")) + " " +
+           selection_text(choice("selection"));
+}
+
+void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {
+    const RunControl& control = world.feed.control();
+    if (!control.known()) {
+        return;
+    }
+    if (control.world() != world_ || control.run_id() != run_id_) {
+        world_ = control.world();
+        run_id_ = control.run_id();
+        text_.clear();
+        stale_ = true;
+    }
+    stale_ = stale_ || connected_count_ != world.server.status().connected_count;
+    connected_count_ = world.server.status().connected_count;
+    for (const evod::v1::Event& event : world.feed.events()) {
+        stale_ =
+            stale_ || event.has_parameters_changed() || event.has_generation_finished() || event.has_events_dropped();
+    }
+    if (!stale_ || !poll_.due(world, now)) {
+        return;
+    }
+    stale_ = false;
+    evod::v1::Request request;
+    request.mutable_get_parameters()->set_world(world_);
+    poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
+        if (response != nullptr) {
+            text_ = experiment_text(response->parameters());
+        } else {
+            stale_ = true;
+        }
+    });
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,33 @@
+// Experiment: what the organisms of the viewed world try to do, as sentences for a newcomer, from the world's parameters.
+//
+// Owner        the summary in the sidebar.
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/world/poll.h"
+
+#include <cstdint>
+#include <string>
+
+namespace evod::viewer {
+
+/// "50 organisms seek food (+25 health) and avoid poison (−40). …", from a complete set of parameters.
+std::string experiment_text(const evod::v1::ParameterSet& set);
+
+class Experiment {
+  public:
+    /// Requests the parameters when another run is viewed or they have changed. Call it once per frame.
+    void update(ViewedWorld& world, Poll::Clock::time_point now);
+
+    /// Empty until the parameters have arrived.
+    const std::string& text() const { return text_; }
+
+  private:
+    Poll poll_;
+    std::string world_, run_id_;
+    std::uint64_t connected_count_ = 0;
+    bool stale_ = true;
+    std::string text_;
+};
+
+} // namespace evod::viewer
