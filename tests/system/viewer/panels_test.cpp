@@ -24,8 +24,6 @@ std::string read_file(const std::string& path) {
 }
 
 struct PanelsTest : testing::Test {
-    PanelsTest() { setenv("XDG_STATE_HOME", folder.file("state").c_str(), 1); }
-
     std::string write(const std::string& script) const {
         std::string path = folder.file("script");
         std::ofstream{path} << script;

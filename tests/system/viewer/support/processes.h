@@ -28,6 +28,7 @@ class TemporaryFolder {
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
         path_ = mkdtemp(name.data());
+        setenv("XDG_STATE_HOME", file("state").c_str(), 1); // evoview stores its settings there
     }
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     std::string file(const std::string& name) const { return (path_ / name).string(); }
