@@ -292,7 +292,7 @@ wait widget Keys
 key Escape
 wait gone Keys
 wait widget "Glass box/the newest"
-key Escape
+key F4
 wait gone "Glass box/the newest"
 key Space
 wait state running
@@ -380,7 +380,7 @@ click Apply
 key F4
 key F3
 click "as fast as possible"
-click Run/Run
+click Sidebar/Run
 click "Run generations"
 click "Reset …"
 key F2

@@ -40,6 +40,7 @@ class Plots {
 
   private:
     PlotsPanel panel_;
+    RunHistory history_;
     IslandView island_view_;
     ViewedWorld world_;
     PanelHost host_{width, height, [this](Gui& gui) {
@@ -48,7 +49,9 @@ class Plots {
                         ImGui::SetNextWindowPos({0, 0});
                         ImGui::SetNextWindowSize({width, height});
                         ImGui::Begin("Plots");
+                        history_.update(world_, now);
                         Panel::Context context{.world = world_, .gui = gui, .now = now, .island_view = island_view_};
+                        context.history = &history_;
                         panel_.build(context);
                         ImGui::End();
                     }};
