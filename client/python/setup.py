@@ -1,4 +1,5 @@
-"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/lab.py and evod/version.py.
+"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/lab.py,
+evod/experiments.py and evod/version.py.
 
 The environment variable PROTOC contains the path of protoc; by default protoc is searched in PATH.
 """
@@ -16,7 +17,7 @@ here = pathlib.Path(__file__).resolve().parent
 sources = here.parent.parent
 
 
-SYNCHRONOUS = ("lab.py",)  # modules of evod.aio from which synchronous modules are generated
+SYNCHRONOUS = ("experiments.py", "lab.py")  # modules of evod.aio from which synchronous modules are generated
 
 
 class BuildWithGenerated(build_py):

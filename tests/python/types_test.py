@@ -32,6 +32,10 @@ with evod.connect("host", token="") as lab:
     assert_type(world.statistics().last[0].genes["impulse"].mean, float)
     assert_type(world.organism(1).genes, evod.Genes)
 
+assert_type(evod.run({"population_size": 9}, generations=3, selection="random"), evod.RunFile)
+assert_type(evod.sweep("x.json", grid={"mutation_chance": [0.1]}).seeds, tuple[int, ...])
+assert_type(evod.compare("x.json", {}).differences, tuple[evod.Difference, ...])
+
 async def main() -> None:
     async with evod.aio.connect("host") as lab:
         assert_type(lab, evod.aio.Lab)
@@ -42,6 +46,7 @@ async def main() -> None:
             assert_type(await anext(snapshots), evod.Snapshot)
         assert_type(await world.run(1), evod.aio.Run)
         assert_type((await world.info()).state, evod.RunState)
+    assert_type(await evod.aio.run(seed=1, generations=3), evod.RunFile)
 '''
 
 

@@ -11,7 +11,9 @@
 `evod.local()` starts a private server, for scripts and notebooks. `evod.open_run("x.evod")` reads a run file without a
 server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the messages of the protocol.
 
-evod.lab and evod.version are generated when the package is built (setup.py).
+`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call.
+
+evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
 """
 from evod.errors import (
     Aborted,
@@ -33,6 +35,7 @@ from evod.errors import (
     Unimplemented,
     Violation,
 )
+from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, sweep
 from evod.generations import Generation, History, Population
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
@@ -71,13 +74,14 @@ from evod.version import __version__
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
 
 __all__ = [
-    "Aborted", "Actor", "AlreadyExists", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", 
-    "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Error", "Events",
+    "Aborted", "Actor", "AlreadyExists", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "Error", "Events",
     "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
     "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
     "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
     "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",
-    "Statistics", "Storage", "StorageState", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
-    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "connect", "local", "open_run",
+    "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
+    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local", "open_run",
+    "run", "sweep",
 ]  # fmt: skip
