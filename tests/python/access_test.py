@@ -31,7 +31,7 @@ class Access(unittest.TestCase):
         address = self.serve("--require-token")
         with evod.connect(address, token=viewer) as lab:
             self.assertEqual((lab.role, lab.welcome.user), ("viewer", "anna"))
-            with self.assertRaisesRegex(evod.Error, "PERMISSION_DENIED"):
+            with self.assertRaisesRegex(PermissionError, "needs the role controller"):
                 lab.world().run()
         file = self.folder / "token"
         file.write_text(viewer + "\n")

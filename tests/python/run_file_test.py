@@ -64,6 +64,8 @@ class RunFiles(unittest.TestCase):
         with evod.open_run(self.path) as run:
             self.assertEqual((run.name, run.seed, run.first_generation, run.last_generation), ("default", 42, 1, 7))
             self.assertEqual(run.parameters["population_size"], 10)
+            parents = run.organisms()["parent_first"]
+            self.assertEqual((str(parents.dtype), parents.isna().sum()), ("Int64", 10))
             self.assertEqual([run.parameters_of(g)["elite_count"] for g in (1, 7)], [0, 1])
             self.assertEqual(run.retained_generations, [1, 2, 3, 4, 5, 6, 7])
             self.assertEqual(list(run.events()["kind"][-3:]), ["run", "set_parameters", "run"])

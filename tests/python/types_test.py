@@ -23,7 +23,18 @@ with evod.connect("host", token="") as lab:
     for snapshot in world.snapshots():
         assert_type(snapshot, evod.Snapshot)
         assert_type(snapshot.organisms, evod.Organisms)
+        assert_type(snapshot.organisms[0], evod.Organism)
+        assert_type(snapshot.organisms[snapshot.organisms.x_px < 9], evod.Organisms)
+        assert_type(snapshot.state, evod.RunState)
     assert_type(world.get_parameters()["mutation_chance"].allowed, str)
+    assert_type(world.info().outcome, evod.Outcome | None)
+    assert_type(world.history(), evod.History)
+    assert_type(world.statistics().last[0].genes["impulse"].mean, float)
+    assert_type(world.organism(1).genes, evod.Genes)
+
+assert_type(evod.run({"population_size": 9}, generations=3, selection="random"), evod.RunFile)
+assert_type(evod.sweep("x.json", grid={"mutation_chance": [0.1]}).seeds, tuple[int, ...])
+assert_type(evod.compare("x.json", {}).differences, tuple[evod.Difference, ...])
 
 async def main() -> None:
     async with evod.aio.connect("host") as lab:
@@ -34,6 +45,8 @@ async def main() -> None:
         async with world.snapshots() as snapshots:
             assert_type(await anext(snapshots), evod.Snapshot)
         assert_type(await world.run(1), evod.aio.Run)
+        assert_type((await world.info()).state, evod.RunState)
+    assert_type(await evod.aio.run(seed=1, generations=3), evod.RunFile)
 '''
 
 

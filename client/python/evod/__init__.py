@@ -11,26 +11,77 @@
 `evod.local()` starts a private server, for scripts and notebooks. `evod.open_run("x.evod")` reads a run file without a
 server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the messages of the protocol.
 
-evod.lab and evod.version are generated when the package is built (setup.py).
+`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call.
+
+evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
 """
-from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
-from evod.generations import Generation, Population
+from evod.errors import (
+    Aborted,
+    AlreadyExists,
+    DamagedData,
+    Error,
+    FailedPrecondition,
+    FileNotFound,
+    InvalidArgument,
+    MissingPackage,
+    NoConnection,
+    NotFound,
+    PermissionDenied,
+    ProgramFailed,
+    ResourceExhausted,
+    Timeout,
+    Unauthenticated,
+    Unavailable,
+    Unimplemented,
+    Violation,
+)
+from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, sweep
+from evod.generations import Generation, History, Population
+from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
-from evod.run_file import RunFile, open_run
-from evod.snapshots import Boxes, Items, Organisms, Snapshot, Tile
-from evod.tables import GENE_NAMES
-from evod.v1.world_pb2 import (
-    RUN_STATE_PAUSED as PAUSED,
-    RUN_STATE_RUNNING as RUNNING,
-    RUN_STATE_TERMINATED as TERMINATED,
-    RUN_STATE_WAITING as WAITING,
+from evod.results import (
+    Breeding,
+    CauseOfDeath,
+    Choice,
+    Contender,
+    Descendant,
+    DescendantKind,
+    Detail,
+    GeneAccount,
+    GenerationStatistics,
+    GeneStatistics,
+    LiveStatistics,
+    Migrant,
+    Motion,
+    Mutation,
+    MutationKind,
+    OrderMutation,
+    OrganismInfo,
+    Outcome,
+    Pick,
+    ReplayRange,
+    RunState,
+    Statistics,
+    Storage,
+    StorageState,
+    WorldInfo,
 )
+from evod.run_file import RunFile, open_run
+from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
 from evod.version import __version__
 
+PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
+
 __all__ = [
-    "Actor", "Boxes", "DamagedData", "Error", "Events", "GENE_NAMES", "Generation", "Items", "Lab", "LocalLab", "NoConnection",
-    "Organisms", "Parameter", "Parameters", "PAUSED", "PlannedChange", "Population", "Registry", "Replay", "Run", "RunFile",
-    "RUNNING", "Snapshot", "Snapshots", "TERMINATED", "Tile", "Timeout", "Violation", "WAITING", "World", "connect",
-    "__version__", "local", "open_run",
+    "Aborted", "Actor", "AlreadyExists", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "Error", "Events",
+    "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
+    "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
+    "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
+    "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",
+    "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",
+    "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
+    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local", "open_run",
+    "run", "sweep",
 ]  # fmt: skip

@@ -3,7 +3,10 @@ from __future__ import annotations
 
 from typing import Any, Iterator, Mapping, Protocol
 
+from evod.errors import Error
 from evod.parameters import Parameters, Registry, Value
+from evod.results import WorldInfo
+from evod.tables import html_table
 
 
 class _Lab(Protocol):
@@ -14,13 +17,21 @@ class _World(Protocol):
     @property
     def lab(self) -> _Lab: ...
 
+    def info(self) -> WorldInfo: ...
+
     def get_parameters(self) -> Parameters: ...
 
     def set(self, values: Mapping[str, object] | None = None, /) -> Parameters: ...
 
 
 class ParameterAttributes:
-    """The base class of World. It provides the property `parameters`."""
+    """The base class of World. It provides the property `parameters`, and the representation of a world in notebooks."""
+
+    def _repr_html_(self: _World) -> str:
+        try:
+            return self.info()._repr_html_()
+        except Error as error:  # the world was deleted, or the server does not answer
+            return html_table((), (("world", self), ("error", error)))
 
     @property
     def parameters(self: _World) -> LiveParameters:

@@ -21,7 +21,7 @@ from typing import Any, Iterator
 import google.protobuf.message
 
 from evod import framing, snapshot_decoder
-from evod.errors import DamagedData, Error, NoConnection, refusal
+from evod.errors import DamagedData, Error, InvalidArgument, NoConnection, Unauthenticated, refusal
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
 from evod.version import __version__
@@ -40,7 +40,8 @@ _SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "c
 
 
 def _no_connection(error: Error) -> NoConnection:
-    return NoConnection(error.message, error.code, error.violations)
+    kind = Unauthenticated if error.code == commands_pb2.CODE_UNAUTHENTICATED else NoConnection
+    return kind(error.message, error.violations, error.code)
 
 
 class Pending:
@@ -196,7 +197,8 @@ class Core:
     def request(self, request: commands_pb2.Request, *, first: bool = False) -> Pending:
         """Queues a request, which is sent when there is a session. Sets its request_id and client_key.
 
-        Raises Error if the client is closed or has failed, or if the request is longer than the server allows.
+        Raises NoConnection if the client is closed or has failed, InvalidArgument if the request is longer than the server
+        allows.
         """
         if self.failed is not None:
             raise _no_connection(self.failed)
@@ -206,7 +208,7 @@ class Core:
         limits = self.welcome.limits if self.welcome else None
         limit = limits.control_frame_bytes_max if limits else 1 << 20
         if len(body) > limit:
-            raise Error(f"the request is {len(body)} bytes long, allowed at most {limit}")
+            raise InvalidArgument(f"the request is {len(body)} bytes long, allowed at most {limit}")
         self._last_request_id = request_id
         pending = self._pending[request_id] = Pending(request, framing.encode(body))
         if first:
@@ -289,9 +291,8 @@ class Core:
     def _take_welcome(self, message: session_pb2.ServerMessage, kind: str | None) -> None:
         if kind == "goodbye":
             error = refusal(message.goodbye.status)
-            refused = NoConnection(
-                f"the server at {self._server} refused this client: {error.message}", error.code, error.violations
-            )
+            refused = _no_connection(error)
+            refused.message = f"the server at {self._server} refused this client: {error.message}"
             if error.code not in (commands_pb2.CODE_RESOURCE_EXHAUSTED, commands_pb2.CODE_UNAVAILABLE):
                 self.failed = refused
             raise refused

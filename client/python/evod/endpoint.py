@@ -5,7 +5,7 @@ import dataclasses
 import os
 import ssl
 
-from evod.errors import Error
+from evod.errors import Error, FileNotFound, InvalidArgument
 
 DEFAULT_PORT = 7744
 
@@ -25,9 +25,9 @@ class Endpoint:
         Endpoint(host='lab.example', port=7000)
         >>> Endpoint.parse("::1")
         Endpoint(host='::1', port=7744)
-        >>> Endpoint.parse("lab:x")
+        >>> Endpoint.parse("[::1")
         Traceback (most recent call last):
-        evod.errors.Error: server: got 'lab:x', allowed HOST, HOST:PORT or [IPV6]:PORT: the port is not a number from 1 to 65535
+        evod.errors.InvalidArgument: server: got '[::1', allowed HOST, HOST:PORT or [IPV6]:PORT: ']' is missing
         """
         host, port = text, None
         if text.startswith("["):
@@ -51,31 +51,37 @@ class Endpoint:
         return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
 
 
-def _malformed(text: str, why: str) -> Error:
-    return Error(f"server: got '{text}', allowed HOST, HOST:PORT or [IPV6]:PORT: {why}")
+def _malformed(text: str, why: str) -> InvalidArgument:
+    return InvalidArgument(f"server: got '{text}', allowed HOST, HOST:PORT or [IPV6]:PORT: {why}")
+
+
+def _unusable(error: Exception, message: str) -> Error:
+    """Returns the error for a file that cannot be used."""
+    return (FileNotFound if isinstance(error, FileNotFoundError) else InvalidArgument)(message)
 
 
 def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
     """Returns `token`; by default the first word of the file; without a file the value of EVOD_TOKEN, or "" if it is unset.
 
-    Raises Error if users other than the owner can read the file.
+    Raises InvalidArgument if users other than the owner can read the file.
     """
     if token is not None:
         if token_file is not None:
-            raise Error("token and token_file are both given: use one of them")
+            raise InvalidArgument("token and token_file are both given: use one of them")
         return token
     if token_file is None:
         return os.environ.get("EVOD_TOKEN", "")
     try:
         with open(token_file, encoding="utf-8") as file:
             if os.fstat(file.fileno()).st_mode & 0o077:
-                raise Error(f"token_file: {os.fspath(token_file)}: other users can read the file: run chmod 600 on it")
+                why = "other users can read the file: run chmod 600 on it"
+                raise InvalidArgument(f"token_file: {os.fspath(token_file)}: {why}")
             words = file.read(4096).split()
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "the file is not text"
-        raise Error(f"token_file: {os.fspath(token_file)}: {why}") from None
+        raise _unusable(error, f"token_file: {os.fspath(token_file)}: {why}") from None
     if not words:
-        raise Error(f"token_file: {os.fspath(token_file)}: the file contains no token")
+        raise InvalidArgument(f"token_file: {os.fspath(token_file)}: the file contains no token")
     return words[0]
 
 
@@ -89,18 +95,18 @@ def tls_context(
     cert, key  PEM files with the client certificate and its private key. One file may contain both.
     """
     if key is not None and cert is None:
-        raise Error("key requires cert: give the PEM file of the certificate, too")
+        raise InvalidArgument("key requires cert: give the PEM file of the certificate, too")
     ca = (os.environ.get("EVOD_CA") if ca is None else ca) or None
     if not tls and ca is None and cert is None:
         return None
     try:
         context = ssl.create_default_context(cafile=ca)
     except (OSError, ssl.SSLError) as error:
-        raise Error(f"{ca} cannot be used for TLS: {error.strerror or error}") from None
+        raise _unusable(error, f"{ca} cannot be used for TLS: {error.strerror or error}") from None
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     if cert is not None:
         try:
             context.load_cert_chain(cert, key)
         except (OSError, ssl.SSLError) as error:
-            raise Error(f"{cert} cannot be used for TLS: {error.strerror or error}") from None
+            raise _unusable(error, f"{cert} cannot be used for TLS: {error.strerror or error}") from None
     return context

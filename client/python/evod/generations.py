@@ -2,27 +2,31 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Sequence
+from typing import Any, Iterable, Sequence
 
 import numpy
 import numpy.typing
 
+from evod.genes import GENE_NAMES, Genes
+from evod.results import GenerationStatistics, GeneStatistics, result
+from evod.tables import html_table, pandas
 from evod.v1 import commands_pb2, world_pb2
 
 
 ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
-def account_part(gene: world_pb2.GeneStatistics, part: str) -> float:
-    """Returns one of ACCOUNT_PARTS for a gene; nan if the server has no selection account for this generation."""
-    return float(getattr(gene.account, part)) if gene.HasField("account") else numpy.nan
+def account_part(gene: GeneStatistics, part: str) -> float:
+    """Returns one of ACCOUNT_PARTS for a gene; nan if there is no selection account for this generation."""
+    return numpy.nan if gene.account is None else float(getattr(gene.account, part))
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Generation:
     """The results of one generation over all islands.
 
-    Means over islands are weighted by their number of organisms.
+    `best`, `mean` and `worst` are the fitness of the best, the average and the worst organism of the generation. Means over
+    islands are weighted by their number of organisms.
 
     Examples
     --------
@@ -35,7 +39,7 @@ class Generation:
     """
 
     number: int  #: number of the generation; the first is 1
-    islands: tuple[world_pb2.GenerationStatistics, ...]  #: all statistics of each island, in index order
+    islands: tuple[GenerationStatistics, ...]  #: all statistics of each island, in index order
 
     @property
     def end_tick(self) -> int:
@@ -54,17 +58,17 @@ class Generation:
 
     @property
     def best(self) -> float:
-        """The greatest fitness."""
+        """The greatest fitness of all organisms on all islands."""
         return max(island.fitness_best for island in self.islands)
 
     @property
     def mean(self) -> float:
-        """The mean fitness."""
+        """The mean fitness of all organisms on all islands."""
         return self._mean([island.fitness_mean for island in self.islands])
 
     @property
     def worst(self) -> float:
-        """The least fitness."""
+        """The least fitness of all organisms on all islands."""
         return min(island.fitness_worst for island in self.islands)
 
     @property
@@ -73,16 +77,16 @@ class Generation:
         return self._mean([island.diversity for island in self.islands])
 
     @property
-    def genes(self) -> numpy.typing.NDArray[Any]:
-        """The mean of each gene, shape (6,), in the order of `evod.GENE_NAMES`."""
+    def genes(self) -> Genes:
+        """The mean of each gene, shape (6,): ``g.genes["body_size"]``."""
         means = numpy.array([[gene.mean for gene in island.genes] for island in self.islands])
-        return numpy.asarray(numpy.average(means, axis=0, weights=self._weights()))
+        return Genes(numpy.average(means, axis=0, weights=self._weights()))
 
     @property
-    def selection(self) -> numpy.typing.NDArray[Any]:
+    def selection(self) -> Genes:
         """The part of `change` that is due to selection, because some organisms had more descendants than others.
 
-        Shape (6,), in the units of the genes and in the order of `evod.GENE_NAMES`. nan in the first generation, and in runs
+        Shape (6,), in the units of the genes: ``g.selection["body_size"]``. nan in the first generation, and in runs
         of older versions, which did not record it. selection + transmission + migration = change (docs/MODEL.md).
 
         Examples
@@ -98,23 +102,23 @@ class Generation:
         return self._mean_part("selection")
 
     @property
-    def transmission(self) -> numpy.typing.NDArray[Any]:
+    def transmission(self) -> Genes:
         """The part of `change` that is due to crossover, mutation and the bounds of the genes."""
         return self._mean_part("transmission")
 
     @property
-    def migration(self) -> numpy.typing.NDArray[Any]:
+    def migration(self) -> Genes:
         """The part of `change` that is due to migration between islands."""
         return self._mean_part("migration")
 
     @property
-    def change(self) -> numpy.typing.NDArray[Any]:
+    def change(self) -> Genes:
         """The mean of each gene minus its mean in the previous generation; shape (6,), nan in the first generation."""
         return self._mean_part("change")
 
-    def _mean_part(self, name: str) -> numpy.typing.NDArray[Any]:
+    def _mean_part(self, name: str) -> Genes:
         parts = [[account_part(gene, name) for gene in island.genes] for island in self.islands]
-        return numpy.asarray(numpy.average(numpy.array(parts), axis=0, weights=self._weights()))
+        return Genes(numpy.average(numpy.array(parts), axis=0, weights=self._weights()))
 
     def _weights(self) -> list[int]:
         return [island.organism_count for island in self.islands]
@@ -132,29 +136,96 @@ class Generation:
         )
 
 
-def generations_of(rows: Sequence[world_pb2.GenerationStatistics]) -> list[Generation]:
+def generations_of(rows: Iterable[world_pb2.GenerationStatistics]) -> list[Generation]:
     """Combines the rows of each generation into a Generation. The rows must be ordered by generation and island."""
-    by_number: dict[int, list[world_pb2.GenerationStatistics]] = {}
+    by_number: dict[int, list[GenerationStatistics]] = {}
     for row in rows:
-        by_number.setdefault(row.generation, []).append(row)
+        by_number.setdefault(row.generation, []).append(result(row))
     return [Generation(number, tuple(islands)) for number, islands in by_number.items()]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+_ISLAND_COLUMNS = tuple(field.name for field in dataclasses.fields(GenerationStatistics) if field.name != "genes")
+
+
+class History(list[Generation]):
+    """Ended generations of a world in order, returned by `World.history`: a list with a table.
+
+    Examples
+    --------
+    >>> import evod
+    >>> with evod.local(seed=42) as lab:
+    ...     world = lab.world()
+    ...     world.run(generations=2).wait()
+    ...     history = world.history()
+    <generation 2: best 294.4, mean 84.7, 27 of 50 alive>
+    >>> history
+    <history of 2 generations, 1 to 2>
+    >>> history.to_pandas()[["generation", "fitness_best", "body_size_mean"]].round(1)
+       generation  fitness_best  body_size_mean
+    0           1         337.6            98.3
+    1           2         294.4           101.4
+    """
+
+    def columns(self) -> dict[str, numpy.typing.NDArray[Any]]:
+        """Returns the columns of `to_pandas` as arrays, without pandas."""
+        rows = [island for g in self for island in g.islands]
+        columns = {name: numpy.array([getattr(row, name) for row in rows]) for name in _ISLAND_COLUMNS}
+        for gene in GENE_NAMES:
+            for what in ("mean", "deviation", "min", "max"):
+                columns[f"{gene}_{what}"] = numpy.array([getattr(row.genes[gene], what) for row in rows], float)
+        for gene in GENE_NAMES:
+            for part in ACCOUNT_PARTS:
+                columns[f"{gene}_{part}"] = numpy.array([account_part(row.genes[gene], part) for row in rows], float)
+        return columns
+
+    def to_pandas(self) -> Any:
+        """Returns a DataFrame with one row per generation and island.
+
+        It has the columns of ``world.table("generations")`` and of `RunFile.generations`.
+        """
+        return pandas().DataFrame(self.columns())
+
+    def __repr__(self) -> str:
+        which = f", {self[0].number} to {self[-1].number}" if self else ""
+        return f"<history of {len(self)} generations{which}>"
+
+    def _repr_html_(self) -> str:
+        rows = (
+            (g.number, f"{g.best:.1f}", f"{g.mean:.1f}", f"{g.worst:.1f}", g.alive_count, g.organism_count) for g in self
+        )
+        return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows)
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Population:
     """All organisms of the current generation on one island, including dead ones. Row i is the organism with id i."""
 
     generation: int
     generation_tick: int  #: ticks since the generation began
-    genes: numpy.typing.NDArray[numpy.float32]  #: shape (count, 6), in the order of evod.GENE_NAMES
+    genes: Genes  #: shape (count, 6): genes["body_size"] has the shape (count,)
     parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids of the parents; (0, 2) in the first generation
     founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder of the lineage; (0,) if unknown
-    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.v1.Choice: the action in the next tick
+    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.Choice of the next tick; 0: none
     forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): force in the next tick, kg px/s²
     targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): position of the target, px
 
     def __len__(self) -> int:
         return len(self.genes)
+
+    def __repr__(self) -> str:
+        return f"<population of {len(self)} organisms in generation {self.generation}>"
+
+    def to_pandas(self) -> Any:
+        """Returns a DataFrame with one row per organism: its id, parents, founder and genes.
+
+        Columns that the server does not know, such as parents in the first generation, are missing.
+        """
+        columns: dict[str, Any] = {"organism": numpy.arange(len(self))}
+        if len(self.parents):
+            columns |= {"parent_first": self.parents[:, 0], "parent_second": self.parents[:, 1]}
+        if len(self.founders):
+            columns["founder"] = self.founders
+        return pandas().DataFrame(columns | self.genes.to_dict())
 
 
 def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
@@ -170,7 +241,7 @@ def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
     return Population(
         generation=parts[-1].generation,
         generation_tick=parts[-1].generation_tick,
-        genes=rows("genes", "<f4", gene_count),
+        genes=Genes(rows("genes", "<f4", gene_count)),
         parents=rows("parents", "<u4", 2),
         founders=rows("founders", "<u4", 1)[:, 0],
         choices=rows("choices", "<u1", 1)[:, 0],

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import collections
-import json
 import os
 import re
 import signal
@@ -11,10 +10,8 @@ import tempfile
 import threading
 from typing import IO, Mapping
 
-import numpy
-
-from evod.errors import Error, wrong_argument
-from evod.program import find_program
+from evod.experiment import Experiment, file_of, write_json
+from evod.program import failure, find_program
 
 _STOP_TIMEOUT_S = 30  # time for the server to write its runs; after this time it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
@@ -27,7 +24,7 @@ _SUPERVISOR = (
 
 def start(
     seed: int | None,
-    experiment: str | os.PathLike[str] | Mapping[str, object] | None,
+    experiment: Experiment,
     data: str | os.PathLike[str] | None,
     speed: float | str,
     threads: int | None,
@@ -35,33 +32,30 @@ def start(
 ) -> Server:
     """Starts a server with the options of evod.local() and waits until it accepts connections. Raises Error if it fails."""
     command = [find_program(program), "--port", "0"]
-    temporary = tempfile.mkdtemp(prefix="evod-runs-") if data is None else ""
-    # The data in a temporary folder need not survive a power failure. A new folder contains no worlds, so the speed of the
-    # single world can be set by an option of the program.
-    command += ["--data", temporary, "--durability", "relaxed", "--speed", str(speed)] if data is None else ["--data", os.fspath(data)]
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
     with tempfile.TemporaryDirectory(prefix="evod-") as folder:
+        hidden = ""
         if isinstance(experiment, Mapping):
-            path = os.path.join(folder, "default.json")  # the server gives the world the name of this file: default
-            with open(path, "w", encoding="utf-8") as file:
-                json.dump(dict(experiment), file, default=_json_value)
+            # The server gives the world the name of this file: default.
+            path = write_json(os.path.join(folder, "default.json"), experiment)
+            hidden = f"{path}: "
             command += ["--experiment", path]
         elif experiment is not None:
-            command += ["--experiment", os.fspath(experiment)]
-        return Server(command, temporary)
-
-
-def _json_value(value: object) -> object:
-    if isinstance(value, numpy.generic):
-        return value.item()
-    raise wrong_argument("experiment", "numbers, text, true and false", repr(value))
+            command += ["--experiment", file_of(experiment)]
+        if data is not None:
+            return Server([*command, "--data", os.fspath(data)], hidden=hidden)
+        # The data in a temporary folder need not survive a power failure. A new folder contains no worlds, so an option of
+        # the program can set the speed of the single world.
+        temporary = tempfile.mkdtemp(prefix="evod-runs-")
+        command += ["--data", temporary, "--durability", "relaxed", "--speed", str(speed)]
+        return Server(command, temporary, hidden)
 
 
 class Server:
     """A running server. It stops when this program ends. Its temporary folder, if it has one, is then deleted."""
 
-    def __init__(self, command: list[str], temporary: str = "") -> None:
+    def __init__(self, command: list[str], temporary: str = "", hidden: str = "") -> None:
         self._supervisor: subprocess.Popen[str] = subprocess.Popen(
             ["/bin/sh", "-c", _SUPERVISOR, "sh", *command],
             stdin=subprocess.PIPE,
@@ -82,7 +76,7 @@ class Server:
         else:
             self._supervisor.stdout.close()
             self.stop()
-            raise Error("evod did not start: " + " ".join(self.lines))
+            raise failure("\n".join(self.lines), hidden)
         threading.Thread(target=self._read_log, args=(self._supervisor.stdout,), daemon=True).start()
 
     def _read_log(self, log: IO[str]) -> None:

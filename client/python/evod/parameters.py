@@ -9,7 +9,8 @@ from typing import Iterator, Mapping, Union
 
 import numpy
 
-from evod.errors import Error, Violation
+from evod.errors import InvalidArgument, Violation
+from evod.tables import html_table
 from evod.v1 import commands_pb2, world_pb2
 
 Value = Union[float, int, bool, str]
@@ -150,33 +151,31 @@ class Registry(Mapping[str, Description]):
     def __len__(self) -> int:
         return len(self._descriptions)
 
-    def assignments(self, values: Mapping[str, object], field_prefix: str) -> list[world_pb2.ParameterAssignment]:
+    def assignments(self, values: Mapping[str, object]) -> list[world_pb2.ParameterAssignment]:
         """Converts a mapping of names to values into the messages to send.
 
-        Raises Error with every value that is not allowed, in the same words as the server.
+        Raises InvalidArgument with every value that is not allowed, in the same words as the server.
         """
         made, violations = [], []
         for name, value in values.items():
             description = self._descriptions.get(name)
             if description is None:
-                violations.append(Violation(field_prefix + name, self._allowed_instead_of(name), "an unknown name"))
+                violations.append(Violation(name, self._allowed_instead_of(name), "an unknown name"))
             elif (message := description.message(value)) is None:
-                violations.append(Violation(field_prefix + name, description.allowed, description.got(value)))
+                violations.append(Violation(name, description.allowed, description.got(value)))
             else:
                 made.append(world_pb2.ParameterAssignment(name=name, value=message))
         if violations:
-            raise Error(
-                "invalid parameter values", commands_pb2.CODE_INVALID_ARGUMENT, violations
-            )
+            raise InvalidArgument("invalid parameter values", violations)
         return made
 
     def planned(
-        self, values: Mapping[str, object], field_prefix: str
+        self, values: Mapping[str, object]
     ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
         """Converts a mapping of names to values, or to schedules of values by generation, into the messages to send.
 
-        Returns the values for generation 1 and the values for later generations. Raises Error with every value that is not
-        allowed.
+        Returns the values for generation 1 and the values for later generations. Raises InvalidArgument with every value that
+        is not allowed.
         """
         first: dict[str, object] = {}
         later, violations = [], []
@@ -187,7 +186,7 @@ class Registry(Mapping[str, Description]):
             description = self._descriptions[name]
             if description.effect == "reset":
                 allowed = "one value: it can change only at a reset"
-                violations.append(Violation(field_prefix + name, allowed, repr(value)))
+                violations.append(Violation(name, allowed, repr(value)))
                 continue
             for generation, of_generation in value.items():
                 try:
@@ -195,20 +194,20 @@ class Registry(Mapping[str, Description]):
                 except (TypeError, ValueError):
                     number = 0
                 if not 1 <= number < 2**64:
-                    violations.append(Violation(field_prefix + name, "generations from 1 on", repr(generation)))
+                    violations.append(Violation(name, "generations from 1 on", repr(generation)))
                 elif number == 1:
                     first[name] = of_generation
                 elif (message := description.message(of_generation)) is None:
-                    field = f"{field_prefix}{name} at generation {number}"
+                    field = f"{name} at generation {number}"
                     violations.append(Violation(field, description.allowed, description.got(of_generation)))
                 else:
                     later.append(world_pb2.ScheduledValue(name=name, generation=number, value=message))
         try:
-            assignments = self.assignments(first, field_prefix)
-        except Error as error:
-            raise Error(error.message, error.code, [*error.violations, *violations]) from None
+            assignments = self.assignments(first)
+        except InvalidArgument as error:
+            raise InvalidArgument(error.message, [*error.violations, *violations]) from None
         if violations:
-            raise Error("invalid parameter values", commands_pb2.CODE_INVALID_ARGUMENT, violations)
+            raise InvalidArgument("invalid parameter values", violations)
         return assignments, later
 
     def _allowed_instead_of(self, name: str) -> str:
@@ -219,7 +218,7 @@ class Registry(Mapping[str, Description]):
         return f"<registry of {len(self)} parameters>"
 
     def _repr_html_(self) -> str:
-        return _table_html(("name", "default", "allowed", "unit", "takes effect", "meaning"), (
+        return html_table(("name", "default", "allowed", "unit", "takes effect", "meaning"), (
             (d.name, text_of(d.default), d.allowed, d.unit, d.effect, d.help) for d in self.values()
         ))
 
@@ -306,7 +305,7 @@ class Parameters(Mapping[str, Parameter]):
         return f"<{len(self)} parameters, revision {self.revision}>"
 
     def _repr_html_(self) -> str:
-        return _table_html(("name", "value", "pending", "allowed", "unit", "takes effect", "meaning"), (
+        return html_table(("name", "value", "pending", "allowed", "unit", "takes effect", "meaning"), (
             (p.name, text_of(p.value), "" if p.pending is None else text_of(p.pending), p.allowed, p.unit, p.effect, p.help)
             for p in self.values()
         ))
@@ -357,12 +356,3 @@ def _description(message: world_pb2.ParameterDescription) -> Description:
 def _unknown_name(name: str, known: Mapping[str, object]) -> str:
     similar = difflib.get_close_matches(name, known, n=3)
     return f"there is no parameter '{name}'" + (f"; did you mean {', '.join(similar)}" if similar else "")
-
-
-def _table_html(heading: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
-    import html
-
-    def row(cells: tuple[str, ...], kind: str) -> str:
-        return "<tr>" + "".join(f"<{kind}>{html.escape(cell)}</{kind}>" for cell in cells) + "</tr>"
-
-    return f"<table>{row(heading, 'th')}{''.join(row(cells, 'td') for cells in rows)}</table>"

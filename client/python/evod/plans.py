@@ -5,7 +5,9 @@ true. Its return value is the result of the operation. Link.perform() (aio/link.
 """
 from __future__ import annotations
 
+import csv
 import dataclasses
+import io
 from typing import Any, Callable, Generator, Mapping, Sequence, TypeVar, Union
 
 import google.protobuf.descriptor
@@ -15,8 +17,18 @@ import numpy.typing
 
 from evod import snapshot_decoder
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
-from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
-from evod.generations import Generation, Population, generations_of, population_of
+from evod.errors import (
+    DamagedData,
+    InvalidArgument,
+    NotFound,
+    Unimplemented,
+    Violation,
+    argument_of,
+    refusal,
+    wrong_argument,
+)
+from evod.genes import GENE_NAMES, Genes
+from evod.generations import Generation, History, Population, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
@@ -100,7 +112,7 @@ class LabPlans:
         if name is None:
             name = known[0] if len(known) == 1 else "default"
         if name not in known:
-            raise Error(f"there is no world '{name}'; the worlds are: {', '.join(known) or 'none'}", c.CODE_NOT_FOUND)
+            raise NotFound(f"there is no world '{name}'; the worlds are: {', '.join(known) or 'none'}")
         return name
 
     # ---- parameters -------------------------------------------------------------------------------------------------
@@ -126,7 +138,7 @@ class LabPlans:
         response = yield from request(
             "set_parameters",
             world=world,
-            parameters=registry.assignments(values, "set_parameters."),
+            parameters=registry.assignments(values),
             dry_run=dry_run,
             expected_revision=expected_revision,
             at_generation=at_generation,
@@ -149,7 +161,9 @@ class LabPlans:
         """Raises Error if the server does not support planned changes, because it would apply them immediately."""
         welcome = self.core.welcome
         if welcome is not None and "planned_changes" not in welcome.features:
-            raise Error(f"the server, evod {welcome.server_version}, does not support planned changes: update it", c.CODE_UNIMPLEMENTED)
+            raise Unimplemented(
+                f"the server, evod {welcome.server_version}, does not support planned changes: update it"
+            )
 
     def create_world(
         self,
@@ -161,9 +175,9 @@ class LabPlans:
     ) -> Plan[str]:
         """Creates a world and sets its speed; returns its name."""
         speed = self.speed_of_new_worlds if speed is None else speed
-        requested = None if speed is None else speed_message(speed)
+        requested = None if speed is None else speed_message(speed)  # raises before the world is created
         registry = yield from self.registry()
-        first, later = registry.planned(parameters, "create_world.")
+        first, later = registry.planned(parameters)
         if later:
             self._require_planned_changes()
         info = yield from request_world(
@@ -177,6 +191,13 @@ class LabPlans:
         world = info.name
         if requested is not None:
             yield from request("set_speed", world=world, speed=requested)
+        return world
+
+    def derived_world(self, kind: str, /, **fields: Any) -> Plan[str]:
+        """Sends ForkWorld or OpenReplay, and sets the speed of the new world; returns its name."""
+        world = (yield from request_world(kind, **fields)).name
+        if self.speed_of_new_worlds is not None:
+            yield from request("set_speed", world=world, speed=speed_message(self.speed_of_new_worlds))
         return world
 
     # ---- subscriptions ----------------------------------------------------------------------------------------------
@@ -242,14 +263,15 @@ class LabPlans:
 
     def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
         """Runs a number of ticks and waits for the last one."""
-        ticks = build(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
+        if isinstance(ticks, bool) or not isinstance(ticks, (int, numpy.integer)) or not 0 <= ticks < 2**64:
+            raise wrong_argument("ticks", f"a whole number, 0 to {2**64 - 1}", ticks)
         tick = (yield from world_info(world)).tick + ticks
         yield from request("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
-    def snapshot(self, world: str, island: int) -> Plan[Snapshot]:
+    def snapshot(self, world: str, island: int, genes: bool) -> Plan[Snapshot]:
         """Returns the current state of an island. Subscribes to snapshots and ends the subscription after the first one."""
-        stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
+        stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)), genes)
         try:
             return (yield from stream.next())
         finally:
@@ -275,10 +297,15 @@ class EventStream:
 
 
 class SnapshotStream:
-    """The snapshots of a subscription, in the order in which they arrive. next() acknowledges the snapshot returned before."""
+    """The snapshots of a subscription, in the order in which they arrive. next() acknowledges the snapshot returned before.
 
-    def __init__(self, core: Core, subscription: Subscription) -> None:
+    genes  whether the organisms of the snapshots have their genes.
+    """
+
+    def __init__(self, core: Core, subscription: Subscription, genes: bool = False) -> None:
         self._core, self._subscription = core, subscription
+        # Genes by island, with the run and the generation to which they belong; None: they are not requested.
+        self._genes: dict[int, tuple[tuple[str, int], Genes]] | None = {} if genes else None
         self._taken: tuple[int, Snapshot] | None = None  # the last returned snapshot, and the number of its session
 
     def next(self) -> Plan[Snapshot]:
@@ -294,7 +321,13 @@ class SnapshotStream:
             raise subscription.refused or DamagedData("the subscription ended without a snapshot")
         snapshot: Snapshot = subscription.arrived.popleft()
         self._taken = subscription.sessions, snapshot
-        return snapshot
+        return snapshot if self._genes is None else (yield from self._with_genes(snapshot, self._genes))
+
+    def _with_genes(self, snapshot: Snapshot, known: dict[int, tuple[tuple[str, int], Genes]]) -> Plan[Snapshot]:
+        moment = snapshot.run_id, snapshot.generation
+        if snapshot.island not in known or known[snapshot.island][0] != moment:
+            known[snapshot.island] = moment, (yield from genes_of(snapshot))
+        return snapshot.with_genes(known[snapshot.island][1])
 
     def set_view(self, view: c.View) -> Plan[None]:
         """Changes the view in this session and in later sessions."""
@@ -370,7 +403,7 @@ class GenerationStream:
             if number > self._next:
                 yield from self._fill(number - 1)
             if number >= self._next:
-                self._ready.append(Generation(number, tuple(event.generation_finished.statistics)))
+                self._ready += generations_of(event.generation_finished.statistics)
         elif kind == "run_control_changed":
             info = event.run_control_changed.world
             self._began = self._began or _goal_of(info) == self._goal and info.state == world_pb2.RUN_STATE_RUNNING
@@ -388,8 +421,8 @@ class GenerationStream:
         """Requests the state of the world and the ended generations, after events were missed."""
         try:
             info = yield from world_info(self._world)
-        except Error as error:
-            raise self._close_with_error("deleted") if error.code == c.CODE_NOT_FOUND else error
+        except NotFound:
+            raise self._close_with_error("deleted") from None
         if info.run_id != self.info.run_id:
             raise self._close_with_error("reset")
         self._began = True
@@ -410,9 +443,9 @@ class GenerationStream:
             ended = yield from history(self._world, first, last, None)
             self._ready += [g for g in ended if self._goal is None or g.number < self._goal]
 
-    def _close_with_error(self, how: str) -> Error:
+    def _close_with_error(self, how: str) -> NotFound:
         self.close()
-        return Error(f"the world '{self._world}' was {how} while it ran", c.CODE_NOT_FOUND)
+        return NotFound(f"the world '{self._world}' was {how} while it ran")
 
     def close(self) -> None:
         """Ends the subscription. Afterwards next() returns None."""
@@ -438,9 +471,8 @@ def close_replay(world: str) -> Plan[None]:
     """Closes a replay. Does nothing if the replay has already ended with its session."""
     try:
         yield from request("close_replay", world=world)
-    except Error as error:
-        if error.code != c.CODE_NOT_FOUND:
-            raise
+    except NotFound:
+        pass
 
 
 # ---- queries ------------------------------------------------------------------------------------------------------------
@@ -457,7 +489,7 @@ def world_info(world: str) -> Plan[world_pb2.WorldInfo]:
     return (yield from request("get_statistics", world=world)).statistics.world
 
 
-def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
+def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[History]:
     """Requests the ended generations in several parts and returns them."""
     rows: list[world_pb2.GenerationStatistics] = []
     while True:
@@ -465,7 +497,7 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
         answer = response.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
-            return generations_of(rows)
+            return History(generations_of(rows))
         first = answer.next_generation
 
 
@@ -484,18 +516,32 @@ def population(world: str, island: int) -> Plan[Population]:
             return population_of(parts)
 
 
+def genes_of(snapshot: Snapshot) -> Plan[Genes]:
+    """Requests the genes of all organisms in the generation of a snapshot, ordered by id."""
+    now = yield from population(snapshot.world, snapshot.island)
+    if now.generation == snapshot.generation:
+        genes = now.genes
+    else:  # the next generation has begun: the run file contains the genes
+        text = yield from export(snapshot.world, "population", "csv", snapshot.generation, None)
+        rows = [row for row in csv.DictReader(io.StringIO(text)) if int(row["island"]) == snapshot.island]
+        genes = Genes(numpy.array([[row[name] for name in GENE_NAMES] for row in rows], numpy.float32))
+    if (yield from world_info(snapshot.world)).run_id != snapshot.run_id:
+        raise NotFound(f"the world '{snapshot.world}' was reset before the genes of the snapshot were requested")
+    return genes
+
+
 def export(
     world: str, table: str, text_format: str, generation: int | None, of: tuple[int, int, int] | None
 ) -> Plan[str]:
     """Requests a table in several parts and returns it as text."""
     organism = None
     if of is not None:
-        organism = build(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
+        organism = build(c.OrganismName, "of.", **dict(zip(("generation", "island", "organism"), of)))
     response = yield from request(
         "export_run",
         world=world,
-        table=_choice("export_run.table", table, TABLES),
-        format=_choice("export_run.format", text_format, FORMATS),
+        table=_choice("table", table, TABLES),
+        format=_choice("format", text_format, FORMATS),
         generation=generation,
         of=organism,
     )
@@ -511,7 +557,8 @@ def export(
 
 
 def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
-    """Creates a message. Fields that are None stay unset. Raises Error with every field whose value has a wrong type."""
+    """Creates a message. Fields that are None stay unset. Raises InvalidArgument with every field whose value
+    has a wrong type."""
     try:
         whole: M = message(**fields)
         return whole
@@ -522,22 +569,22 @@ def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
             message(**{name: value})
         except (TypeError, ValueError):
             allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "a value of the type of the field")
-            violations.append(Violation(field_prefix + name, allowed, str(value)))
-    raise Error("the request is wrong", c.CODE_INVALID_ARGUMENT, violations)
+            violations.append(Violation(argument_of(field_prefix + name), allowed, str(value)))
+    raise InvalidArgument("an argument is not allowed", violations)
 
 
 def speed_message(speed: float | str) -> world_pb2.Speed:
     """Converts a speed to the message to send. The speed is a factor of real time, or "max"."""
     if speed == "max":
         return world_pb2.Speed(max=True)
-    if isinstance(speed, str):
-        raise wrong_argument("set_speed.speed", "0.001 to 10000, or max", speed)
+    if isinstance(speed, (str, bool)) or not isinstance(speed, (int, float, numpy.number)):
+        raise wrong_argument("speed", "0.001 to 10000, or max", speed)
     return build(world_pb2.Speed, "set_speed.speed.", real_time_factor=speed)
 
 
-def moment_message(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
+def moment_message(generation: int | None, tick: int | None) -> c.RunMoment:
     """Converts a moment of a run to the message to send."""
-    return build(c.RunMoment, field_prefix, generation=generation, tick=tick)
+    return build(c.RunMoment, "", generation=generation, tick=tick)
 
 
 def view_message(
@@ -550,10 +597,10 @@ def view_message(
     if region is not None:
         names = ("left_px", "top_px", "width_px", "height_px")
         if len(region) != len(names):
-            raise wrong_argument("view.region", "left, top, width and height in px", region)
-        part = build(c.Region, "view.region.", **dict(zip(names, region)))
-    wanted = None if detail is None else _choice("view.detail", detail, DETAILS)
-    return build(c.View, "view.", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
+            raise wrong_argument("region", "left, top, width and height in px", region)
+        part = build(c.Region, "region.", **dict(zip(names, region)))
+    wanted = None if detail is None else _choice("detail", detail, DETAILS)
+    return build(c.View, "", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:

@@ -9,8 +9,8 @@ from typing import Any, Mapping, Protocol, Sequence
 import numpy
 import numpy.typing
 
-from evod.errors import Error
-from evod.generations import ACCOUNT_PARTS, Generation, account_part
+from evod.errors import FailedPrecondition, InvalidArgument, MissingPackage
+from evod.generations import ACCOUNT_PARTS
 
 Array = numpy.typing.NDArray[Any]
 
@@ -19,11 +19,11 @@ _HEALTH_SHOWN = 150.0  # the health at the end of the colour scale
 
 
 def pyplot() -> Any:
-    """Returns the module matplotlib.pyplot. Raises Error if matplotlib is not installed."""
+    """Returns the module matplotlib.pyplot. Raises MissingPackage if matplotlib is not installed."""
     try:
         from matplotlib import pyplot as module
     except ImportError:
-        raise Error("plots need the package matplotlib: install it, python3-matplotlib on Debian") from None
+        raise MissingPackage("plots need the package matplotlib: install it, python3-matplotlib on Debian") from None
     return module
 
 
@@ -123,7 +123,7 @@ def plot_island(snapshot: Island, ax: Any = None) -> Any:
 def animate(snapshots: Sequence[Island], interval_ms: float) -> Any:
     """Returns a matplotlib animation of the snapshots. Notebooks can play it."""
     if not snapshots:
-        raise Error("there are no snapshots to animate")
+        raise InvalidArgument("there are no snapshots to animate")
     from matplotlib import animation
 
     plot = IslandPlot(snapshots[0])
@@ -167,21 +167,6 @@ def _boxes(ax: Any, color: str) -> Any:
 # ---- a run --------------------------------------------------------------------------------------------------------------
 
 
-def statistics_columns(generations: Sequence[Generation], gene_names: Sequence[str]) -> dict[str, Array]:
-    """Converts statistics to columns with the names used in the table "generations", one row per generation and island."""
-    rows = [island for g in generations for island in g.islands]
-    columns = {
-        name: numpy.array([getattr(row, name) for row in rows], float)
-        for name in ("generation", "island", "organism_count", "fitness_best", "fitness_mean", "fitness_deviation")
-    }
-    for index, gene in enumerate(gene_names):
-        for what in ("mean", "deviation", "min", "max"):
-            columns[f"{gene}_{what}"] = numpy.array([getattr(row.genes[index], what) for row in rows], float)
-        for what in ACCOUNT_PARTS:
-            columns[f"{gene}_{what}"] = numpy.array([account_part(row.genes[index], what) for row in rows], float)
-    return columns
-
-
 def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
     """Plots the best and the mean fitness over all islands. A band around the mean shows one standard deviation."""
     ax = _axes(ax)
@@ -212,7 +197,7 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
 def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: str, ax: Any = None) -> Any:
     """Plots how selection, transmission and migration changed the mean of a gene in each generation, and the total change."""
     if gene not in gene_names:
-        raise Error(f"gene: got {gene!r}, allowed {', '.join(gene_names)}")
+        raise InvalidArgument(f"gene: got {gene!r}, allowed {', '.join(gene_names)}")
     ax = _axes(ax)
     ax.axhline(0, color="0.7", linewidth=0.8)
     for part in ACCOUNT_PARTS:
@@ -236,7 +221,7 @@ def plot_lineage(lineage: Any, ax: Any = None) -> Any:
     ax = _axes(ax, figsize=(8, 6))
     from matplotlib.collections import LineCollection
 
-    width = 1 + int(max(lineage["organism"].max(), lineage["parent_first"].max(), lineage["parent_second"].max()))
+    width = 1 + int(lineage[["organism", "parent_first", "parent_second"]].max().max())
     x = lineage["island"] * (width + 1) + lineage["organism"]
     lines = []
     for parent in ("parent_first", "parent_second"):
@@ -256,7 +241,7 @@ def plot_lineage(lineage: Any, ax: Any = None) -> Any:
 def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Array, Array]:
     generation, first = numpy.unique(numpy.asarray(columns["generation"]), return_index=True)
     if not len(generation):
-        raise Error("no generation has ended yet")
+        raise FailedPrecondition("no generation has ended yet")
     return generation, over.reduceat(numpy.asarray(columns[name], float), first)
 
 

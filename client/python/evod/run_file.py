@@ -4,9 +4,10 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import shutil
 import sqlite3
-import subprocess
 import urllib.parse
+import weakref
 from typing import Any, Iterator, Mapping
 
 import google.protobuf.json_format
@@ -15,10 +16,11 @@ import numpy
 import numpy.typing
 
 from evod import plotting
-from evod.errors import DamagedData, Error
+from evod.errors import DamagedData, FileNotFound, NotFound
 from evod.generations import ACCOUNT_PARTS
-from evod.program import find_program
-from evod.tables import GENE_NAMES, pandas, read_csv
+from evod.program import Program, find_program
+from evod.genes import GENE_NAMES, Genes
+from evod.tables import html_table, pandas, read_csv
 from evod.v1 import commands_pb2
 
 _CAUSES = ("alive", "starved", "poisoned")
@@ -36,7 +38,7 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
 
     Raises
     ------
-    Error
+    FileNotFound
         The file does not exist.
     DamagedData
         The file is not a run file, or is damaged.
@@ -55,16 +57,20 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
 
 
 class RunFile:
-    """An open run file, returned by `open_run`. Its tables have the same columns as those of `evod export`.
+    """An open run file, returned by `open_run` and `evod.run`. Its tables have the same columns as those of `evod export`.
 
     All methods raise DamagedData if the file is damaged.
     """
 
-    def __init__(self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> None:
+    def __init__(
+        self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None, temporary: str | None = None
+    ) -> None:
         self.path = pathlib.Path(path)
         self._program = program
+        # Deletes the folder `temporary`, if there is one, when the file is closed or garbage collected.
+        self._clean_up = weakref.finalize(self, shutil.rmtree, temporary, True) if temporary is not None else None
         if not self.path.is_file():
-            raise Error(f"there is no run file {self.path}")
+            raise FileNotFound(f"there is no run file {self.path}")
         # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can write to
         # a run file in such a folder, so the option `immutable` lets SQLite read without the shared memory file.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"
@@ -89,6 +95,10 @@ class RunFile:
     def __repr__(self) -> str:
         return f"<run of {self.name} in {self.path}, seed {self.seed}, {self.last_generation} generations begun>"
 
+    def _repr_html_(self) -> str:
+        fields = {"seed": self.seed, "run_id": self.run_id, "generations begun": self.last_generation, "file": self.path}
+        return html_table((), fields.items(), f"run of {self.name}")
+
     def __enter__(self) -> RunFile:
         return self
 
@@ -96,8 +106,10 @@ class RunFile:
         self.close()
 
     def close(self) -> None:
-        """Closes the file."""
+        """Closes the file. The file of `evod.run` is then deleted."""
         self._database.close()
+        if self._clean_up is not None:
+            self._clean_up()
 
     # ---- the run --------------------------------------------------------------------------------------------------
 
@@ -184,7 +196,7 @@ class RunFile:
                 }
             identity = {"generation": generation, "island": island, "organism": numpy.arange(count)}
             parts.append(pandas().DataFrame({**identity, **begun, **lived}))
-        return pandas().concat(parts, ignore_index=True)
+        return pandas().concat(parts, ignore_index=True).astype({"parent_first": "Int64", "parent_second": "Int64"})
 
     def population(self, generation: int | None = None) -> Any:
         """Returns the genes of a generation as a DataFrame; by default, of the last generation that has begun."""
@@ -194,12 +206,12 @@ class RunFile:
             parts.append(pandas().DataFrame({"island": island, "organism": numpy.arange(len(genes)), **columns}))
         return pandas().concat(parts, ignore_index=True)
 
-    def genes(self, generation: int | None = None) -> list[numpy.typing.NDArray[numpy.float32]]:
+    def genes(self, generation: int | None = None) -> list[Genes]:
         """Returns the genes of a generation as arrays, for the argument `population` of `Lab.create_world`.
 
         Returns
         -------
-        list of numpy.ndarray
+        list of Genes
             One array for each island, with shape (population_size, 6) and columns in the order of `evod.GENE_NAMES`.
 
         Examples
@@ -216,7 +228,7 @@ class RunFile:
         rows = self._rows(
             "SELECT organism_count, chromosomes FROM population WHERE generation = ? ORDER BY island", number
         )
-        islands = [_array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1) for count, genes in rows]
+        islands = [Genes(_array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)) for count, genes in rows]
         if not islands:
             raise self._missing(number)
         return islands
@@ -249,10 +261,7 @@ class RunFile:
         """
         which = [] if of is None else ["--of", ":".join(map(str, of))]
         command = [find_program(self._program), "export", str(self.path), "--what", "lineage", *which]
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace")
-        if done.returncode != 0:
-            raise Error(done.stderr.strip().removeprefix("evod: ") or "evod export failed")
-        return read_csv(done.stdout)
+        return read_csv(Program(command).run())
 
     # ---- plots ----------------------------------------------------------------------------------------------------
 
@@ -296,14 +305,14 @@ class RunFile:
             raise DamagedData(f"{self.path} is damaged: its parameters cannot be read") from None
         return {name: value for name, value in parameters.items() if name not in ("seed", "description")}
 
-    def _missing(self, generation: int) -> Error:
+    def _missing(self, generation: int) -> NotFound:
         retained = self.retained_generations
         if self.first_generation <= generation <= self.last_generation:
-            return Error(
+            return NotFound(
                 f"{self.path} no longer contains the organisms of generation {generation}: `evod export` simulates it again"
             )
         allowed = f"{retained[0]} to {retained[-1]}" if retained else "none"
-        return Error(f"generation: got {generation}, allowed in {self.path}: {allowed}")
+        return NotFound(f"generation: got {generation}, allowed in {self.path}: {allowed}")
 
 
 def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:

@@ -9,8 +9,9 @@ from typing import Any, Mapping, Sequence
 import numpy
 
 from evod.errors import DamagedData
+from evod.results import Detail, RunState, result
 from evod.snapshots import STEPS_PER_PX, Array, Boxes, Columns, Items, Organisms, Snapshot, Tile
-from evod.v1 import stream_pb2, world_pb2
+from evod.v1 import stream_pb2
 
 try:
     import zstandard
@@ -41,6 +42,8 @@ class SnapshotDecoder:
         self._whole = _Deltas(_HAVE_IDS)
         self._tiles: dict[int, _Deltas] = {}
         self._same: dict[str, Any] = {}  # values of the fields that deltas omit
+        self._moment: tuple[int, int, float] | None = None  # generation, tick and simulated time of the last snapshot
+        self._tick_s = 0.0  # simulated time of a tick
 
     def decode(self, message: stream_pb2.SnapshotFrame) -> Snapshot:
         """Decodes a snapshot. Raises DamagedData; with CODEC_DELTA, only a keyframe can be decoded after this error."""
@@ -56,8 +59,6 @@ class SnapshotDecoder:
                 field: getattr(message, field)
                 for field in ("world", "run_id", "island_count", "width_px", "height_px", "item_radius_px")
             }
-        live = world_pb2.LiveStatistics()  # a copy, so that the snapshot does not keep the whole message in memory
-        live.CopyFrom(message.live)
         return Snapshot(
             **{**self._same, "run_id": self._same["run_id"].hex()},
             island=message.island,
@@ -65,20 +66,31 @@ class SnapshotDecoder:
             generation=message.generation,
             generation_tick=message.generation_tick,
             simulated_s=message.simulated_s,
-            state=message.state,
+            state=RunState(message.state),
             state_hash=message.state_hash.hex(),
-            live=live,
+            live=result(message.live),
             ticks_per_s=message.ticks_per_s,
             slowed=message.slowed,
             sequence=message.sequence,
             dropped_count=message.dropped_count,
-            organisms=Organisms(content["organisms"]),
+            organisms=Organisms(content["organisms"], interval_s=self._interval_s(message)),
             food=Items(content["food"]),
             poison=Items(content["poison"]),
             crates=Boxes(content["crates"]),
             obstacles=Boxes(content["obstacles"]),
             tiles=tiles,
         )
+
+    def _interval_s(self, message: stream_pb2.SnapshotFrame) -> float:
+        """Returns the simulated time of the displacements in this snapshot; 0 if it is not known."""
+        before, self._moment = self._moment, (message.generation, message.tick, message.simulated_s)
+        if before is not None and before[0] == message.generation and before[1] < message.tick:
+            self._tick_s = (message.simulated_s - before[2]) / (message.tick - before[1])
+        elif before is None or before[0] != message.generation:
+            # The parameter tick_s can change between generations. Without another snapshot of this generation, its value is
+            # estimated by its mean over the run.
+            self._tick_s = message.simulated_s / message.tick if message.tick else 0.0
+        return self._whole.ticks * self._tick_s if message.codec == stream_pb2.CODEC_DELTA and not message.tile_px else 0.0
 
     def _decode_tiles(self, message: stream_pb2.SnapshotFrame) -> tuple[Content, tuple[Tile, ...]]:
         before, self._tiles = self._tiles, {}
@@ -107,7 +119,7 @@ class SnapshotDecoder:
                 density = _density(_body_of(tile, message.position_bytes, checked_before, 1 << 16))
             else:
                 raise DamagedData(f"a tile's detail is {tile.detail}, allowed: 1 to 3")
-            tiles.append(Tile(tile.tile, tile.detail, left, top, side, counts, dots, density))
+            tiles.append(Tile(tile.tile, Detail(tile.detail), left, top, side, counts, dots, density))
         self._tiles = full
         return _merged_tiles(contents), tuple(tiles)
 
@@ -260,7 +272,7 @@ class _Deltas:
     def __init__(self, have_ids: frozenset[str]) -> None:
         self._have_ids = have_ids
         self._sequence = 0  # sequence number of the baseline for the next delta; 0: there is no baseline
-        self._ticks = 0  # number of ticks over which the displacements in the baseline were measured
+        self.ticks = 0  # number of ticks over which the displacements in the baseline were measured
         self._content: Content = {}
 
     def decode(self, message: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
@@ -282,7 +294,7 @@ class _Deltas:
                 raise DamagedData(f"a snapshot has {len(section['x'])} {name}, not {count} as its count says")
             content[name] = section
         body.end()
-        self._ticks = ticks if ticks or keyframe else self._ticks
+        self.ticks = ticks if ticks or keyframe else self.ticks
         self._content, self._sequence = content, message.sequence
         return content
 
@@ -316,8 +328,8 @@ class _Deltas:
         if count and moves:
             for field in ("x", "y"):
                 before = stayed["d" + field]
-                if ticks != max(self._ticks, 1):
-                    before = (before.astype(numpy.int64) * ticks // max(self._ticks, 1)).astype(numpy.int32)
+                if ticks != max(self.ticks, 1):
+                    before = (before.astype(numpy.int64) * ticks // max(self.ticks, 1)).astype(numpy.int32)
                 way = body.column(count) + before  # all these numbers are modulo 2^32
                 stayed[field] = stayed[field] + way.view(numpy.uint32)
                 if ticks:

@@ -1,30 +1,44 @@
-"""Reads the tables of a run as pandas DataFrames."""
+"""Tables as pandas DataFrames, and as HTML for notebooks."""
 from __future__ import annotations
 
+import html
 import io
-from typing import Any
+from typing import Any, Iterable, Sequence
 
 import numpy
 
-from evod.errors import Error
-
-GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius")
+from evod.errors import MissingPackage
+from evod.genes import GENE_NAMES
 
 
 def pandas() -> Any:
-    """Returns the module pandas. Raises Error if pandas is not installed."""
+    """Returns the module pandas. Raises MissingPackage if pandas is not installed."""
     try:
         import pandas as module
     except ImportError:
-        raise Error("tables need the package pandas: install it, python3-pandas on Debian") from None
+        raise MissingPackage("tables need the package pandas: install it, python3-pandas on Debian") from None
     return module
 
 
-def read_csv(text: str) -> Any:
+def read_csv(text: str, **options: Any) -> Any:
     """Reads a table that evod wrote as CSV.
 
-    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats.
+    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats. Parents become
+    whole numbers, <NA> for organisms without parents.
     """
     kinds: dict[str, Any] = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
     kinds |= {name: numpy.float32 for name in GENE_NAMES}
-    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds)
+    kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second") for part in ("", "_generation", "_island")}
+    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, **options)
+
+
+def html_table(heading: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
+    """Returns a table as HTML. Without a heading, the first cell of each row is the heading of the row."""
+
+    def row(cells: Sequence[object], kinds: Sequence[str]) -> str:
+        return "<tr>" + "".join(f"<{kind}>{html.escape(str(cell))}</{kind}>" for cell, kind in zip(cells, kinds)) + "</tr>"
+
+    parts = [f"<caption>{html.escape(caption)}</caption>"] if caption else []
+    parts += [row(heading, ["th"] * len(heading))] if heading else []
+    parts += [row(cells, ["td" if heading else "th", *["td"] * (len(cells) - 1)]) for cells in rows]
+    return f"<table>{''.join(parts)}</table>"

@@ -24,7 +24,7 @@ with evod.local() as lab:
     for method in lab.registry()["selection"].choices:
         runs = []
         for seed in range(1, options.seeds + 1):
-            world = lab.create_world("run", {"selection": method}, seed=seed, speed="max")
+            world = lab.create_world("run", {"selection": method}, seed=seed)
             runs.append([generation.mean for generation in world.run(options.generations)])
             world.delete()
         fitness = numpy.array(runs)  # shape (seeds, generations)

@@ -3,7 +3,6 @@
     fork.py [--generations N] [--output FILE]
 """
 import argparse
-import tempfile
 
 import matplotlib.pyplot as plt
 
@@ -15,14 +14,13 @@ parser.add_argument("--output", default="fork.png")
 options = parser.parse_args()
 half = options.generations // 2
 
-with tempfile.TemporaryDirectory() as folder, evod.local(seed=7, data=folder) as lab:
+with evod.local(seed=7) as lab:
     origin = lab.world()
     origin.set(selection="tournament")
     origin.run(options.generations).wait()
 
     other = origin.fork("without_crossover", at_generation=half)  # has the same organisms, seed and parameters
     other.set(crossover="none")
-    other.set_speed("max")
     other.run(options.generations - half + 1).wait()
 
     for world in (origin, other):

@@ -24,7 +24,7 @@ with evod.local() as lab:
     for row, chance in enumerate(chances):
         for column, size in enumerate(sizes):
             parameters = {"mutation_chance": chance, "mutation_step": size, "selection": "tournament"}
-            worlds = [lab.create_world(f"seed-{seed}", parameters, seed=seed, speed="max")
+            worlds = [lab.create_world(f"seed-{seed}", parameters, seed=seed)
                       for seed in range(1, options.seeds + 1)]
             runs = [world.run(options.generations) for world in worlds]  # starts all worlds
             fitness[row, column] = numpy.mean([run.wait().mean for run in runs])

@@ -16,10 +16,14 @@ from evod.aio.awaitable import opens, opens_stream
 from evod.aio.link import Link, blocking_call
 from evod.core import Core
 from evod.endpoint import Endpoint, read_token, tls_context
-from evod.generations import Generation, Population
+from evod.experiment import Experiment
+from evod.genes import GENE_NAMES
+from evod.generations import Generation, History, Population
 from evod.parameters import Parameters, PlannedChange, Registry
+from evod.results import Breeding, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
 from evod.snapshots import Snapshot
-from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
+from evod.tables import html_table
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
 
 T = TypeVar("T")
 
@@ -89,7 +93,7 @@ async def connect(
 async def local(
     *,
     seed: int | None = None,
-    experiment: str | os.PathLike[str] | Mapping[str, object] | None = None,
+    experiment: Experiment = None,
     data: str | os.PathLike[str] | None = None,
     speed: float | str = "max",
     threads: int | None = None,
@@ -110,8 +114,8 @@ async def local(
     data
         Folder for the run files. By default a temporary folder, which is deleted when the server stops.
     speed
-        Speed of every world, including those created later: simulated seconds per second, or "max" for as fast as the
-        machine allows.
+        Speed of every world, including worlds, forks and replays created later: simulated seconds per second, or "max" for as
+        fast as the machine allows.
     threads
         Number of threads for the simulation. By default one for each processor.
     program
@@ -121,8 +125,12 @@ async def local(
 
     Raises
     ------
-    Error
-        The program was not found, or the server did not start; the message contains its last lines of output.
+    FileNotFound
+        The program was not found.
+    InvalidArgument
+        An argument or a parameter of the experiment is not allowed. `violations` lists all of them.
+    ProgramFailed
+        The server did not start. The message contains the last lines of its output.
 
     Examples
     --------
@@ -169,6 +177,11 @@ class Lab(_Closing):
 
     def __repr__(self) -> str:
         return f"<evod at {self.address}>"
+
+    def _repr_html_(self) -> str:
+        welcome = self.welcome
+        fields = (("address", self.address), ("version", welcome.server_version), ("role", self.role))
+        return html_table((), fields, "lab of evod")
 
     async def close(self) -> None:
         """Closes the connection. Calls that wait for an answer raise NoConnection."""
@@ -228,17 +241,17 @@ class Lab(_Closing):
 
     # ---- worlds ---------------------------------------------------------------------------------------------------
 
-    async def worlds(self) -> Sequence[world_pb2.WorldInfo]:
+    async def worlds(self) -> tuple[WorldInfo, ...]:
         """Returns the state of every world, in the order in which the worlds were created."""
-        return await self._link.perform(plans.worlds())
+        return tuple(result(info) for info in await self._link.perform(plans.worlds()))
 
     async def world(self, name: str | None = None) -> World:
         """Returns the world with this name. Without a name, returns the only world, or "default" if there are several.
 
         Raises
         ------
-        Error
-            NOT_FOUND: the server has no such world.
+        NotFound
+            The server has no such world.
         """
         return World(self, await self._link.perform(self._plans.world_name(name)))
 
@@ -271,8 +284,10 @@ class Lab(_Closing):
 
         Raises
         ------
-        Error
+        InvalidArgument
             Some values are not allowed. `violations` lists all of them. No world was created.
+        AlreadyExists
+            The server has a world with this name.
 
         Examples
         --------
@@ -355,8 +370,9 @@ class World(ParameterAttributes):
     async def _request(self, kind: str, /, **fields: Any) -> c.Response:
         return await self._link.perform(plans.request(kind, world=self.name, **fields))
 
-    async def _command(self, kind: str, /, **fields: Any) -> world_pb2.WorldInfo:
-        return await self._link.perform(plans.request_world(kind, world=self.name, **fields))
+    async def _command(self, kind: str, /, **fields: Any) -> WorldInfo:
+        info: WorldInfo = result(await self._link.perform(plans.request_world(kind, world=self.name, **fields)))
+        return info
 
     # ---- parameters -----------------------------------------------------------------------------------------------
 
@@ -399,8 +415,10 @@ class World(ParameterAttributes):
 
         Raises
         ------
-        Error
+        InvalidArgument
             `violations` lists every value that is not allowed.
+        Aborted
+            Another client has changed parameters since `expected_revision`.
         """
         given = {**(values or {}), **more}
         plan = self._plans.set_parameters(self.name, given, dry_run, expected_revision, at_generation, at_tick)
@@ -415,7 +433,7 @@ class World(ParameterAttributes):
 
         Raises
         ------
-        Error
+        NotFound
             The server has already applied, dropped or cancelled the change.
         """
         return await self._link.perform(self._plans.cancel_change(self.name, change))
@@ -444,11 +462,11 @@ class World(ParameterAttributes):
         """
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
-    async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
+    async def run_until_tick(self, tick: int) -> WorldInfo:
         """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the pause."""
         return await self._command("run_until_tick", tick=tick)
 
-    async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
+    async def step(self, ticks: int = 1) -> WorldInfo:
         """Runs this number of ticks and returns after the last one.
 
         Examples
@@ -460,29 +478,31 @@ class World(ParameterAttributes):
         >>> info.tick
         60
         """
-        return await self._link.perform(self._plans.step(self.name, ticks))
+        info: WorldInfo = result(await self._link.perform(self._plans.step(self.name, ticks)))
+        return info
 
-    async def wait(self) -> world_pb2.WorldInfo:
+    async def wait(self) -> WorldInfo:
         """Waits until the world stops running, and returns its state."""
-        return await self._link.perform(self._plans.wait(self.name))
+        info: WorldInfo = result(await self._link.perform(self._plans.wait(self.name)))
+        return info
 
-    async def pause(self) -> world_pb2.WorldInfo:
+    async def pause(self) -> WorldInfo:
         """Pauses the world. `resume` continues towards the same goal."""
         return await self._command("pause")
 
-    async def resume(self) -> world_pb2.WorldInfo:
+    async def resume(self) -> WorldInfo:
         """Continues after `pause`, until the goal of the last `run` or `run_until_tick` is reached."""
         return await self._command("resume")
 
-    async def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
+    async def set_speed(self, speed: float | str) -> WorldInfo:
         """Sets the speed: simulated seconds per second, 0.001 to 10,000, or "max" for as fast as the machine allows."""
         return await self._command("set_speed", speed=plans.speed_message(speed))
 
-    async def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
+    async def reset(self, seed: int | None = None) -> WorldInfo:
         """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for `run`."""
         return await self._command("reset_world", seed=seed)
 
-    async def release_lease(self) -> world_pb2.WorldInfo:
+    async def release_lease(self) -> WorldInfo:
         """Ends the lease of the last `run_until_tick` or `step`, so that the world resumes if it was running before."""
         return await self._command("release_lease")
 
@@ -500,7 +520,8 @@ class World(ParameterAttributes):
         at_generation
             The new world begins at the first tick of this generation. By default it begins with the current state.
         """
-        return World(self._lab, (await self._command("fork_world", name=name, at_generation=at_generation)).name)
+        plan = self._plans.derived_world("fork_world", world=self.name, name=name, at_generation=at_generation)
+        return World(self._lab, await self._link.perform(plan))
 
     async def delete(self) -> None:
         """Deletes the world from the server."""
@@ -508,13 +529,22 @@ class World(ParameterAttributes):
 
     # ---- observing ------------------------------------------------------------------------------------------------
 
-    async def info(self) -> world_pb2.WorldInfo:
+    async def info(self) -> WorldInfo:
         """Returns the current tick, generation, run state, speed, seed and gene names."""
-        return await self._link.perform(plans.world_info(self.name))
+        info: WorldInfo = result(await self._link.perform(plans.world_info(self.name)))
+        return info
 
-    async def snapshot(self, island: int = 0) -> Snapshot:
-        """Returns the current state of the island with this index."""
-        return await self._link.perform(self._plans.snapshot(self.name, island))
+    async def snapshot(self, island: int = 0, *, genes: bool = False) -> Snapshot:
+        """Returns the current state of an island.
+
+        Parameters
+        ----------
+        island
+            Index of the island.
+        genes
+            Whether ``snapshot.organisms.genes`` contains the genes.
+        """
+        return await self._link.perform(self._plans.snapshot(self.name, island, genes))
 
     @opens_stream
     async def snapshots(
@@ -522,6 +552,7 @@ class World(ParameterAttributes):
         rate_hz: float = 30.0,
         *,
         island: int | None = None,
+        genes: bool = False,
         region: tuple[float, float, float, float] | None = None,
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
@@ -536,6 +567,9 @@ class World(ParameterAttributes):
             The largest number of snapshots per second for each island. The server may lower it: see `Snapshots.rate_hz`.
         island
             The index of the island to observe. By default snapshots of all islands arrive in turn.
+        genes
+            Whether ``snapshot.organisms.genes`` contains the genes. They are requested once per generation and island. If
+            the generation has ended before, they are read from the run file.
         region
             A rectangle, as (left, top, width, height) in px. Snapshots contain only the tiles that overlap it.
         detail
@@ -559,7 +593,7 @@ class World(ParameterAttributes):
         """
         view = plans.view_message(region, detail, bytes_per_s_max)
         subscription = await self._link.perform(self._plans.subscribe_snapshots(self.name, island, rate_hz, view))
-        return Snapshots(self._link, plans.SnapshotStream(self._link.core, subscription))
+        return Snapshots(self._link, plans.SnapshotStream(self._link.core, subscription, genes))
 
     @opens_stream
     async def events(self) -> Events:
@@ -567,13 +601,14 @@ class World(ParameterAttributes):
         subscription = await self._link.perform(self._plans.subscribe_events(self.name))
         return Events(self._link, plans.EventStream(self._link.core, subscription))
 
-    async def statistics(self) -> c.Statistics:
+    async def statistics(self) -> Statistics:
         """Returns the live statistics of each island, and the statistics of the last generation that has ended."""
-        return (await self._request("get_statistics")).statistics
+        statistics: Statistics = result((await self._request("get_statistics")).statistics)
+        return statistics
 
     async def history(
         self, first: int | None = None, last: int | None = None, *, island: int | None = None
-    ) -> list[Generation]:
+    ) -> History:
         """Returns the ended generations whose statistics the server still stores.
 
         Parameters
@@ -585,15 +620,16 @@ class World(ParameterAttributes):
         """
         return await self._link.perform(plans.history(self.name, first, last, island))
 
-    async def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
+    async def organism(self, organism: int, island: int = 0) -> OrganismInfo:
         """Returns the genes, position, health, parents and next choice of the organism with this id.
 
         Raises
         ------
-        Error
-            NOT_FOUND: the current generation contains no organism with this id.
+        NotFound
+            The current generation contains no organism with this id.
         """
-        return (await self._request("get_organism", island=island, organism=organism)).organism
+        info: OrganismInfo = result((await self._request("get_organism", island=island, organism=organism)).organism)
+        return info
 
     async def population(self, island: int = 0) -> Population:
         """Returns the genes, parents and choices of all organisms in the current generation as arrays.
@@ -617,7 +653,7 @@ class World(ParameterAttributes):
         first_contender: int = 0,
         first_pick: int = 0,
         first_descendant: int = 0,
-    ) -> c.Breeding:
+    ) -> Breeding:
         """Returns a record of how a generation was bred: contenders, picks, pairs, crossover points and mutations.
 
         Parameters
@@ -637,11 +673,13 @@ class World(ParameterAttributes):
             first_pick=first_pick,
             first_descendant=first_descendant,
         )
-        return response.breeding
+        breeding: Breeding = result(response.breeding)
+        return breeding
 
-    async def motion(self, island: int = 0) -> c.Motion:
+    async def motion(self, island: int = 0) -> Motion:
         """Returns the total energy and momentum of the bodies on an island, and how much they overlap."""
-        return (await self._request("get_motion", island=island)).motion
+        motion: Motion = result((await self._request("get_motion", island=island)).motion)
+        return motion
 
     @opens
     async def open_replay(self, generation: int | None = None, tick: int | None = None) -> Replay:
@@ -654,8 +692,9 @@ class World(ParameterAttributes):
             generation. If only the tick is given, it is counted from the beginning of the run. If neither is given, the
             replay begins at the beginning of the run.
         """
-        at = plans.moment_message("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
-        return Replay(self._lab, (await self._command("open_replay", at=at)).name)
+        at = plans.moment_message(generation, tick) if (generation, tick) != (None, None) else None
+        plan = self._plans.derived_world("open_replay", world=self.name, at=at)
+        return Replay(self._lab, await self._link.perform(plan))
 
     async def export(
         self,
@@ -714,18 +753,15 @@ class World(ParameterAttributes):
 
     async def plot_fitness(self, ax: Any = None) -> Any:
         """Plots the fitness of all ended generations; returns the axes."""
-        history, info = await self.history(), await self.info()
-        return plotting.plot_fitness(plotting.statistics_columns(history, info.gene_names), ax)
+        return plotting.plot_fitness((await self.history()).columns(), ax)
 
     async def plot_genes(self, ax: Any = None) -> Any:
         """Plots the mean and the standard deviation of each gene in all ended generations; returns the axes."""
-        history, info = await self.history(), await self.info()
-        return plotting.plot_genes(plotting.statistics_columns(history, info.gene_names), info.gene_names, ax)
+        return plotting.plot_genes((await self.history()).columns(), GENE_NAMES, ax)
 
     async def plot_selection(self, gene: str, ax: Any = None) -> Any:
         """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
-        history, info = await self.history(), await self.info()
-        return plotting.plot_selection(plotting.statistics_columns(history, info.gene_names), info.gene_names, gene, ax)
+        return plotting.plot_selection((await self.history()).columns(), GENE_NAMES, gene, ax)
 
     async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
         """Records snapshots of an island and returns them as a matplotlib animation. Notebooks can play it.
@@ -743,7 +779,7 @@ class World(ParameterAttributes):
         async with self.snapshots(rate_hz, island=island) as snapshots:
             async for snapshot in snapshots:
                 recorded.append(snapshot)
-                if len(recorded) >= count or snapshot.state != world_pb2.RUN_STATE_RUNNING:
+                if len(recorded) >= count or snapshot.state != RunState.RUNNING:
                     break
         return plotting.animate(recorded, 1000 / rate_hz)
 
@@ -754,9 +790,9 @@ class Replay(World, _Closing):
     It ends with close(), or when the connection ends.
     """
 
-    async def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
+    async def seek(self, generation: int | None = None, tick: int | None = None) -> WorldInfo:
         """Moves the replay to a moment, given as in `World.open_replay`; by default to the last stored moment."""
-        return await self._command("seek", to=plans.moment_message("seek.to.", generation, tick))
+        return await self._command("seek", to=plans.moment_message(generation, tick))
 
     async def close(self) -> None:
         """Removes the replay from the server."""
@@ -780,10 +816,19 @@ class Run(_Stream):
 
     _stream: plans.GenerationStream
 
+    def __repr__(self) -> str:
+        info = self._stream.info
+        end = f"to {info.run_until_generation - 1}" if info.HasField("run_until_generation") else "until it is paused"
+        return f"<run of {info.name}: generations {info.generation} {end}>"
+
+    def _repr_html_(self) -> str:
+        return html_table((), (("world", self.info.name), ("began", f"generation {self.info.generation}")), repr(self)[1:-1])
+
     @property
-    def info(self) -> world_pb2.WorldInfo:
+    def info(self) -> WorldInfo:
         """The state of the world when the run began."""
-        return self._stream.info
+        info: WorldInfo = result(self._stream.info)
+        return info
 
     def __aiter__(self) -> Run:
         return self

@@ -1,0 +1,409 @@
+"""Whole experiments in one call: a run, a parameter sweep, a comparison. evod.experiments is generated from this file.
+
+Sweeps and comparisons are computed by the program evod (`evod sweep`, `evod compare`).
+"""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import os
+import pathlib
+import re
+import shutil
+import tempfile
+from typing import Any, Mapping, Sequence
+
+from evod.aio.lab import local
+from evod.aio.link import blocking_call
+from evod.errors import ProgramFailed, wrong_argument
+from evod.experiment import Experiment, file_of, values_of, with_parameters, write_json
+from evod.program import Program, find_program
+from evod.progress import progress_bar
+from evod.run_file import RunFile
+from evod.tables import html_table, pandas, read_csv
+
+# ---- one run ----------------------------------------------------------------------------------------------------------
+
+
+async def run(
+    experiment: Experiment = None,
+    *,
+    seed: int | None = None,
+    generations: int | None = None,
+    threads: int | None = None,
+    program: str | os.PathLike[str] | None = None,
+    progress: bool | None = None,
+    **parameters: object,
+) -> RunFile:
+    """Runs an experiment at full speed and returns the complete run.
+
+    Parameters
+    ----------
+    experiment
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+    seed
+        Seed of the run, 0 to 2**64 - 1. By default the seed in the experiment file, or a random seed.
+    generations
+        The number of generations. By default a termination criterion of the experiment ends the run.
+    threads
+        Number of threads for the simulation. By default one for each processor.
+    program
+        Path of the program evod. By default the path in the environment variable EVOD, or else the evod found in PATH.
+    progress
+        Whether to show a progress bar, which needs the package tqdm. By default a bar is shown on terminals and in notebooks
+        if tqdm is installed.
+    **parameters
+        Parameters that replace those of the experiment. A mapping in place of a value is a schedule, as for
+        `Lab.create_world`.
+
+    Returns
+    -------
+    RunFile
+        The run: its tables are DataFrames. The file is deleted when it is closed or garbage collected; copy `RunFile.path`
+        to keep it.
+
+    Raises
+    ------
+    InvalidArgument
+        An argument or a parameter is not allowed. `violations` lists all of them.
+
+    Examples
+    --------
+    >>> import evod.aio
+    >>> result = await evod.aio.run(seed=42, generations=3, selection="tournament")
+    >>> result.generations()[["generation", "fitness_best", "fitness_mean"]].round(1)
+       generation  fitness_best  fitness_mean
+    0           1         337.6          71.1
+    1           2         252.8          90.3
+    2           3         322.8          98.6
+    """
+    whole = with_parameters(experiment, parameters)
+    folder = tempfile.mkdtemp(prefix="evod-run-")
+    try:
+        async with local(seed=seed, experiment=whole, data=folder, threads=threads, program=program) as lab:
+            world = await lab.world()
+            if generations is None:
+                now = await world.get_parameters()
+                if not (now.generation_limit or now.stagnation_limit or now.stop_at_target_fitness or now.stop_at_extinction):
+                    allowed = "a number, or a termination criterion in the experiment, such as generation_limit"
+                    raise wrong_argument("generations", allowed, None)
+            with progress_bar("run", generations, progress) as advance:
+                async for generation in world.run(generations):
+                    if advance:
+                        advance(generation.number)
+        return RunFile(os.path.join(folder, f"{world.name}.evod"), program=program, temporary=folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+# ---- a sweep ----------------------------------------------------------------------------------------------------------
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Sweep:
+    """The results of a parameter sweep, returned by `evod.sweep`."""
+
+    cell_count: int  #: number of different sets of values
+    replicates: int  #: number of runs of each cell
+    seed: int  #: the seed of the sweep
+    seeds: tuple[int, ...]  #: the seed of each replicate; it is the same in every cell
+    parameters: tuple[str, ...]  #: names of the swept parameters
+    csv: str  #: the table as text, with comments that state how to repeat the sweep
+
+    @functools.cached_property
+    def runs(self) -> Any:
+        """A DataFrame with one row per run, generation and island.
+
+        Its columns are cell, replicate, seed, the swept parameters, and those of ``world.table("generations")``.
+        """
+        return read_csv(self.csv, comment="#")
+
+    @property
+    def last(self) -> Any:
+        """The rows of `runs` for the last generation of each run."""
+        newest = self.runs.groupby(["cell", "replicate"]).generation.transform("max")
+        return self.runs[self.runs.generation == newest]
+
+    def __repr__(self) -> str:
+        swept = ", ".join(self.parameters)
+        return f"<sweep of {swept}: {self.cell_count} cells of {self.replicates} replicates, seed {self.seed}>"
+
+    def _repr_html_(self) -> str:
+        fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count), ("replicates", self.replicates),
+                  ("seed", self.seed))  # fmt: skip
+        return html_table((), fields, "sweep")
+
+
+async def sweep(
+    experiment: Experiment = None,
+    *,
+    grid: Mapping[str, object] | None = None,
+    list: Sequence[Mapping[str, object]] | None = None,
+    latin_hypercube: Mapping[str, object] | None = None,
+    replicates: int = 1,
+    seed: int | None = None,
+    generations: int | None = None,
+    jobs: int | None = None,
+    out: str | os.PathLike[str] | None = None,
+    program: str | os.PathLike[str] | None = None,
+    progress: bool | None = None,
+    **parameters: object,
+) -> Sweep:
+    """Runs an experiment many times with different parameters and seeds, on all cores (`evod sweep`).
+
+    Exactly one of `grid`, `list` and `latin_hypercube` is given. They have the form of the fields of a sweep file
+    (docs/CLUSTER.md).
+
+    Parameters
+    ----------
+    experiment
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+    grid
+        The values of each parameter: a sequence, or ``{"from": A, "to": B, "steps": N}``. Every combination is a cell.
+    list
+        A sequence of mappings of parameter names to values, one mapping for each cell.
+    latin_hypercube
+        ``{"samples": N, "parameters": {…}}``: N cells that cover the ranges of the parameters evenly.
+    replicates
+        The number of runs per cell. Replicate r has the same seed in every cell.
+    seed
+        The seed of the whole sweep. By default the seed of the experiment, or 1.
+    generations
+        The number of generations of each run. By default a termination criterion of the experiment ends each run.
+    jobs
+        The number of simultaneous runs. By default one for each processor.
+    out
+        The folder for the results, in which the same call resumes an interrupted sweep. By default a temporary folder.
+    program, progress, **parameters
+        The same as for `evod.run`.
+
+    Raises
+    ------
+    InvalidArgument
+        An argument or a parameter is not allowed. `violations` lists all of them.
+
+    Examples
+    --------
+    >>> import evod.aio
+    >>> result = await evod.aio.sweep(grid={"selection": ["random", "tournament"]}, replicates=2, seed=1, generations=20)
+    >>> result
+    <sweep of selection: 2 cells of 2 replicates, seed 1>
+    >>> result.last.groupby("selection").fitness_mean.mean().round(1).to_dict()
+    {'random': 54.3, 'tournament': 167.7}
+    """
+    given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations}
+    whole = with_parameters(experiment, parameters)
+    design: dict[str, object] = {name: value for name, value in given.items() if value is not None}
+    design |= {"experiment": os.path.abspath(whole) if isinstance(whole, str) else whole, "replicates": replicates}
+    with tempfile.TemporaryDirectory(prefix="evod-sweep-") as folder:
+        path = write_json(os.path.join(folder, "sweep.json"), design)
+        results = pathlib.Path(folder if out is None else out)
+        command = [find_program(program), "sweep", path, "--out", str(results), *_option("jobs", jobs)]
+        with progress_bar("sweep", 1.0, progress) as advance:
+            printed = await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
+        text = (results / "runs.csv").read_text(encoding="utf-8")
+    plan = re.search(r": (\d+) cells? of (\d+) replicates?, \d+ runs?, seed (\d+)", printed)
+    seeds = re.search(r"^seeds of the replicates: ([\d ]+)$", printed, re.MULTILINE)
+    head = re.search(r"^cell,replicate,seed,(.*?,)??generation,", text, re.MULTILINE)
+    if plan is None or seeds is None or head is None:
+        raise _unreadable("sweep")
+    swept = tuple(name for name in (head[1] or "").split(",") if name)
+    return Sweep(int(plan[1]), int(plan[2]), int(plan[3]), tuple(map(int, seeds[1].split())), swept, text)
+
+
+# ---- a comparison -------------------------------------------------------------------------------------------------------
+
+
+@dataclasses.dataclass(frozen=True)
+class ComparedWorld:
+    """A world of a comparison. Numbers have the precision with which `evod compare` prints them."""
+
+    name: str
+    first: float  #: mean fitness of the first generation
+    last: float  #: mean fitness of the last generation
+    rise: float  #: last - first
+    rise_low: float  #: 95 % confidence interval of the rise
+    rise_high: float
+    extinct: int  #: generations in which all organisms died
+    changes: str  #: the parameters in which it differs from the first world: "selection=random"
+
+
+@dataclasses.dataclass(frozen=True)
+class Difference:
+    """The rise of the first world minus the rise of another one, seed by seed."""
+
+    other: str
+    difference: float
+    low: float  #: 95 % confidence interval of the difference
+    high: float
+    g: float | None  #: effect size, Hedges' g; None if the differences do not vary
+    p: float  #: p-value of the sign-flip permutation test
+    adjusted: float  #: p with Holm's adjustment for the number of differences
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """The results of a comparison, returned by `evod.compare`."""
+
+    worlds: tuple[ComparedWorld, ...]  #: the first world, then its controls or the other worlds
+    differences: tuple[Difference, ...]  #: of the first world to each other world
+    verdict: str  #: the conclusions in sentences
+    report: str  #: everything that `evod compare` printed
+    csv: str  #: the fitness of every run and generation
+
+    @functools.cached_property
+    def fitness(self) -> Any:
+        """A DataFrame with the fitness of every run and generation.
+
+        Its columns are arm (name of the world), replicate, seed, generation, fitness_mean, fitness_best, organism_count and
+        alive_count.
+        """
+        return read_csv(self.csv)
+
+    def to_pandas(self) -> Any:
+        """Returns `worlds` and `differences` as one DataFrame with one row per world; the index is its name."""
+        frame = pandas().DataFrame([vars(world) for world in self.worlds]).set_index("name")
+        columns = [field.name for field in dataclasses.fields(Difference)]
+        differences = pandas().DataFrame([vars(d) for d in self.differences], columns=columns)
+        return frame.join(differences.astype({"g": float}).set_index("other"))
+
+    def __str__(self) -> str:
+        return self.report
+
+    def __repr__(self) -> str:
+        return f"<comparison of {', '.join(world.name for world in self.worlds)}: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        heading = [field.name for field in dataclasses.fields(Difference)]
+        return html_table(heading, (vars(d).values() for d in self.differences), self.verdict)  # type: ignore[misc]
+
+
+async def compare(
+    *experiments: Experiment,
+    names: Sequence[str] | None = None,
+    controls: bool | None = None,
+    replicates: int = 20,
+    seed: int | None = None,
+    generations: int | None = None,
+    jobs: int | None = None,
+    program: str | os.PathLike[str] | None = None,
+    progress: bool | None = None,
+    **parameters: object,
+) -> Comparison:
+    """Compares a world with its controls, or with other worlds, using the same seeds (`evod compare`).
+
+    Parameters
+    ----------
+    *experiments
+        Experiment files, or mappings of parameter names to values. A single one, or none for the default world, is compared
+        with its controls: random selection, no mutation, harmless poison and shuffled fitness. Of several, the first is
+        compared with each of the others.
+    names
+        The names of the worlds in the results. By default the names of the files without their extension, and
+        "experiment_1", "experiment_2", … for mappings.
+    controls
+        Whether to compare with the controls. By default True for at most one experiment.
+    replicates
+        The number of runs of each world, each with its own seed.
+    seed
+        The seed from which the seeds of all runs are derived. By default the seed of the first file, or a random one.
+    generations
+        The number of generations of each run. By default the generation_limit of the first experiment, or 60.
+    jobs
+        The number of simultaneous runs. By default one for each processor.
+    program, progress, **parameters
+        The same as for `evod.run`. The parameters replace those of all experiments.
+
+    Raises
+    ------
+    InvalidArgument
+        An argument or a parameter is not allowed. `violations` lists all of them.
+
+    Examples
+    --------
+    >>> import evod.aio
+    >>> methods = ["tournament", "roulette"]
+    >>> result = await evod.aio.compare(*({"selection": method} for method in methods), names=methods, replicates=3,
+    ...                                 generations=5, seed=1)
+    >>> [world.name for world in result.worlds], result.differences[0].other
+    (['tournament', 'roulette'], 'roulette')
+    >>> len(result.fitness)
+    30
+    """
+    given = experiments or (None,)
+    if names is not None and len(names) != len(given):
+        raise wrong_argument("names", f"{len(given)} names, one for each experiment", names)
+    with tempfile.TemporaryDirectory(prefix="evod-compare-") as folder:
+        paths = []
+        for number, experiment in enumerate(given):
+            if isinstance(experiment, (str, os.PathLike)):
+                if names is None and not parameters:
+                    paths.append(file_of(experiment))
+                    continue
+                default = pathlib.Path(experiment).stem
+            else:
+                default = "default" if experiment is None else f"experiment_{number + 1}"
+            name = default if names is None else names[number]
+            if not name or "/" in name:
+                raise wrong_argument("names", "names that are not empty and contain no /", repr(name))
+            values = {**values_of(experiment), **parameters}
+            path = os.path.join(folder, f"{name}.json")
+            if os.path.exists(path):  # two experiments may have the same name
+                path = os.path.join(tempfile.mkdtemp(dir=folder), f"{name}.json")
+            paths.append(write_json(path, values))
+        csv = os.path.join(folder, "fitness.csv")
+        command = [find_program(program), "compare", *paths, "--replicates", str(replicates), "--csv", csv]
+        command += ["--controls"] if controls or controls is None and len(given) == 1 else []
+        command += [*_option("seed", seed), *_option("generations", generations), *_option("jobs", jobs)]
+        with progress_bar("comparison", 1.0, progress) as advance:
+            report = await _output_of(Program(command, hidden=f"{folder}/", on_progress=advance))
+        return _comparison(report, pathlib.Path(csv).read_text(encoding="utf-8"))
+
+
+_WORLD = re.compile(
+    r"(?P<name>.+?) +(?P<first>\S+) +(?P<last>\S+) +(?P<rise>\S+) +(?P<rise_low>\S+) to (?P<rise_high>\S+) +(?P<extinct>\d+)"
+    r"(?: +(?P<changes>\S.*))?"
+)
+_DIFFERENCE = re.compile(
+    r"(?P<other>.+?) +(?P<difference>\S+) +(?P<low>\S+) to (?P<high>\S+) +(?P<g>\S+) +(?P<p>\S+) +(?P<adjusted>\S+)"
+)
+_NOT_RUN = re.compile(r".+? is not run: .*")
+
+
+def _comparison(report: str, csv: str) -> Comparison:
+    """Reads what evod compare printed: paragraphs with a title, a table of worlds, a table of differences, and sentences."""
+    _, of_worlds, *others = report.strip().split("\n\n")
+    worlds, differences = [], []
+    for line in of_worlds.splitlines()[1:]:
+        if found := _WORLD.fullmatch(line):
+            row = found.groupdict(default="")
+            numbers = {name: float(row[name]) for name in ("first", "last", "rise", "rise_low", "rise_high")}
+            worlds.append(ComparedWorld(name=row["name"], **numbers, extinct=int(row["extinct"]), changes=row["changes"]))
+        elif not _NOT_RUN.fullmatch(line):
+            raise _unreadable("compare")
+    if others and others[0].startswith("rise of "):
+        for line in others.pop(0).splitlines()[2:]:
+            found = _DIFFERENCE.fullmatch(line)
+            if found is None:
+                raise _unreadable("compare")
+            numbers = {name: float(found[name]) for name in ("difference", "low", "high", "p", "adjusted")}
+            g = None if found["g"] == "-" else float(found["g"])
+            differences.append(Difference(other=found["other"], g=g, **numbers))
+    return Comparison(tuple(worlds), tuple(differences), " ".join(" ".join(others).split()), report, csv)
+
+
+def _unreadable(command: str) -> ProgramFailed:
+    return ProgramFailed(f"cannot read the output of evod {command}: the program and the package must have the same version")
+
+
+async def _output_of(program: Program) -> str:
+    try:
+        return await blocking_call(program.run)
+    except BaseException:  # a cancelled task does not stop its thread
+        program.stop()
+        raise
+
+
+def _option(name: str, value: object) -> Sequence[str]:
+    return () if value is None else (f"--{name}", str(value))

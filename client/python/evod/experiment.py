@@ -1,0 +1,59 @@
+"""Experiments as arguments: the path of an experiment file, or a mapping of parameter names to values."""
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Mapping, Union
+
+import numpy
+
+from evod.errors import FileNotFound, InvalidArgument, wrong_argument
+
+Experiment = Union[str, "os.PathLike[str]", Mapping[str, object], None]
+
+
+def with_parameters(experiment: Experiment, parameters: Mapping[str, object]) -> str | dict[str, object]:
+    """Returns the experiment with other values for some parameters. A file without such values is returned as its path."""
+    if experiment is not None and not isinstance(experiment, Mapping) and not parameters:
+        return file_of(experiment)
+    return {**values_of(experiment), **parameters}
+
+
+def file_of(experiment: str | os.PathLike[str]) -> str:
+    """Returns the path of an experiment file. Raises FileNotFound if there is none."""
+    path = os.fspath(experiment)
+    if not os.path.exists(path):
+        raise FileNotFound(f"experiment: there is no file {path}")
+    return path
+
+
+def values_of(experiment: Experiment) -> dict[str, object]:
+    """Returns the values of an experiment. A file may also contain a seed and a description."""
+    if experiment is None or isinstance(experiment, Mapping):
+        return dict(experiment or {})
+    path = file_of(experiment)
+    try:
+        with open(path, encoding="utf-8") as file:
+            values = json.load(file)
+    except (OSError, ValueError) as error:
+        raise InvalidArgument(f"experiment: {path}: {getattr(error, 'strerror', None) or error}") from None
+    if not isinstance(values, dict):
+        raise InvalidArgument(f"experiment: {path} contains no JSON object")
+    return values
+
+
+def write_json(path: str, values: Mapping[str, object]) -> str:
+    """Writes a file that the program evod reads; returns its path. NumPy numbers and arrays become JSON."""
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(dict(values), file, default=_json_value)
+    return path
+
+
+def _json_value(value: object) -> Any:
+    if isinstance(value, (numpy.generic, numpy.ndarray)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, range):
+        return list(value)
+    raise wrong_argument("experiment", "numbers, text, true and false", repr(value))

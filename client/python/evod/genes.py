@@ -1,0 +1,92 @@
+"""Genes as arrays with names."""
+from __future__ import annotations
+
+from typing import Any, Iterable, SupportsIndex, TypeVar, overload
+
+import numpy
+
+T = TypeVar("T")
+
+GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius")
+
+
+class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
+    """An array of genes, shape (6,) or (count, 6), that can also be indexed with the name of a gene.
+
+    Rows of a Genes array are Genes arrays. Results of calculations are arrays without names.
+
+    Examples
+    --------
+    >>> import evod
+    >>> with evod.local(seed=1) as lab:
+    ...     genes = lab.world().population().genes
+    >>> genes.shape, genes["body_size"].shape
+    ((50, 6), (50,))
+    >>> genes[0]["body_size"] == genes["body_size"][0]
+    True
+    >>> genes[0].to_dict().keys() == set(evod.GENE_NAMES)
+    True
+    """
+
+    names: tuple[str, ...] | None  #: the names of the last axis; None for the results of calculations
+
+    def __new__(cls, values: Any, names: Iterable[str] = GENE_NAMES) -> Genes:
+        made = numpy.asarray(values).view(cls)
+        made.names = tuple(names)
+        if made.shape[-1:] != (len(made.names),):
+            raise ValueError(f"values: got the shape {made.shape}, allowed (…, {len(made.names)}): one column for each name")
+        return made
+
+    def __array_finalize__(self, template: Any) -> None:
+        self.names = None
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        targets = options.get("out", ())
+        if targets:
+            options["out"] = tuple(_plain(array) for array in targets)
+        made = getattr(ufunc, method)(*(_plain(array) for array in inputs), **options)
+        return targets[0] if len(targets) == 1 else made
+
+    def __getitem__(self, key: Any) -> Any:
+        plain = _plain(self)
+        if isinstance(key, str):
+            if self.names is None or key not in self.names:
+                raise KeyError(f"there is no gene {key!r}; the genes are: {', '.join(self.names or ()) or 'not named'}")
+            return plain[..., self.names.index(key)]
+        found = plain[key]
+        is_index = isinstance(key, (slice, int, numpy.integer))
+        selects_rows = is_index or isinstance(key, (list, numpy.ndarray)) and numpy.ndim(key) == 1
+        return Genes(found, self.names) if self.names is not None and self.ndim > 1 and selects_rows else found
+
+    def __reduce__(self) -> Any:
+        return (numpy.asarray(_plain(self)).__reduce__() if self.names is None else (Genes, (_plain(self), self.names)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the values by name: numbers, or arrays of shape (count,)."""
+        return {name: self[name] for name in self.names or ()}
+
+    def __repr__(self) -> str:
+        if self.names is None or self.ndim != 1:
+            return repr(_plain(self)).replace("array", "Genes", 1)
+        return f"<genes {', '.join(f'{name} {value:.4g}' for name, value in self.to_dict().items())}>"
+
+    __str__ = __repr__
+
+
+def _plain(array: Any) -> Any:
+    return array.view(numpy.ndarray) if isinstance(array, Genes) else array
+
+
+class ByGene(tuple[T, ...]):
+    """A tuple with one element for each gene, in the order of `evod.GENE_NAMES`, that can also be indexed with a name."""
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> T: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[T, ...]: ...
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            if key not in GENE_NAMES:
+                raise KeyError(f"there is no gene {key!r}; the genes are: {', '.join(GENE_NAMES)}")
+            return super().__getitem__(GENE_NAMES.index(key))
+        return super().__getitem__(key)
