@@ -1,6 +1,6 @@
 // ForkDialog: a button that creates a world from the moment that a world shows, and the dialog that asks for its name.
 //
-// Owner        Timeline and Summary.
+// Owner        Summary.
 // Threads      none; used on the drawing thread.
 #pragma once
 

@@ -200,9 +200,9 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     build_edge(sidebar, scale);
     ImGui::SetCursorPos(begin);
     context.gui.widget_positions().begin_panel("Sidebar");
-    summary_.build_experiment(context);
+    summary_.build_title(context.world);
     build_corner(scale);
-    summary_.build_run(context);
+    summary_.build(context);
     ImGui::Separator();
     context.gui.widget_positions().begin_panel("Tabs");
     build_tabs(context.gui);

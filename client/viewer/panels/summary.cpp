@@ -38,6 +38,20 @@ void build_marks(float scale) {
 
 } // namespace
 
+void Summary::build_title(const ViewedWorld& world) {
+    const evod::v1::Replay* replay = world.replay.info();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(replay != nullptr ? replay_label(*replay).c_str() : ("World " + world.feed.name()).c_str());
+    widgets::mark("World");
+}
+
+void Summary::build(Panel::Context& context) {
+    build_experiment(context);
+    build_curve(context);
+    build_buttons(context.world, context.gui.scale());
+    build_speed(context.world);
+}
+
 void Summary::build_experiment(Panel::Context& context) {
     ViewedWorld& world = context.world;
     experiment_.update(world, context.now);
@@ -52,12 +66,6 @@ void Summary::build_experiment(Panel::Context& context) {
     ImGui::PopFont();
 }
 
-void Summary::build_run(Panel::Context& context) {
-    build_curve(context);
-    build_buttons(context.world, context.gui.scale());
-    build_speed(context.world);
-}
-
 void Summary::build_curve(const Panel::Context& context) {
     const HistoryTable& table = context.history->table();
     const auto generations = table.column(std::nullopt, "generation");
@@ -66,7 +74,8 @@ void Summary::build_curve(const Panel::Context& context) {
     plot.series = {{.name = "best", .colour = palette::series_orange, .x = generations, .y = best},
                    {.name = "mean", .colour = palette::series_blue, .x = generations, .y = mean}};
     if (generations.empty()) {
-        plot.title = "Fitness: the curve begins when the first generation ends";
+        plot.title = context.history->history().complete() ? "Fitness: the curve begins when the first generation ends"
+                                                           : "Fitness: loading the earlier generations …";
     } else {
         plot.title = print("Fitness by generation: best %.3g, mean %.3g in generation %.0f", best.back(), mean.back(),
                            generations.back());

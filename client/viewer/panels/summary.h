@@ -17,12 +17,13 @@ namespace evod::viewer {
 
 class Summary {
   public:
-    /// Builds the sentences about the experiment and the explanation of the marks.
-    void build_experiment(Panel::Context& context);
-    /// Builds the fitness curve and the run controls.
-    void build_run(Panel::Context& context);
+    /// Builds one line: the name of the world that the sidebar is about.
+    void build_title(const ViewedWorld& world);
+    /// Builds everything below the title.
+    void build(Panel::Context& context);
 
   private:
+    void build_experiment(Panel::Context& context);
     void build_curve(const Panel::Context& context);
     void build_buttons(ViewedWorld& world, float scale);
     void build_speed(ViewedWorld& world);

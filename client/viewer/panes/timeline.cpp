@@ -175,19 +175,6 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     }
     widgets::explain("go to the end");
     ImGui::SameLine();
-    if (widgets::button("-")) {
-        world.commands.slower();
-    }
-    widgets::explain("halve the speed");
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(speed_text(world.feed.control().speed()).c_str());
-    ImGui::SameLine();
-    if (widgets::button("+")) {
-        world.commands.faster();
-    }
-    widgets::explain("double the speed");
-    ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
     ImGui::SameLine();
@@ -202,8 +189,6 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     }
     widgets::explain(std::to_string(replay.first_generation()) + " to " + std::to_string(replay.last_generation()) +
                      "; press Enter to go there");
-    ImGui::SameLine();
-    fork_.build(world);
     if (world.replay.is_own()) {
         ImGui::SameLine();
         if (widgets::button("Present")) {

@@ -1,5 +1,5 @@
 // Timeline: the strip below a replay. The user drags along a line of all its ticks to seek. Buttons play the replay, go
-// to the previous or next generation, fork a world from the tick shown, and return to the live world.
+// to the previous or next generation, and return to the live world.
 //
 // Owner        Pane.
 // Threads      none; used by the thread that draws.
@@ -7,7 +7,6 @@
 
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/gui.h"
-#include "client/viewer/panels/fork_dialog.h"
 #include "client/viewer/world/viewed_world.h"
 
 #include <cstdint>
@@ -40,7 +39,6 @@ class Timeline {
     std::uint64_t shown_generation_ = 0;
     int typed_generation_ = 1;
     bool pressed_ = false;
-    ForkDialog fork_;
 };
 
 } // namespace evod::viewer
