@@ -37,7 +37,8 @@ const std::array<Kind, 5> kinds{{
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
-/// Predicts at constant velocity how far entities move in `ticks`, if they moved by `displacement` in base_ticks.
+/// Predicts, at constant velocity, how far an entity moves in `ticks` ticks if it moved by `displacement` in base_ticks
+/// ticks.
 class Prediction {
   public:
     Prediction(std::uint16_t ticks, std::uint16_t base_ticks)
@@ -90,7 +91,7 @@ class Prediction {
     std::uint32_t ticks_, base_ticks_;
     std::uint32_t small_ = product_max / std::max(ticks_, 1U);
     std::uint32_t ahead_ = product_max / base_ticks_ + 1;
-    // 31 + log2 of base_ticks_, rounded up.
+    // The shift is 31 + log2 of base_ticks_, rounded up.
     unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1));
     std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
 };
@@ -114,7 +115,8 @@ template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
-    // One extra element: the index of an entity that stays is also written, and the next index overwrites it.
+    // The columns have one extra element, because the index of an entity that stays is also written; the next index
+    // overwrites it.
     Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
     std::uint32_t i = 0, j = 0, gone = 0, come = 0;
     constexpr std::uint32_t block = 32;
@@ -333,8 +335,10 @@ struct Step {
     bool of_tile;
 };
 
-/// base   the same section of the baseline.
-/// count  number of entities of the kind in the snapshot.
+/// Reads the section of one kind of entity.
+///
+/// base   the section of this kind in the baseline.
+/// count  the number of entities of this kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
     if (parts & ~(some_are_gone | some_have_come)) {

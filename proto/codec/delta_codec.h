@@ -63,7 +63,8 @@ struct BaselineView {
 /// Creates a baseline in which all displacements are 0.
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
-/// Whether `next` can be a delta against `base`. All boxes must be the same, except for the positions of crates.
+/// Returns whether `next` can be encoded as a delta against `base`. All boxes must be the same, except for the
+/// positions of crates.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.
@@ -116,6 +117,8 @@ struct ChecksummedFields {
     Counts counts{};
     std::uint32_t position_bytes = 2;
 };
+/// Computes the checksum of the fields and the body.
+///
 /// body    the body before compression.
 /// before  the checksum of the bytes that precede the fields.
 std::uint32_t checksum_of(const ChecksummedFields& fields, std::string_view body, std::uint32_t before = 0);
@@ -125,7 +128,7 @@ std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view
 /// Clears the fields that a delta omits if they are unchanged.
 void clear_unchanging(evod::v1::SnapshotFrame& frame);
 
-/// Whether two frames have equal values in the fields that a delta omits.
+/// Returns whether two frames have equal values in the fields that a delta omits.
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b);
 
 } // namespace evod::codec

@@ -132,7 +132,7 @@ void FrameReader::feed(std::span<const std::byte> bytes) {
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
-    // The memory for one long snapshot should not stay allocated until the connection ends.
+    // Frees the memory that a long snapshot needed, so that it does not stay allocated until the connection ends.
     constexpr std::size_t kept_bytes = 1 << 20;
     if (buffer_.empty() && buffer_.capacity() > kept_bytes && bytes.size() < kept_bytes / 2) {
         buffer_ = std::vector<std::byte>{};

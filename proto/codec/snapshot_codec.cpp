@@ -24,7 +24,7 @@ void set_ids(const Column& column, Ids& to) {
     to.Add(column.begin(), column.end());
 }
 
-/// Converts steps to px, or to health.
+/// Sets `to` to the numbers of a column, converted from steps to px or health.
 void set_values(const Column& column, Floats& to) {
     to.Reserve(static_cast<int>(column.size()));
     for (const std::uint32_t steps : column) {
@@ -53,7 +53,7 @@ struct PlainColumn {
 
 /// Quantises the columns of one kind and checks each. Returns the first invalid field, if any.
 ///
-/// ids  nullptr: this kind has no ids.
+/// ids  the ids of the entities; nullptr: this kind has no ids.
 std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Ids* ids,
                                  std::initializer_list<PlainColumn> columns, Entities& to) {
     const auto refused = [&](const std::string& field, const std::string& got, const std::string& allowed) {

@@ -20,7 +20,7 @@
 
 namespace evod::codec {
 
-/// Whether a frame can be decoded without an earlier one.
+/// Returns whether a frame can be decoded without an earlier frame.
 bool is_keyframe(const evod::v1::SnapshotFrame& frame);
 
 /// Decodes the snapshots of one island of one subscription.
@@ -29,7 +29,7 @@ class SnapshotDecoder {
     /// Decodes a frame. After Damage, all deltas before the next keyframe are refused.
     Result<ReceivedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
-    /// Whether the decoder needs a keyframe, because it has received none or because of damage.
+    /// Returns whether the decoder needs a keyframe, because it has received none or because of damage.
     bool needs_keyframe() const { return !snapshot_; }
 
     /// The entities of the last snapshot with CODEC_DELTA; nullptr before the first keyframe. With a View, only the

@@ -49,7 +49,7 @@ TileLayout tile_layout(double width_px, double height_px) {
 
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame) {
     const std::uint32_t tile_px = frame.tile_px();
-    // Accepts more tiles than this version of the server sends. The limit is the range of the indices.
+    // The client accepts more tiles than this version of the server sends. The limit is the range of the indices.
     constexpr double count_max = 1 << 24;
     if (!std::has_single_bit(tile_px)) {
         return Damage{"a snapshot's tile_px is " + std::to_string(tile_px) + ", not a power of two"};

@@ -26,17 +26,17 @@ struct Choice {
     std::vector<std::uint32_t> picks; // the selection's picks, in the order in which they were made
     std::vector<Parents> pairs;       // two children each; the last pair may have room for only one
 
-    /// Shape (places.survivors): the organism that is kept in each place.
+    /// Returns the surviving organism of each place: shape (places.survivors).
     std::span<const std::uint32_t> survivors() const { return picks_survive ? picks : others; }
     bool picks_survive = false;        // the survivors are the picks
     std::vector<std::uint32_t> others; // the survivors, unless they are the picks
 };
 
-/// The arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, select() is not
-/// called.
+/// Returns the arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, the caller
+/// must not call select().
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
 
-/// The key to pass to select().
+/// Returns the key of the random draws, to be passed to select().
 base::RandomKey selection_key(const BreedingKey& key);
 
 Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,

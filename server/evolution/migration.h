@@ -25,7 +25,7 @@ struct Migrant {
     friend bool operator==(const Migrant&, const Migrant&) = default;
 };
 
-/// Whether islands exchange migrants after generation `generation` (from 1): every migration_epoch generations.
+/// Returns whether islands exchange migrants after generation `generation` (from 1): every migration_epoch generations.
 bool migration_due(std::uint64_t generation, const Parameters& parameters);
 
 /// Chooses the migrants of one epoch; changes nothing.

@@ -27,11 +27,13 @@ struct CopiesLaw {
 
 class SelectionLaw {
   public:
-    /// population  organisms to pick from, >= 1.
-    /// picks       as select() receives them.
+    /// population  the number of organisms to pick from, >= 1.
+    /// picks       the picks that select() receives.
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
+    /// Returns the distribution of the number of copies of one organism.
+    ///
     /// rank   the rank of the organism; 0 is the fittest.
     /// share  the organism's share of the wheel, for roulette and universal sampling; the other methods ignore it.
     CopiesLaw copies(std::uint32_t rank, double share) const;

@@ -107,18 +107,18 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
     const double ranks = population, draws = size, ends = ranks - draws + 1; // a skip is less than `ends`
     while (true) {
-        // A proposal from an approximate distribution, ...
+        // First, a proposal is drawn from an approximate distribution.
         const double x = ranks * (1 - base::pow(1 - random.uniform(), 1 / draws));
         if (x >= ends) {
             continue;
         }
         const double skip = std::floor(x);
-        // ... accepted by a cheap bound, ...
+        // The proposal is accepted if a cheap bound permits it.
         const double needed = base::pow(random.uniform() * ranks / ends, 1 / (draws - 1));
         if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1) {
             return static_cast<std::uint32_t>(skip);
         }
-        // ... or by the exact distribution.
+        // Otherwise the exact distribution decides whether the proposal is accepted.
         double product = 1, above = ranks - 1;
         double below = draws - 1 > skip ? ranks - draws : ranks - skip - 1;
         const double last = draws - 1 > skip ? ranks - skip : ends;
@@ -142,8 +142,8 @@ void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t siz
     }
 }
 
-/// The probability that each rank is the best of `size` different contestants, which means that no better rank is
-/// drawn. Negligible probabilities at the end are left out.
+/// Returns, for each rank, the probability that it is the best of `size` different contestants, which means that no
+/// better rank is drawn. Negligible probabilities at the end are left out.
 std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
     std::vector<double> chances;
     double all_missed = 1;
@@ -164,7 +164,7 @@ enum class Method {
     SkipRanks,       // ranks are drawn; without replacement, several winners, a small part of the population
 };
 
-// Walking over this many ranks per winner costs as much as one skip.
+// Visiting this many ranks per winner one by one costs as much as drawing one skip.
 constexpr std::uint64_t walked_ranks_max = 13;
 
 Method choose_method(std::uint32_t population, const Tournament& tournament) {

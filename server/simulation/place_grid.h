@@ -24,13 +24,13 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  the type that describes the size of a body, stored with its place; 4 or 8 bytes.
+/// What  the type that describes the size of a body; 4 or 8 bytes. The grid stores one What with each place.
 template <class What>
 class PlaceGrid {
   public:
     PlaceGrid() = default;
 
-    /// expected_count  the number of bodies to be placed; there are about five per two cells.
+    /// Creates an empty grid for about expected_count bodies: on average five bodies per two cells.
     PlaceGrid(const physics::Area& area, std::size_t expected_count) {
         const double width = std::max(area.width, 1), height = std::max(area.height, 1);
         const double cells = std::max(static_cast<double>(expected_count) / 2.5, 1.0);
@@ -58,9 +58,9 @@ class PlaceGrid {
         ++count_;
     }
 
-    /// Whether condition(place, what) is true for any body whose centre is at most `reach` units from `place` along
-    /// both axes. The condition may also be called for bodies further away, and must be false for a body of size 0 that
-    /// is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
+    /// Returns whether condition(place, what) is true for any body whose centre is at most `reach` units from `place`
+    /// along both axes. The condition may also be called for bodies further away, and must be false for a body of size
+    /// 0 that is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
     template <class Condition>
     bool any_near(Place place, physics::Coordinate reach, const Condition& condition) const {
         const Window window = window_of(place, reach);
@@ -108,7 +108,7 @@ class PlaceGrid {
     struct Stripes {
         std::uint32_t count = 1;
         physics::Coordinate length = 0;
-        // Stripes per unit, times 2^32.
+        // The number of stripes per unit of length, times 2^32.
         std::uint64_t per_unit = (std::uint64_t{count} << 32) / (static_cast<std::uint64_t>(length) + 1);
 
         std::uint32_t at(physics::Coordinate coordinate) const {
