@@ -69,7 +69,7 @@ class Prediction {
         if (all_small) { // common at full speed, where intervals vary; the compiler uses vector instructions here, too
             const Prediction predicted = *this; // a local copy, so that the compiler knows that `to` does not alias it
             for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - predicted.of_small(displacements[i]);
+                to[i] = here[i] - there[i] - predicted.predict_small(displacements[i]);
             }
             return;
         }
@@ -82,7 +82,7 @@ class Prediction {
     /// Predicts a displacement of at most small_ in either direction with a multiplication instead of a division. The
     /// quotient is exact for numbers below 2^31 (Granlund and Montgomery, Division by Invariant Integers using
     /// Multiplication, 1994, theorem 4.2).
-    std::uint32_t of_small(std::uint32_t displacement) const {
+    std::uint32_t predict_small(std::uint32_t displacement) const {
         const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // never negative
         return static_cast<std::uint32_t>(std::uint64_t{product} * reciprocal_ >> shift_) - ahead_;
     }

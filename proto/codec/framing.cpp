@@ -88,7 +88,7 @@ Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::D
                                               static_cast<int>(body.size())};
     if (is_deeper(in, &message, message_depth_max)) {
         return {.what = frame + "nests messages more than " + std::to_string(message_depth_max) + " deep",
-                .beyond = Beyond::MessageDepth};
+                .exceeded = ExceededLimit::MessageDepth};
     }
     return {.what = frame + "is not a " + message.full_name()};
 }
@@ -111,7 +111,7 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
     if (body_bytes > *limit) {
         return Damage{.what = "a frame declares " + std::to_string(body_bytes) +
                               " bytes, allowed on its channel: at most " + std::to_string(*limit),
-                      .beyond = Beyond::FrameBytes};
+                      .exceeded = ExceededLimit::FrameBytes};
     }
     return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
 }

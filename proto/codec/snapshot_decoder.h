@@ -37,7 +37,7 @@ class SnapshotDecoder {
     const QuantisedSnapshot* snapshot() const { return snapshot_.get(); }
 
   private:
-    struct Whole {
+    struct WholeIsland {
         Baseline baseline;
         evod::v1::SnapshotFrame about; // the fields that deltas omit, and the sequence
     };
@@ -54,7 +54,7 @@ class SnapshotDecoder {
     void forget();
 
     std::shared_ptr<const QuantisedSnapshot> snapshot_;
-    std::optional<Whole> whole_;
+    std::optional<WholeIsland> whole_;
     std::optional<Tiles> tiles_;
 };
 

@@ -8,7 +8,7 @@ namespace evod::base {
 namespace {
 
 /// Sums of the two words that hash_of() returns, over all entities that were added. Each lane has its own sums.
-struct HashSums {
+struct HashSumsPerLane {
     Longs low{}, high{};
 
     /// Adds the hash of one entity per lane, but only in the lanes of `lanes_used` whose bits are all set, as a

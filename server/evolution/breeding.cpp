@@ -15,16 +15,16 @@ std::uint32_t share_of(std::uint32_t count, double share) {
 std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite, std::span<const std::uint32_t> picks,
                                             std::size_t population) {
     std::vector<std::uint32_t> survivors(elite.begin(), elite.end());
-    std::vector<bool> has_a_pick_to_use(population);
+    std::vector<bool> drops_next_pick(population);
     for (const std::uint32_t organism : elite) {
-        has_a_pick_to_use[organism] = true;
+        drops_next_pick[organism] = true;
     }
     for (const std::uint32_t organism : picks) {
         if (survivors.size() >= picks.size()) {
             break;
         }
-        if (has_a_pick_to_use[organism]) {
-            has_a_pick_to_use[organism] = false;
+        if (drops_next_pick[organism]) {
+            drops_next_pick[organism] = false;
         } else {
             survivors.push_back(organism);
         }

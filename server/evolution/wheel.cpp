@@ -21,7 +21,7 @@ void make_non_negative(std::vector<double>& weights) {
 }
 
 /// Returns a power of two that scales `greatest` to about 1, so that sums neither overflow nor lose all their digits.
-double near_one(double greatest) {
+double factor_to_about_one(double greatest) {
     return std::ldexp(1.0, std::clamp(-std::ilogb(greatest), -1000, 1000));
 }
 
@@ -36,7 +36,7 @@ Wheel::Wheel(std::vector<double> weights) : ends_{std::move(weights)} {
     if (greatest == 0) {
         std::fill(ends_.begin(), ends_.end(), 1.0);
     }
-    const double unit = greatest == 0 ? 1 : near_one(greatest);
+    const double unit = greatest == 0 ? 1 : factor_to_about_one(greatest);
     double end = 0;
     for (double& weight : ends_) {
         end += weight * unit;

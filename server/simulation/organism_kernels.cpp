@@ -134,7 +134,7 @@ void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
 
 HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                FoundIndices& dying) {
-    HashSums sums;
+    HashSumsPerLane sums;
     const std::uint32_t kind_key = kind * 0x85ebca6bu;
     for (std::size_t i = begin; i < end; i += lanes) {
         const Floats health = load<Floats>(columns.health + i);

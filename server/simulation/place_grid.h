@@ -44,7 +44,7 @@ class PlaceGrid {
 
     void add(Place place, What what) {
         std::size_t cell = std::size_t{rows_.at(place.y)} * columns_.count + columns_.at(place.x);
-        while (cells_[cell].things[slots - 1].place.x != nowhere) {
+        while (cells_[cell].bodies[slots - 1].place.x != nowhere) {
             if (cells_[cell].next == 0) {
                 const auto added = static_cast<std::uint32_t>(cells_.size());
                 cells_.emplace_back();
@@ -52,8 +52,8 @@ class PlaceGrid {
             }
             cell = cells_[cell].next;
         }
-        const auto free = std::find_if(cells_[cell].things.begin(), cells_[cell].things.end(),
-                                       [](const Thing& thing) { return thing.place.x == nowhere; });
+        const auto free = std::find_if(cells_[cell].bodies.begin(), cells_[cell].bodies.end(),
+                                       [](const StoredBody& body) { return body.place.x == nowhere; });
         *free = {place, what};
         ++count_;
     }
@@ -93,14 +93,14 @@ class PlaceGrid {
     // The position of empty slots. It is so far beyond the wall that no radius reaches it, and so near that its
     // difference from any place on an island fits into 32 bits.
     static constexpr physics::Coordinate nowhere = -(1 << 26);
-    struct Thing {
+    struct StoredBody {
         Place place{nowhere, nowhere};
         What what{};
     };
-    static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(Thing);
+    static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(StoredBody);
     struct alignas(64) Cell {
-        std::array<Thing, slots> things; // used slots come first
-        std::uint32_t next = 0;          // the overflow cell; 0: none
+        std::array<StoredBody, slots> bodies; // used slots come first
+        std::uint32_t next = 0;               // the overflow cell; 0: none
     };
     static_assert(sizeof(Cell) == 64);
 
@@ -129,8 +129,8 @@ class PlaceGrid {
     bool any_in(std::size_t cell, const Condition& condition) const {
         do {
             bool found = false;
-            for (const Thing& thing : cells_[cell].things) {
-                found |= condition(thing.place, thing.what);
+            for (const StoredBody& body : cells_[cell].bodies) {
+                found |= condition(body.place, body.what);
             }
             if (found) {
                 return true;
