@@ -188,9 +188,9 @@ Column indices(std::size_t count) {
     return all;
 }
 
-/// Whether most of a large number of immovable entities have been replaced. Sending all of them again then needs about
-/// the same number of bytes and far less time. A sample of the first entities suffices, because positions do not depend
-/// on ids.
+/// Returns whether most of a large number of immovable entities have been replaced. Sending all of them again then
+/// needs about the same number of bytes and far less time. A sample of the first entities suffices, because positions
+/// do not depend on ids.
 bool mostly_replaced(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     constexpr std::size_t many = 2048, sampled = 256, stayed_max = sampled / 4;
     if (kind.displacements || base.id.size() < many) {
@@ -236,6 +236,8 @@ Column at(Numbers column, Numbers indices) {
 
 // ---- encoding --------------------------------------------------------------------------------------------------
 
+/// Writes which entities of one kind are gone, and the entities that have come.
+///
 /// pairing        the match between the entities of the base and `entities`.
 /// displacements  the displacements of `entities`; nullptr: all are 0.
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,

@@ -69,16 +69,17 @@ bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.
 ///
-/// next  follows(next, base) must be true.
+/// next  the next snapshot; follows(next, base) must be true.
 Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks);
 
-/// Like advanced_baseline(), but writes into existing columns. They must contain a 0 for each entity that moves.
+/// The columns into which advance_baseline() writes. They must contain a 0 for each entity that moves.
 struct AdvancedColumns {
     struct Displacements {
         std::span<std::uint32_t> x, y;
     };
     Displacements organisms, crates;
 };
+/// Computes the same as advanced_baseline(), but writes into existing columns.
 void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
                       const AdvancedColumns& to);
 
@@ -103,12 +104,12 @@ struct BodyShape {
 
 /// Decodes the baseline that a body describes.
 ///
-/// base  nullptr for a keyframe.
+/// base  the baseline of a delta; nullptr for a keyframe.
 Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, const Baseline* base);
 
-/// The maximum size of a body with these counts.
+/// Returns the maximum size of a body with these counts.
 ///
-/// base  nullptr for a keyframe.
+/// base  the snapshot that a delta refers to; nullptr for a keyframe.
 std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base);
 
 /// The fields that the checksum covers in addition to the body.

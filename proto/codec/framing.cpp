@@ -40,8 +40,8 @@ Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
     return Damage{"a frame is on channel " + std::to_string(number) + ", which is not used in this direction"};
 }
 
-/// Whether the rest of a message nests messages and groups more than `levels` deep. Checks up to the first invalid
-/// byte.
+/// Returns whether the rest of a message nests messages and groups more than `levels` deep. Checks up to the first
+/// invalid byte.
 ///
 /// of  the type of the message; nullptr: the type is unknown, so only groups can be recognised.
 bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobuf::Descriptor* of, int levels) {

@@ -14,7 +14,7 @@
 #include <immintrin.h> // always inlined; for operations that have no operator
 #endif
 
-/// The name of this copy of a kernel.
+/// EVOD_KERNEL(name) is the name of a kernel in this copy.
 #if EVOD_LANES == 8
 #define EVOD_KERNEL(name) name##_avx2
 #else

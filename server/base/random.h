@@ -47,7 +47,7 @@ struct Seed {
     friend bool operator==(const Seed&, const Seed&) = default;
 };
 
-/// The inputs of a draw that many entities share. Constructed once per (purpose, island, generation).
+/// The inputs of a draw that many entities share. Construct one RandomKey per (purpose, island, generation).
 class RandomKey {
   public:
     RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);
@@ -75,7 +75,7 @@ inline float unit_float(std::uint32_t word) {
 /// A sequence of draws for one entity at one tick, for code that does not know beforehand how many draws it needs.
 class RandomStream {
   public:
-    /// At most 2^34 words can be drawn from a stream.
+    /// Begins a stream, from which at most 2^34 words can be drawn.
     RandomStream(const RandomKey& key, std::uint32_t entity, std::uint64_t tick = 0)
         : key_{key}, tick_{tick}, entity_{entity} {}
 

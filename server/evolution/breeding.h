@@ -73,7 +73,7 @@ struct WithoutRecord {
 /// Computes the genes of survivors and of children.
 class Descent {
   public:
-    /// present  the parents' generation; must outlive this object.
+    /// present  the parents' generation; must outlive the Descent.
     Descent(const GeneMatrix& present, const Parameters& parameters, const BreedingKey& key)
         : present_{present}
         , survivor_key_{key.seed, base::Purpose::SurvivorMutation, key.island, key.generation}
@@ -101,7 +101,8 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Draws the mask of the first child of a pair; the second child has the complement. nullopt: no crossover.
+    /// Draws the mask of the first child of a pair; the second child has the complement. Returns nullopt if there is no
+    /// crossover.
     std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(random);

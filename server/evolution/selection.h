@@ -45,7 +45,7 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
                                        base::Executor& executor);
 
 /// Picks the best `pool` organisms in order of rank, and repeats the list until there are `wanted` picks.
-/// pool     1 … population.
+/// pool     the number of different organisms to pick, 1 … population.
 /// returns  shape (wanted).
 std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted);
 
@@ -60,8 +60,8 @@ struct Picks {
 /// Picks organisms with the method, scaling and tournament rules of `parameters`. Roulette and universal sampling use a
 /// wheel of the scaled fitness (wheel.h describes how it treats negative weights and weights that are all 0).
 ///
-/// ranking  contains at least one organism.
-/// key      its purpose is Purpose::Selection.
+/// ranking  the organisms to pick from, at least one.
+/// key      the key of the draws; its purpose must be Purpose::Selection.
 std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Parameters& parameters,
                                   const base::RandomKey& key, base::Executor& executor);
 

@@ -56,7 +56,7 @@ struct WinsLaw {
 /// Computes how often the organism of rank `rank` wins one tournament. The time grows with the square root of
 /// tournament.size; with replacement and several winners, at most linearly.
 ///
-/// tournament  winners <= size; without replacement, also size <= population.
+/// tournament  must have winners <= size and, without replacement, size <= population.
 WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

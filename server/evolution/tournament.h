@@ -29,8 +29,8 @@ Tournament tournament_of(const Parameters& parameters);
 /// The best of k contestants from n organisms has rank r (0 = fittest) with probability ((n−r)^k − (n−r−1)^k) / n^k
 /// with replacement, and C(n−r−1, k−1) / C(n, k) without.
 ///
-/// ranking  contains at least one organism; ties go to the lower index.
-/// key      tournament i draws from the stream of entity i.
+/// ranking  the organisms, at least one. Ties go to the lower index.
+/// key      the key of the draws. Tournament i draws from the stream of entity i.
 /// returns  shape (wanted): each tournament's winners together, best first.
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor);

@@ -1,6 +1,6 @@
 // JSON text: parses files that people write. Each parsed value contains its line, so that errors can name it.
 //
-// Threads  none.
+// Threads  none of its own.
 #pragma once
 
 #include "server/base/result.h"

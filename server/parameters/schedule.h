@@ -20,7 +20,7 @@
 
 namespace evod::parameters {
 
-/// Planned values, generation by generation.
+/// The scheduled values of parameters, generation by generation.
 class Schedule {
   public:
     /// The maximum number of values after generation 1, over all parameters.
@@ -96,7 +96,7 @@ struct ScheduleFault {
 /// Returns the violations that the schedule causes in a run that begins with these parameters and has no other changes.
 /// Stops at the first generation that has violations, and returns all violations of that generation.
 ///
-/// parameters  valid.
+/// parameters  the parameters in generation 1; must be valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);
 
 } // namespace evod::parameters

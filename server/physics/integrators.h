@@ -20,6 +20,8 @@ struct Integration {
     float velocity_kept = 1; // factor by which damping multiplies every velocity in a tick
 };
 
+/// Returns the constants of a tick.
+///
 /// damping_rate  in 1/s, >= 0: after t seconds the share e^(−damping_rate·t) of a velocity is left.
 Integration integration(Integrator integrator, double tick_s, double damping_rate);
 

@@ -81,7 +81,7 @@ class Items {
     /// Prefetches the item that set_due() writes.
     void prefetch_item(std::uint32_t item) const { __builtin_prefetch(&all_[item], 1); }
 
-    /// Prefetches the memory that a query at (x, y) reads.
+    /// Prefetches the memory that a query at (x, y) will read.
     void prefetch(physics::Coordinate x, physics::Coordinate y) const {
         __builtin_prefetch(&bucket(row_at(y) * columns_ + column_at(x)));
     }

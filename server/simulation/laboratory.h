@@ -23,7 +23,7 @@ constexpr std::size_t worlds_max = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
-/// The goals of a world and its requested speed.
+/// The run control of a world: its goals, pause and requested speed.
 struct RunControl {
     bool endless = false;                          // run without end; excludes until_generation
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended

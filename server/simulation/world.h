@@ -78,9 +78,9 @@ class World {
 
     /// Creates the first generation, at moment (1, 0).
     ///
-    /// parameters        valid.
-    /// first_population  valid for these parameters; nullptr: drawn from the seed.
-    /// schedule          must have the values of `parameters` in generation 1.
+    /// parameters        the parameters of generation 1; must be valid.
+    /// first_population  the chromosomes of generation 1, valid for these parameters; nullptr: drawn from the seed.
+    /// schedule          the schedule of the run; must have the values of `parameters` in generation 1.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
           parameters::Schedule schedule = {});
 
@@ -110,7 +110,7 @@ class World {
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// Returns the parameters that the run begins with after a reset: the requested parameters, with the schedule's
-    /// values of generation 1. Refused if they are not valid together.
+    /// values of generation 1. Returns a refusal if they are not valid together.
     base::Result<parameters::Parameters> beginning() const;
     /// Restarts the run with the parameters of beginning(), the same schedule and, if one was given, the same first
     /// population. That population must be valid for these parameters. Throws std::bad_alloc, with nothing changed, if
