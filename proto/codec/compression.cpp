@@ -13,7 +13,7 @@ namespace evod::codec {
 
 namespace {
 
-// The fastest of the regular levels, because the network thread waits for the compression.
+// The zstd level: the fastest of the regular levels, because the network thread waits for the compression.
 constexpr int level = 1;
 // zstd searches for matches at every 16th byte. Compared with every byte, encoding a world at full speed takes a
 // quarter less time and 1 % more bytes (snapshot_bench).

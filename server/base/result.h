@@ -84,7 +84,7 @@ enum class Reason {
 /// Returns the name of the code as users see it, for example "INVALID_ARGUMENT".
 const char* name_of(RefusalCode code);
 
-/// One field that is wrong.
+/// A wrong field of a request, with the values that it allows.
 struct Violation {
     std::string field;   // as the sender spells it: "parameters.mutation_chance"
     std::string allowed; // "0 to 1"

@@ -67,7 +67,7 @@ struct BreedingRecord {
 
 /// Records what next_generation() does with the same arguments.
 ///
-/// rows  the rows that the record contains; a list without such rows is empty.
+/// rows  the rows of each list that the record contains; a list that does not have these rows is empty.
 BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, const WantedRows& rows,
                                base::Executor& executor);

@@ -116,8 +116,8 @@ WinsLaw wins_with_replacement(double rank, double population, double size, doubl
     return {law.mean / all, law.mean_square / all, law.none_chance / all};
 }
 
-/// Returns the law of exactly ⌊expected⌋ or ⌈expected⌉ copies, as in universal sampling, truncation and random
-/// selection in rounds.
+/// Returns the distribution of the number of copies if that number is always ⌊expected⌋ or ⌈expected⌉, as in universal
+/// sampling, truncation and random selection in rounds.
 CopiesLaw rounded_copies(double expected) {
     const double nearest = std::round(expected);
     // A share of the wheel is a difference of rounded sums, so a number this close to a whole number is treated as

@@ -27,6 +27,8 @@ struct CopiesLaw {
 
 class SelectionLaw {
   public:
+    /// Creates the law of one selection.
+    ///
     /// population  the number of organisms to pick from, >= 1.
     /// picks       the picks that select() receives.
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
