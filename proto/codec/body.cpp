@@ -49,7 +49,7 @@ void BodyWriter::planes(Numbers values, Numbers indices, std::uint32_t bytes) {
 }
 
 void BodyWriter::column(Numbers values) {
-    // Counts of the numbers that need more than 0, 1 and 2 bytes.
+    // These count the numbers that need more than 0, 1 and 2 bytes.
     std::uint32_t not_zero = 0, above_8_bits = 0, above_16_bits = 0;
     for (const std::uint32_t value : values) {
         not_zero += value != 0;

@@ -16,7 +16,7 @@ namespace evod::codec {
 /// The offsets in a body at which columns begin, in rising order.
 using Seams = std::vector<std::uint32_t>;
 
-/// Creates independent zstd frames and reuses its working memory.
+/// Compresses bytes to independent zstd frames, and reuses its working memory.
 class Compressor {
   public:
     Compressor();
@@ -24,6 +24,8 @@ class Compressor {
     Compressor(const Compressor&) = delete;
     Compressor& operator=(const Compressor&) = delete;
 
+    /// Compresses `bytes` to one zstd frame.
+    ///
     /// seams  offsets at which the kind of number changes. Each part that is long enough becomes a zstd block with its
     ///        own entropy code. With one code for all parts, a regular column next to many random bytes would hardly
     ///        shrink.

@@ -37,7 +37,8 @@ const std::array<Kind, 5> kinds{{
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
-/// Predicts at constant velocity how far entities move in `ticks`, if they moved by `displacement` in base_ticks.
+/// Predicts, at constant velocity, how far an entity moves in `ticks` ticks if it moved by `displacement` in base_ticks
+/// ticks.
 class Prediction {
   public:
     Prediction(std::uint16_t ticks, std::uint16_t base_ticks)
@@ -68,7 +69,7 @@ class Prediction {
         if (all_small) { // common at full speed, where intervals vary; the compiler uses vector instructions here, too
             const Prediction predicted = *this; // a local copy, so that the compiler knows that `to` does not alias it
             for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - predicted.of_small(displacements[i]);
+                to[i] = here[i] - there[i] - predicted.predict_small(displacements[i]);
             }
             return;
         }
@@ -81,7 +82,7 @@ class Prediction {
     /// Predicts a displacement of at most small_ in either direction with a multiplication instead of a division. The
     /// quotient is exact for numbers below 2^31 (Granlund and Montgomery, Division by Invariant Integers using
     /// Multiplication, 1994, theorem 4.2).
-    std::uint32_t of_small(std::uint32_t displacement) const {
+    std::uint32_t predict_small(std::uint32_t displacement) const {
         const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // never negative
         return static_cast<std::uint32_t>(std::uint64_t{product} * reciprocal_ >> shift_) - ahead_;
     }
@@ -90,7 +91,7 @@ class Prediction {
     std::uint32_t ticks_, base_ticks_;
     std::uint32_t small_ = product_max / std::max(ticks_, 1U);
     std::uint32_t ahead_ = product_max / base_ticks_ + 1;
-    // 31 + log2 of base_ticks_, rounded up.
+    // The shift is 31 + log2 of base_ticks_, rounded up.
     unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1));
     std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
 };
@@ -114,7 +115,8 @@ template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
-    // One extra element: the index of an entity that stays is also written, and the next index overwrites it.
+    // The columns have one extra element, because the index of an entity that stays is also written; the next index
+    // overwrites it.
     Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
     std::uint32_t i = 0, j = 0, gone = 0, come = 0;
     constexpr std::uint32_t block = 32;
@@ -186,9 +188,9 @@ Column indices(std::size_t count) {
     return all;
 }
 
-/// Whether most of a large number of immovable entities have been replaced. Sending all of them again then needs about
-/// the same number of bytes and far less time. A sample of the first entities suffices, because positions do not depend
-/// on ids.
+/// Returns whether most of a large number of immovable entities have been replaced. Sending all of them again then
+/// needs about the same number of bytes and far less time. A sample of the first entities suffices, because positions
+/// do not depend on ids.
 bool mostly_replaced(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     constexpr std::size_t many = 2048, sampled = 256, stayed_max = sampled / 4;
     if (kind.displacements || base.id.size() < many) {
@@ -234,6 +236,8 @@ Column at(Numbers column, Numbers indices) {
 
 // ---- encoding --------------------------------------------------------------------------------------------------
 
+/// Writes which entities of one kind are gone, and the entities that have come.
+///
 /// pairing        the match between the entities of the base and `entities`.
 /// displacements  the displacements of `entities`; nullptr: all are 0.
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
@@ -333,8 +337,10 @@ struct Step {
     bool of_tile;
 };
 
-/// base   the same section of the baseline.
-/// count  number of entities of the kind in the snapshot.
+/// Reads the section of one kind of entity.
+///
+/// base   the section of this kind in the baseline.
+/// count  the number of entities of this kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
     if (parts & ~(some_are_gone | some_have_come)) {

@@ -63,21 +63,23 @@ struct BaselineView {
 /// Creates a baseline in which all displacements are 0.
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
-/// Whether `next` can be a delta against `base`. All boxes must be the same, except for the positions of crates.
+/// Returns whether `next` can be encoded as a delta against `base`. All boxes must be the same, except for the
+/// positions of crates.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.
 ///
-/// next  follows(next, base) must be true.
+/// next  the next snapshot; follows(next, base) must be true.
 Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks);
 
-/// Like advanced_baseline(), but writes into existing columns. They must contain a 0 for each entity that moves.
+/// The columns into which advance_baseline() writes. They must contain a 0 for each entity that moves.
 struct AdvancedColumns {
     struct Displacements {
         std::span<std::uint32_t> x, y;
     };
     Displacements organisms, crates;
 };
+/// Computes the same as advanced_baseline(), but writes into existing columns.
 void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
                       const AdvancedColumns& to);
 
@@ -102,12 +104,12 @@ struct BodyShape {
 
 /// Decodes the baseline that a body describes.
 ///
-/// base  nullptr for a keyframe.
+/// base  the baseline of a delta; nullptr for a keyframe.
 Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, const Baseline* base);
 
-/// The maximum size of a body with these counts.
+/// Returns the maximum size of a body with these counts.
 ///
-/// base  nullptr for a keyframe.
+/// base  the snapshot that a delta refers to; nullptr for a keyframe.
 std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base);
 
 /// The fields that the checksum covers in addition to the body.
@@ -116,6 +118,8 @@ struct ChecksummedFields {
     Counts counts{};
     std::uint32_t position_bytes = 2;
 };
+/// Computes the checksum of the fields and the body.
+///
 /// body    the body before compression.
 /// before  the checksum of the bytes that precede the fields.
 std::uint32_t checksum_of(const ChecksummedFields& fields, std::string_view body, std::uint32_t before = 0);
@@ -125,7 +129,7 @@ std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view
 /// Clears the fields that a delta omits if they are unchanged.
 void clear_unchanging(evod::v1::SnapshotFrame& frame);
 
-/// Whether two frames have equal values in the fields that a delta omits.
+/// Returns whether two frames have equal values in the fields that a delta omits.
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b);
 
 } // namespace evod::codec

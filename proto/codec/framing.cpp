@@ -40,8 +40,8 @@ Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
     return Damage{"a frame is on channel " + std::to_string(number) + ", which is not used in this direction"};
 }
 
-/// Whether the rest of a message nests messages and groups more than `levels` deep. Checks up to the first invalid
-/// byte.
+/// Returns whether the rest of a message nests messages and groups more than `levels` deep. Checks up to the first
+/// invalid byte.
 ///
 /// of  the type of the message; nullptr: the type is unknown, so only groups can be recognised.
 bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobuf::Descriptor* of, int levels) {
@@ -88,7 +88,7 @@ Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::D
                                               static_cast<int>(body.size())};
     if (is_deeper(in, &message, message_depth_max)) {
         return {.what = frame + "nests messages more than " + std::to_string(message_depth_max) + " deep",
-                .beyond = Beyond::MessageDepth};
+                .exceeded = ExceededLimit::MessageDepth};
     }
     return {.what = frame + "is not a " + message.full_name()};
 }
@@ -111,7 +111,7 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
     if (body_bytes > *limit) {
         return Damage{.what = "a frame declares " + std::to_string(body_bytes) +
                               " bytes, allowed on its channel: at most " + std::to_string(*limit),
-                      .beyond = Beyond::FrameBytes};
+                      .exceeded = ExceededLimit::FrameBytes};
     }
     return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
 }
@@ -132,7 +132,7 @@ void FrameReader::feed(std::span<const std::byte> bytes) {
     }
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
     begin_ = 0;
-    // The memory for one long snapshot should not stay allocated until the connection ends.
+    // Frees the memory that a long snapshot needed, so that it does not stay allocated until the connection ends.
     constexpr std::size_t kept_bytes = 1 << 20;
     if (buffer_.empty() && buffer_.capacity() > kept_bytes && bytes.size() < kept_bytes / 2) {
         buffer_ = std::vector<std::byte>{};

@@ -112,9 +112,9 @@ class FrameReader {
     /// Sets limits for all frames that next() has not returned yet. A server changes its limits after the Hello.
     void set_limits(FrameLimits limits) { limits_ = limits; }
 
-    /// Number of bytes that were received and that next() has not returned yet.
+    /// Returns the number of received bytes that next() has not returned yet.
     std::size_t buffered_bytes() const { return buffer_.size() - begin_; }
-    /// Number of bytes of memory in use.
+    /// Returns the number of bytes of memory in use.
     std::size_t capacity_bytes() const { return buffer_.capacity(); }
 
   private:

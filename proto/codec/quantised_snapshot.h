@@ -16,13 +16,13 @@ namespace evod::codec {
 /// The entities of one kind, ordered by id. The boxes of an island have no ids and keep their order. All columns that
 /// the kind uses have the same length; the other columns are empty.
 struct Entities {
-    // Organisms, food and poison have ids. In a tile boxes have ids, too: their index on the island.
+    // Organisms, food and poison have ids. In a tile, boxes have ids too: their indices on the island.
     Column id;
     Column x, y;
     Column width;  // organisms: radius; boxes: half width
     Column height; // organisms: health; boxes: half height
 
-    // The values of entity i.
+    // These functions return the values of entity i.
     std::uint32_t id_of(std::size_t i) const { return id.empty() ? static_cast<std::uint32_t>(i) : id[i]; }
     float x_px(std::size_t i) const { return px_of(x[i]); }
     float y_px(std::size_t i) const { return px_of(y[i]); }
@@ -31,7 +31,7 @@ struct Entities {
     float half_width_px(std::size_t i) const { return px_of(width[i]); }
     float half_height_px(std::size_t i) const { return px_of(height[i]); }
 
-    /// The index of the entity with this id; nullopt if there is none. Requires the column `id`.
+    /// Returns the index of the entity with this id; nullopt if there is none. Requires the column `id`.
     std::optional<std::size_t> index_of(std::uint32_t wanted) const {
         const auto place = std::ranges::lower_bound(id, wanted);
         return place != id.end() && *place == wanted ? std::optional{static_cast<std::size_t>(place - id.begin())}

@@ -8,12 +8,12 @@
 namespace evod::codec {
 
 /// The limit that the bytes exceed, if any.
-enum class Beyond { Nothing, FrameBytes, MessageDepth };
+enum class ExceededLimit { Nothing, FrameBytes, MessageDepth };
 
 /// Describes invalid bytes. `what` is one sentence without a full stop, for logs and users.
 struct Damage {
     std::string what;
-    Beyond beyond = Beyond::Nothing;
+    ExceededLimit exceeded = ExceededLimit::Nothing;
     friend bool operator==(const Damage&, const Damage&) = default;
 };
 

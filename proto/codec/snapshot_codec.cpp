@@ -24,7 +24,7 @@ void set_ids(const Column& column, Ids& to) {
     to.Add(column.begin(), column.end());
 }
 
-/// Converts steps to px, or to health.
+/// Sets `to` to the numbers of a column, converted from steps to px or health.
 void set_values(const Column& column, Floats& to) {
     to.Reserve(static_cast<int>(column.size()));
     for (const std::uint32_t steps : column) {
@@ -53,18 +53,18 @@ struct PlainColumn {
 
 /// Quantises the columns of one kind and checks each. Returns the first invalid field, if any.
 ///
-/// ids  nullptr: this kind has no ids.
+/// ids  the ids of the entities; nullptr: this kind has no ids.
 std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Ids* ids,
                                  std::initializer_list<PlainColumn> columns, Entities& to) {
     const auto refused = [&](const std::string& field, const std::string& got, const std::string& allowed) {
         return wrong("plain." + kind + "." + field, got, allowed);
     };
-    const auto other_count = [&](const std::string& field, int size) {
+    const auto count_mismatch = [&](const std::string& field, int size) {
         return refused(field, std::to_string(size) + " numbers long", std::to_string(count) + " as the count says");
     };
     if (ids != nullptr) {
         if (static_cast<std::uint32_t>(ids->size()) != count) {
-            return other_count("id", ids->size());
+            return count_mismatch("id", ids->size());
         }
         if (std::adjacent_find(ids->begin(), ids->end(), std::greater_equal<>{}) != ids->end()) {
             return refused("id", "out of order", "rising");
@@ -74,7 +74,7 @@ std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, c
     for (const PlainColumn& column : columns) {
         const Floats& from = column.from;
         if (static_cast<std::uint32_t>(from.size()) != count) {
-            return other_count(column.field, from.size());
+            return count_mismatch(column.field, from.size());
         }
         const auto bad = std::find_if(from.begin(), from.end(), [](float value) { return !std::isfinite(value); });
         if (bad != from.end()) {

@@ -29,11 +29,11 @@ Damage keyframe_needed() {
     return Damage{"a snapshot has an unknown base: a keyframe is needed"};
 }
 
-Damage other_checksum() {
+Damage checksum_mismatch() {
     return Damage{"a snapshot's checksum does not match its body"};
 }
 
-Damage other_base(std::uint64_t got, std::uint64_t last) {
+Damage base_mismatch(std::uint64_t got, std::uint64_t last) {
     return Damage{"a snapshot's base_sequence is " + std::to_string(got) + ", not the last one, " +
                   std::to_string(last)};
 }
@@ -69,7 +69,7 @@ Result<ReceivedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame f
         return keyframe_needed();
     }
     if (!keyframe && frame.base_sequence() != whole_->about.sequence()) {
-        return other_base(frame.base_sequence(), whole_->about.sequence());
+        return base_mismatch(frame.base_sequence(), whole_->about.sequence());
     }
     if (!keyframe) {
         frame.set_world(whole_->about.world());
@@ -92,7 +92,7 @@ Result<ReceivedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame f
         return content.error();
     }
     if (checksum_of(frame, *content) != frame.checksum()) {
-        return other_checksum();
+        return checksum_mismatch();
     }
     auto baseline =
         decode_body(*content, {.counts = counts, .position_bytes = frame.position_bytes(), .of_tile = false}, base);
@@ -101,7 +101,7 @@ Result<ReceivedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame f
     }
     forget();
     snapshot_ = baseline->snapshot;
-    whole_ = Whole{.baseline = *std::move(baseline), .about = frame};
+    whole_ = WholeIsland{.baseline = *std::move(baseline), .about = frame};
     return ReceivedSnapshot{.about = std::move(frame), .entities = snapshot_, .tiles = {}};
 }
 
@@ -138,7 +138,7 @@ Result<ReceivedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame f
                 return keyframe_needed();
             }
             if (tile.base_sequence() != base->sequence) {
-                return other_base(tile.base_sequence(), base->sequence);
+                return base_mismatch(tile.base_sequence(), base->sequence);
             }
         }
         const Counts counts = counts_of(tile);

@@ -20,7 +20,7 @@
 
 namespace evod::codec {
 
-/// Whether a frame can be decoded without an earlier one.
+/// Returns whether a frame can be decoded without an earlier frame.
 bool is_keyframe(const evod::v1::SnapshotFrame& frame);
 
 /// Decodes the snapshots of one island of one subscription.
@@ -29,7 +29,7 @@ class SnapshotDecoder {
     /// Decodes a frame. After Damage, all deltas before the next keyframe are refused.
     Result<ReceivedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
-    /// Whether the decoder needs a keyframe, because it has received none or because of damage.
+    /// Returns whether the decoder needs a keyframe, because it has received none or because of damage.
     bool needs_keyframe() const { return !snapshot_; }
 
     /// The entities of the last snapshot with CODEC_DELTA; nullptr before the first keyframe. With a View, only the
@@ -37,7 +37,7 @@ class SnapshotDecoder {
     const QuantisedSnapshot* snapshot() const { return snapshot_.get(); }
 
   private:
-    struct Whole {
+    struct WholeIsland {
         Baseline baseline;
         evod::v1::SnapshotFrame about; // the fields that deltas omit, and the sequence
     };
@@ -54,7 +54,7 @@ class SnapshotDecoder {
     void forget();
 
     std::shared_ptr<const QuantisedSnapshot> snapshot_;
-    std::optional<Whole> whole_;
+    std::optional<WholeIsland> whole_;
     std::optional<Tiles> tiles_;
 };
 

@@ -24,7 +24,7 @@ inline std::uint32_t steps_of(float px) {
     return static_cast<std::uint32_t>(std::clamp(double{px} * steps_per_px + 0.5, 0.0, most));
 }
 
-/// The number of bytes that a position needs on an island of this size: 2 or 4.
+/// Returns the number of bytes that a position needs on an island of this size: 2 or 4.
 inline std::uint32_t position_bytes_of(double width_px, double height_px) {
     return std::max(width_px, height_px) * steps_per_px <= 65535.0 ? 2 : 4;
 }

@@ -24,12 +24,12 @@ double tiles_along(double length_px, std::uint32_t tile_px) {
 }
 
 /// Returns the index of the first of `count` tiles that begins at or after `px`.
-std::uint32_t first_from(double px, std::uint32_t tile_px, std::uint32_t count) {
+std::uint32_t first_tile_from(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::ceil(px / tile_px), 0.0, double{1} * count));
 }
 
 /// Returns the index of the last of `count` tiles that begins at or before `px`.
-std::uint32_t last_up_to(double px, std::uint32_t tile_px, std::uint32_t count) {
+std::uint32_t last_tile_up_to(double px, std::uint32_t tile_px, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(px / tile_px), 0.0, double{1} * count));
 }
 
@@ -49,7 +49,7 @@ TileLayout tile_layout(double width_px, double height_px) {
 
 Result<TileLayout> tile_layout_of(const evod::v1::SnapshotFrame& frame) {
     const std::uint32_t tile_px = frame.tile_px();
-    // Accepts more tiles than this version of the server sends. The limit is the range of the indices.
+    // The client accepts more tiles than this version of the server sends. The limit is the range of the indices.
     constexpr double count_max = 1 << 24;
     if (!std::has_single_bit(tile_px)) {
         return Damage{"a snapshot's tile_px is " + std::to_string(tile_px) + ", not a power of two"};
@@ -70,10 +70,10 @@ TileRange tiles_of(const evod::v1::Region& region, const TileLayout& layout) {
     if (right_px <= 0 || bottom_px <= 0 || region.left_px() >= layout.width_px || region.top_px() >= layout.height_px) {
         return {};
     }
-    return {.column_begin = last_up_to(region.left_px(), layout.tile_px, layout.columns),
-            .column_end = first_from(right_px, layout.tile_px, layout.columns),
-            .row_begin = last_up_to(region.top_px(), layout.tile_px, layout.rows),
-            .row_end = first_from(bottom_px, layout.tile_px, layout.rows)};
+    return {.column_begin = last_tile_up_to(region.left_px(), layout.tile_px, layout.columns),
+            .column_end = first_tile_from(right_px, layout.tile_px, layout.columns),
+            .row_begin = last_tile_up_to(region.top_px(), layout.tile_px, layout.rows),
+            .row_end = first_tile_from(bottom_px, layout.tile_px, layout.rows)};
 }
 
 TileRange tiles_of(const TileLayout& layout) {

@@ -76,9 +76,9 @@ class SnapshotTiles {
     const TileLayout& layout() const { return layout_; }
 
     Counts counts(std::uint32_t tile) const;
-    /// Sums of the counts of all tiles with an index below `tile`; `tile` may equal layout().count().
+    /// Returns the sums of the counts of all tiles with an index below `tile`; `tile` may equal layout().count().
     Counts counts_before(std::uint32_t tile) const;
-    /// The entities of a tile. In a tile boxes have ids. The view is valid as long as this object exists.
+    /// Returns the entities of a tile, in which boxes have ids. The view is valid as long as this SnapshotTiles exists.
     QuantisedView full(std::uint32_t tile);
     /// Encodes the body of a tile at DETAIL_DOTS.
     std::string dots(std::uint32_t tile) const;
@@ -89,12 +89,12 @@ class SnapshotTiles {
     struct Part {
         std::vector<std::uint32_t> order; // indices of entities, grouped by tile, in rising order within each tile
         std::vector<std::uint32_t> begin; // for each tile its first position in `order`, then the end of the last tile
-        // The columns of the snapshot in the order of `order`. Only the parts of gathered tiles are filled. nullptr:
-        // not allocated yet, or the kind does not have the column.
+        // The columns of the snapshot in the order of `order`. Only the parts of gathered tiles are filled. A column is
+        // nullptr if it is not allocated yet, or if the kind does not have it.
         std::array<std::unique_ptr<std::uint32_t[]>, 5> columns;
     };
     std::span<const std::uint32_t> of(std::size_t part, std::uint32_t tile) const;
-    /// The position of an entity within its tile, in 1/256 of the tile's side.
+    /// A position within a tile, in 1/256 of the tile's side.
     struct Place {
         std::uint8_t x, y;
     };

@@ -11,7 +11,7 @@
 
 namespace evod::base {
 
-/// value += change; returns the value before the addition.
+/// Adds `change` to `value`. Returns the value before the addition.
 template <bool parallel, class T>
 T fetch_add(T& value, T change) {
     if constexpr (parallel) {
@@ -21,7 +21,7 @@ T fetch_add(T& value, T change) {
     }
 }
 
-/// value = min(value, candidate). Numbers only, no NaN.
+/// Sets `value` to min(value, candidate). Neither may be NaN.
 template <bool parallel, class T>
 void fetch_min(T& value, T candidate) {
     if constexpr (parallel) {
@@ -34,7 +34,7 @@ void fetch_min(T& value, T candidate) {
     }
 }
 
-/// value = what. Threads that write at the same time must all write the same value.
+/// Sets `value` to `what`. Threads that write at the same time must all write the same value.
 template <bool parallel, class T>
 void put(T& value, T what) {
     if constexpr (parallel) {

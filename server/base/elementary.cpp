@@ -25,8 +25,8 @@ constexpr std::array<double, 24> inverse_factorials() {
 }
 constexpr auto inverse_factorial = inverse_factorials();
 
-/// The Taylor series of sine (if `last` is odd) or cosine (if `last` is even) up to the power `last`, for |x| <= π/4.
-/// If `last` is 18 or 19, the first omitted term is below 1e-19.
+/// Returns the Taylor series of sine (if `last` is odd) or cosine (if `last` is even) up to the power `last`, for |x|
+/// <= π/4. If `last` is 18 or 19, the first omitted term is below 1e-19.
 template <class Real>
 constexpr Real series(Real x, int last) {
     const Real square = x * x;

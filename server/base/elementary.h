@@ -15,14 +15,15 @@ constexpr double pi = 3.14159265358979323846;
 double sin_turns(double turns);
 double cos_turns(double turns);
 
-/// e^x. The relative error is below 1e-15 for |x| <= 700. The result is 0 for x < −700, and the largest double for x >
-/// 700.
+/// Returns e^x. The relative error is below 1e-15 for |x| <= 700. The result is 0 for x < −700, and the largest double
+/// for x > 700.
 double exp(double x);
 
-/// Natural logarithm of a normal x > 0. The relative error (near x = 1, the absolute error) is below 1e-15.
+/// Returns the natural logarithm of a normal x > 0. The relative error (near x = 1, the absolute error) is below 1e-15.
 double log(double x);
 
-/// x^y for x > 0: exp(y log x). The relative error is below 1e-15 · (1 + |y log x|). 0^y is 0 for y > 0, and 0^0 is 1.
+/// Returns x^y for x > 0: exp(y log x). The relative error is below 1e-15 · (1 + |y log x|). 0^y is 0 for y > 0, and
+/// 0^0 is 1.
 double pow(double x, double y);
 
 /// A vector of length 1 to within 3e-7.
@@ -30,7 +31,8 @@ struct Direction {
     float x, y;
 };
 
-/// The direction at the angle `word`/2^32 of a full turn, from +x toward +y. It is uniform if `word` is uniform.
+/// Returns the direction at the angle `word`/2^32 of a full turn, from +x toward +y. It is uniform if `word` is
+/// uniform.
 Direction direction(unsigned word);
 
 } // namespace evod::base

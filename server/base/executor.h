@@ -33,7 +33,7 @@ class FunctionRef<R(Arguments...)> {
     R (*call_)(void*, Arguments...);
 };
 
-/// Half-open range of indices given to one piece of a parallel loop.
+/// The range of indices [begin, end) of one piece of a parallel loop.
 struct Range {
     std::size_t begin, end;
 };
@@ -56,8 +56,8 @@ class Executor {
         }
     }
 
-    /// The number of threads that may work at the same time, >= 1. Use it to decide whether to cut a loop, never where
-    /// to cut it: results must not depend on it.
+    /// Returns the number of threads that may work at the same time, >= 1. Use it to decide whether to cut a loop,
+    /// never where to cut it: results must not depend on it.
     virtual std::size_t thread_count() const = 0;
 
   protected:

@@ -7,11 +7,12 @@
 namespace evod::base {
 namespace {
 
-/// The sums, over all added lanes, of the two words that hash_of() returns.
-struct HashSums {
+/// Sums of the two words that hash_of() returns, over all entities that were added. Each lane has its own sums.
+struct HashSumsPerLane {
     Longs low{}, high{};
 
-    /// lanes_used  the result of a comparison: a lane is added if all its bits are set.
+    /// Adds the hash of one entity per lane, but only in the lanes of `lanes_used` whose bits are all set, as a
+    /// comparison sets them.
     void add(Words kind_and_id, Words a, Words b, Words c, Words d, Words e, Integers lanes_used) {
         const Words key = kind_and_id * 0x9e3779b1u;
         a ^= key;

@@ -8,10 +8,10 @@ namespace evod::base {
 
 enum class Instructions : unsigned char { Baseline, Avx2 };
 
-/// The instructions in use. Initially these are the widest that this processor has.
+/// Returns the instructions in use: initially the widest that this processor has.
 Instructions instructions();
 
-/// The widest vector instructions that this processor has.
+/// Returns the widest vector instructions that this processor has.
 Instructions widest_instructions();
 
 /// Selects the instructions to use, for tests and measurements. The processor must have them, and no kernel may be

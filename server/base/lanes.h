@@ -11,10 +11,10 @@
 #include <cstddef>
 #include <cstdint>
 #if defined(__x86_64__)
-#include <immintrin.h> // always inlined; for operations that the vector types have no operator for
+#include <immintrin.h> // always inlined; for operations that have no operator
 #endif
 
-/// The name of this copy of a kernel.
+/// EVOD_KERNEL(name) is the name of a kernel in this copy.
 #if EVOD_LANES == 8
 #define EVOD_KERNEL(name) name##_avx2
 #else
@@ -56,7 +56,7 @@ inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
     }
 }
 
-/// A vector with the value in every lane.
+/// Returns a vector with the value in every lane.
 inline Floats all_lanes(float value) {
     return value - Floats{};
 }
@@ -106,7 +106,7 @@ inline Integers round_to_integers(Floats v) {
 #endif
 }
 
-/// Bit i is set where lane i of a comparison holds.
+/// Returns a number whose bit i is 1 if the comparison holds in lane i.
 inline unsigned bits_of(Integers mask) {
 #if defined(__x86_64__) && EVOD_LANES == 8
     return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));

@@ -14,7 +14,7 @@
 
 namespace evod::base {
 
-/// When a changed value takes effect.
+/// The time at which a changed value takes effect.
 enum class Effect {
     NextTick,       // from the tick at which the command is applied; a breeding parameter: from the next breeding
     NextGeneration, // from the first tick of the next generation

@@ -47,17 +47,17 @@ struct Seed {
     friend bool operator==(const Seed&, const Seed&) = default;
 };
 
-/// The inputs of a draw that many entities share. Constructed once per (purpose, island, generation).
+/// The inputs of a draw that many entities share. Construct one RandomKey per (purpose, island, generation).
 class RandomKey {
   public:
     RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);
 
-    /// Four uniform 32-bit words.
+    /// Returns four uniform 32-bit words.
     std::array<std::uint32_t, 4> words(std::uint32_t entity, std::uint64_t tick, std::uint32_t block) const;
 
-    /// Two uniform 32-bit words from Philox2x32-10, in half the time of words(). Intended for draws made for every
-    /// organism in every tick. The low half of this RandomKey is the Philox key; the high half is XORed with the tick.
-    /// Do not call both pair() and words() for the same purpose.
+    /// Returns two uniform 32-bit words from Philox2x32-10, in half the time of words(). Intended for draws made for
+    /// every organism in every tick. The low half of this RandomKey is the Philox key; the high half is XORed with the
+    /// tick. Do not call both pair() and words() for the same purpose.
     std::array<std::uint32_t, 2> pair(std::uint32_t entity, std::uint32_t tick) const;
     // The Philox key and counter of pair(), for kernels that draw for many entities.
     std::uint32_t pair_key() const { return low_; }
@@ -75,7 +75,7 @@ inline float unit_float(std::uint32_t word) {
 /// A sequence of draws for one entity at one tick, for code that does not know beforehand how many draws it needs.
 class RandomStream {
   public:
-    /// At most 2^34 words can be drawn from a stream.
+    /// Begins a stream, from which at most 2^34 words can be drawn.
     RandomStream(const RandomKey& key, std::uint32_t entity, std::uint64_t tick = 0)
         : key_{key}, tick_{tick}, entity_{entity} {}
 
@@ -90,12 +90,12 @@ class RandomStream {
         const std::uint64_t high = word();
         return high << 32 | word();
     }
-    /// Uniform in [0, 1), with 53 random bits; draws two words.
+    /// Returns a number that is uniform in [0, 1), with 53 random bits; draws two words.
     double uniform() { return static_cast<double>(long_word() >> 11) * 0x1p-53; }
-    /// Uniform in [low, high); draws two words.
+    /// Returns a number that is uniform in [low, high); draws two words.
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    /// Uniform in 0 … bound − 1 without bias; bound >= 1 (Lemire 2019, "Fast random integer generation in an
-    /// interval").
+    /// Returns a number that is uniform in 0 … bound − 1, without bias; bound >= 1 (Lemire 2019, "Fast random integer
+    /// generation in an interval").
     std::uint32_t below(std::uint32_t bound) {
         EVOD_ASSERT(bound >= 1);
         std::uint64_t product = std::uint64_t{word()} * bound;
@@ -107,9 +107,9 @@ class RandomStream {
         }
         return static_cast<std::uint32_t>(product >> 32);
     }
-    /// True with probability p. Always draws two words, even if p is 0 or 1.
+    /// Returns true with probability p. Always draws two words, even if p is 0 or 1.
     bool chance(double p) { return uniform() < p; }
-    /// Standard normal (Box & Muller 1958, cosine branch); draws four words.
+    /// Returns a standard normal number (Box & Muller 1958, cosine branch); draws four words.
     double gaussian();
     /// Shuffles so that every order of `items` is equally likely (Fisher & Yates; Durstenfeld 1964).
     template <class T>

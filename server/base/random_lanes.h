@@ -58,8 +58,8 @@ inline Directions directions(Words words) {
     cosine = cosine * square - 0.5f;
     cosine = cosine * square + 1.0f;
     const Integers swapped = (quarter & 1u) != 0u;
-    const Words sign_x = ((quarter + 1u) & 2u) << 30, sign_y = (quarter & 2u) << 30; // x is negative in the quarters 1
-                                                                                     // and 2, y in the quarters 2 and 3
+    // x is negative in the quarters 1 and 2, y in the quarters 2 and 3.
+    const Words sign_x = ((quarter + 1u) & 2u) << 30, sign_y = (quarter & 2u) << 30;
     const Floats x = swapped ? sine : cosine, y = swapped ? cosine : sine;
     return {(Floats)((Words)x ^ sign_x), (Floats)((Words)y ^ sign_y)};
 }

@@ -81,10 +81,10 @@ enum class Reason {
     SessionsMax = 91,
 };
 
-/// The code as users see it: "INVALID_ARGUMENT".
+/// Returns the name of the code as users see it, for example "INVALID_ARGUMENT".
 const char* name_of(RefusalCode code);
 
-/// One field that is wrong.
+/// A wrong field of a request, with the values that it allows.
 struct Violation {
     std::string field;   // as the sender spells it: "parameters.mutation_chance"
     std::string allowed; // "0 to 1"
@@ -104,10 +104,10 @@ inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Re
     return {.code = code, .message = std::move(message), .violations = {}, .reason = reason};
 }
 
-/// The refusal as text: the message, then one line per violation.
+/// Returns the refusal as text: the message, then one line per violation.
 std::string to_text(const Refusal& refusal);
 
-/// "field: got X, allowed Y" on one line.
+/// Returns the violation as one line: "field: got X, allowed Y".
 std::string to_text(const Violation& violation);
 
 [[noreturn]] void throw_exception_from_error(const Refusal& refusal, const boost::source_location& where);

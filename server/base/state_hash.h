@@ -30,10 +30,10 @@ struct StateHash {
     friend bool operator==(const StateHash&, const StateHash&) = default;
 };
 
-/// 32 lower-case hexadecimal digits, high word first.
+/// Returns the hash as 32 lower-case hexadecimal digits, high word first.
 std::string to_text(const StateHash& hash);
 
-/// The hash as 16 bytes, most significant first.
+/// Returns the hash as 16 bytes, most significant byte first.
 std::string to_bytes(const StateHash& hash);
 
 /// Collects one entity's identity and fields. `kind` distinguishes entities of different kinds with equal ids.
@@ -68,8 +68,8 @@ struct HashedWords {
     std::uint32_t a, b, c, d, e;
 };
 
-/// Like EntityHash, but for entities that are hashed in every tick. It takes six multiplications of 32-bit words, which
-/// a kernel computes for several entities at once (hash_lanes.h).
+/// Returns the hash of an entity, like EntityHash, but faster, for entities that are hashed in every tick. It takes six
+/// multiplications of 32-bit words, which a kernel computes for several entities at once (hash_lanes.h).
 ///
 /// The fields are multiplied in pairs, each with a key derived from the identity. Each pair is also added unchanged to
 /// the other half of the hash. A field is therefore not lost if the other factor is 0.

@@ -5,26 +5,26 @@
 namespace evod::evolution {
 namespace {
 
-/// share · count, rounded to the nearest whole number (halves up), but at least 1.
+/// Returns share · count, rounded to the nearest whole number (halves up), but at least 1.
 std::uint32_t share_of(std::uint32_t count, double share) {
     return std::max(1u, std::min(count, static_cast<std::uint32_t>(share * count + 0.5)));
 }
 
-/// The elite (at least one organism), followed by the picks in order. If an elite organism was also picked, one of its
-/// picks is left out.
+/// Returns the elite (at least one organism), followed by the picks in order. If an elite organism was also picked, one
+/// of its picks is left out.
 std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite, std::span<const std::uint32_t> picks,
                                             std::size_t population) {
     std::vector<std::uint32_t> survivors(elite.begin(), elite.end());
-    std::vector<bool> has_a_pick_to_use(population);
+    std::vector<bool> drops_next_pick(population);
     for (const std::uint32_t organism : elite) {
-        has_a_pick_to_use[organism] = true;
+        drops_next_pick[organism] = true;
     }
     for (const std::uint32_t organism : picks) {
         if (survivors.size() >= picks.size()) {
             break;
         }
-        if (has_a_pick_to_use[organism]) {
-            has_a_pick_to_use[organism] = false;
+        if (drops_next_pick[organism]) {
+            drops_next_pick[organism] = false;
         } else {
             survivors.push_back(organism);
         }
@@ -32,7 +32,7 @@ std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite
     return survivors;
 }
 
-/// The elite, followed by the other organisms among the best `count`, in index order.
+/// Returns the elite, followed by the other organisms among the best `count`, in index order.
 std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_first, std::uint32_t elite,
                                            std::uint32_t count) {
     std::vector<std::uint32_t> survivors(best_first.begin(), best_first.begin() + elite);

@@ -26,17 +26,17 @@ struct Choice {
     std::vector<std::uint32_t> picks; // the selection's picks, in the order in which they were made
     std::vector<Parents> pairs;       // two children each; the last pair may have room for only one
 
-    /// Shape (places.survivors): the organism that is kept in each place.
+    /// Returns the surviving organism of each place: shape (places.survivors).
     std::span<const std::uint32_t> survivors() const { return picks_survive ? picks : others; }
     bool picks_survive = false;        // the survivors are the picks
     std::vector<std::uint32_t> others; // the survivors, unless they are the picks
 };
 
-/// The arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, select() is not
-/// called.
+/// Returns the arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, the caller
+/// must not call select().
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
 
-/// The key to pass to select().
+/// Returns the key of the random draws, to be passed to select().
 base::RandomKey selection_key(const BreedingKey& key);
 
 Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
@@ -73,7 +73,7 @@ struct WithoutRecord {
 /// Computes the genes of survivors and of children.
 class Descent {
   public:
-    /// present  the parents' generation; must outlive this object.
+    /// present  the parents' generation; must outlive the Descent.
     Descent(const GeneMatrix& present, const Parameters& parameters, const BreedingKey& key)
         : present_{present}
         , survivor_key_{key.seed, base::Purpose::SurvivorMutation, key.island, key.generation}
@@ -101,7 +101,8 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Draws the mask of the first child of a pair; the second child has the complement. nullopt: no crossover.
+    /// Draws the mask of the first child of a pair; the second child has the complement. Returns nullopt if there is no
+    /// crossover.
     std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(random);

@@ -15,7 +15,7 @@ using Contender = BreedingRecord::Contender;
 using Pick = BreedingRecord::Pick;
 using Descendant = BreedingRecord::Descendant;
 
-/// The rows first … end − 1 of a list.
+/// The range of rows of a list that the record contains: first … end − 1.
 struct Rows {
     std::uint32_t first, end;
     Rows(std::uint32_t wanted_first, std::uint32_t count, std::uint32_t count_max)

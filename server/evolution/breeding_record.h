@@ -35,16 +35,16 @@ struct BreedingRecord {
         double slot_end = 0;
         CopiesLaw law{};                   // distribution of its number of copies in all picks
         std::uint32_t copies = 0;          // its actual number of copies in all picks
-        std::optional<Migrant> migrant;    // the migrant that replaced it; set by the caller, which has the list of
-                                           // migrants
+        std::optional<Migrant> migrant;    // the migrant that replaced it; set by the caller
         std::optional<double> own_fitness; // its true fitness, if `fitness` was shuffled; set by the caller
     };
     struct Pick {
         std::uint32_t organism = 0;
         std::optional<double> turns;             // position on the wheel, in [0, 1)
         std::optional<std::uint32_t> tournament; // index of the tournament that it won
-        std::vector<std::uint32_t> contestants;  // contestants of that tournament, the winner included; empty without a
-                                                 // tournament, or if there are too many to record
+        // The contestants of that tournament, including the winner; empty if there was no tournament, or if it had too
+        // many contestants to record.
+        std::vector<std::uint32_t> contestants;
     };
     struct Descendant {
         std::uint32_t id = 0;
@@ -52,8 +52,8 @@ struct BreedingRecord {
         Chromosome first_genes, second_genes; // genes of the first and of the second parent
         GeneMask from_second = 0;             // the genes that come from the second parent
         bool crossed = false;
-        std::optional<std::array<std::uint32_t, gene_count>> order; // after an order mutation: which gene's value each
-                                                                    // gene received
+        // After an order mutation: element i is the index of the gene whose value gene i received.
+        std::optional<std::array<std::uint32_t, gene_count>> order;
         std::vector<GeneChange> changes;
         Chromosome genes; // after all changes
     };
@@ -67,7 +67,7 @@ struct BreedingRecord {
 
 /// Records what next_generation() does with the same arguments.
 ///
-/// rows  which rows the record contains; a list that has no such rows is empty.
+/// rows  the rows of each list that the record contains; a list that does not have these rows is empty.
 BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, const WantedRows& rows,
                                base::Executor& executor);

@@ -15,7 +15,7 @@ namespace evod::evolution {
 
 class Chance {
   public:
-    /// p  in [0, 1]; exact if p >= 2^-11, otherwise rounded to a multiple of 2^-64.
+    /// p  the probability of an event, in [0, 1]; rounded to a multiple of 2^-64, which changes p only below 2^-11.
     explicit Chance(double p) : digits_{p < 1 ? static_cast<std::uint64_t>(p * 0x1p64) : 0}, certain_{p >= 1} {
         EVOD_ASSERT(p >= 0);
         EVOD_ASSERT(p <= 1);

@@ -47,10 +47,10 @@ GeneBounds gene_bounds(const Parameters& parameters);
 /// Moves every gene outside its bounds to the nearer bound. Returns how many genes it moved.
 unsigned clamp(Genes genes, const GeneBounds& bounds);
 
-/// The first generation of one island: every gene uniform in [initial_gene_min, initial_gene_max], then clamped to its
-/// bounds.
+/// Draws the first generation of one island: every gene is uniform in [initial_gene_min, initial_gene_max], and then
+/// clamped to its bounds.
 ///
-/// organism_count  0 is allowed.
+/// organism_count  the size of the island's population; may be 0.
 /// returns         shape (gene_count, organism_count); a larger population begins with the organisms of a smaller one.
 GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
                               std::uint32_t island);

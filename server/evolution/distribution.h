@@ -22,8 +22,7 @@ std::vector<std::uint32_t> distribute(std::size_t count, std::size_t bucket_coun
     constexpr std::size_t block_size = 16384;
     const std::size_t blocks = (count + block_size - 1) / block_size;
     std::vector<std::uint32_t> places(blocks *
-                                      bucket_count); // per block and bucket: first the number of items, later the place
-                                                     // of the next item
+                                      bucket_count); // per block and bucket: number of items; later, next place
     executor.parallel_for(count, block_size, [&](base::Range block) {
         std::uint32_t* const counts = &places[block.begin / block_size * bucket_count];
         for (std::size_t i = block.begin; i < block.end; ++i) {

@@ -24,7 +24,7 @@ template <class FitnessOf>
 void apply_shuffle(const Parameters& parameters, std::size_t island_count, FitnessOf&& fitness_of, base::Seed seed,
                    std::uint64_t generation, base::Executor& executor);
 
-/// Permutes the values; every order is equally likely. The generation of `key` is the one that has just ended.
+/// Permutes the fitness values; every order is equally likely. The generation of `key` is the one that has just ended.
 void shuffle_fitness(std::span<double> fitness, const BreedingKey& key, base::Executor& executor);
 
 template <class FitnessOf>

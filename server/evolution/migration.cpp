@@ -18,7 +18,7 @@ struct Edge {
     std::uint32_t from, to;
 };
 
-/// The pairs of islands between which migrants are sent, ordered by (to, from).
+/// Returns the pairs of islands between which migrants are sent, ordered by (to, from).
 std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed seed, std::uint64_t generation) {
     std::vector<Edge> result;
     if (islands < 2) {
@@ -63,8 +63,7 @@ std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, st
         return wanted;
     }
     std::vector<std::uint32_t> shares(wanted.size());
-    std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left; all have received the same number of
-                                                       // places so far
+    std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left, all with equally many places
     std::iota(waiting.begin(), waiting.end(), 0u);
     while (places > 0) {
         std::erase_if(waiting, [&](std::uint32_t edge) { return shares[edge] == wanted[edge]; });

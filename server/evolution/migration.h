@@ -25,7 +25,7 @@ struct Migrant {
     friend bool operator==(const Migrant&, const Migrant&) = default;
 };
 
-/// Whether islands exchange migrants after generation `generation` (from 1): every migration_epoch generations.
+/// Returns whether islands exchange migrants after generation `generation` (from 1): every migration_epoch generations.
 bool migration_due(std::uint64_t generation, const Parameters& parameters);
 
 /// Chooses the migrants of one epoch; changes nothing.
@@ -41,7 +41,7 @@ bool migration_due(std::uint64_t generation, const Parameters& parameters);
 /// another edge, unless the other edge has no more migrants. The edges that get the remaining places are drawn, each
 /// equally likely.
 ///
-/// fitness     one span per island, shape (population), finite. Populations may differ; an island with an empty
+/// fitness     the fitness of each island's organisms, finite. Populations may differ; an island with an empty
 ///             population sends and receives none.
 /// generation  the generation that has just ended; keys the draws.
 /// returns     ordered by (to, from); no organism is replaced twice; empty for a single island or Topology::None.

@@ -11,7 +11,7 @@
 namespace evod::evolution {
 namespace {
 
-/// Uniform in (−1, 1), symmetric, with mean 0 and variance 1/3; one word.
+/// Draws a number that is uniform in (−1, 1), with mean 0 and variance 1/3, from one random word.
 double symmetric_uniform(base::RandomStream& random) {
     return (random.word() + 0.5) * 0x1p-31 - 1;
 }
@@ -38,8 +38,8 @@ class Ziggurat {
         while (true) {
             const std::uint32_t word = random.word();
             const unsigned layer = word % layers;
-            const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1; // position in (−1, 1), with 25
-                                                                                         // bits
+            // The position in the layer, in (−1, 1), with 25 random bits.
+            const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1;
             const double x = share * width_[layer];
             if (std::abs(share) < wholly_under_[layer]) {
                 return x;
@@ -80,7 +80,7 @@ double draw_normal(base::RandomStream& random) {
     return ziggurat.draw(random);
 }
 
-// Up to this probability it is cheaper to draw the distances between flips than to draw for each bit.
+// Up to this probability of a flip it is cheaper to draw the distances between flipped bits than to draw for each bit.
 constexpr double rare_flip_chance_max = 0.125;
 
 /// Calls `change` for every gene of the mask, in order.

@@ -23,7 +23,7 @@ struct BinaryView {
     float min, max;
     unsigned bits; // 1 … 24
 
-    /// The code nearest to a value within the bounds; 0 if the bounds are equal.
+    /// Returns the code nearest to a value within the bounds; 0 if the bounds are equal.
     std::uint32_t to_code(float value) const;
     float to_value(std::uint32_t code) const;
 };
@@ -60,7 +60,7 @@ class ValueMutation {
     unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
 
   private:
-    /// change(gene, kind, value)  sets a gene.
+    /// Mutates a chromosome. change(gene, kind, value) must set a gene.
     template <class Change, class Clamp>
     unsigned mutate(ConstGenes genes, base::RandomStream& random, const Change& change, const Clamp& clamp_all) const;
     template <class Change>

@@ -35,8 +35,7 @@ struct NextGeneration {
     GeneMatrix genes;              // shape (gene_count, organisms): the elite, the other survivors, the children
     std::vector<Parents> parents;  // shape (organisms); first the parent that gave more of the genes
     std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the previous generation, best first
-    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 survived, the elite included; the remaining
-                                      // organisms are children
+    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1, with the elite; the rest are children
     std::uint64_t clamped_count = 0;  // genes that were out of bounds and were clamped
     // The change from the previous generation, as it was before migration. Set by the caller; nullopt in the first
     // generation, or if the previous generation is not available.
@@ -61,7 +60,7 @@ Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameter
 ///
 /// fitness     shape (present), any finite numbers, present >= 1; larger is better, ties go to the lower index.
 /// genes       shape (gene_count, present).
-/// parameters  each in its range.
+/// parameters  the parameters of the algorithm, each in its range.
 /// wanted      organisms in the next generation, >= 1; the population grows or shrinks to this number.
 ///
 /// hybrid        Selection picks the survivors; an organism that is picked twice survives twice. The elite come first

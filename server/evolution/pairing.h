@@ -23,7 +23,7 @@ struct Parents {
 ///
 /// parents  indices into the present generation, at least one if pair_count > 0. An organism that was selected twice
 ///          counts as two parents, and may mate with itself.
-/// key      its purpose is Purpose::Pairing; round i draws from the stream of entity i.
+/// key      the key of the draws; its purpose must be Purpose::Pairing. Round i draws from the stream of entity i.
 /// returns  shape (pair_count).
 std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32_t pair_count,
                              const base::RandomKey& key, base::Executor& executor);

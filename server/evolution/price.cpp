@@ -57,7 +57,7 @@ class Numbers {
 template <std::size_t count>
 using SumsOf = std::array<Numbers, count>;
 
-/// Sums over the organisms [0, organisms): `add(i, sums)` adds the terms of organism i.
+/// Computes sums over the organisms [0, organisms): `add(i, sums)` must add the terms of organism i.
 template <std::size_t count, class Add>
 SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add& add) {
     std::vector<SumsOf<count>> blocks((organisms + organisms_per_block - 1) / organisms_per_block);
@@ -77,8 +77,8 @@ SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add&
     return total;
 }
 
-/// A number near the mean of each gene, with few digits. Differences from it are exact, or nearly exact, and their sums
-/// are small. The differences of means are therefore more precise than the means themselves.
+/// Returns a number near the mean of each gene, with few digits. Differences from it are exact, or nearly exact, and
+/// their sums are small. The differences of means are therefore more precise than the means themselves.
 Numbers centre_of(const GeneMatrix& genes, base::Executor& executor) {
     const auto organisms = static_cast<std::size_t>(genes.cols());
     const SumsOf<1> sums =
@@ -109,7 +109,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
 
     const auto population = summed<1>(
         organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
-    // Two sums: of the genes that breeding used, and of their differences from the genes as born.
+    // The two sums are those of the genes that breeding used, and of their differences from the genes as born.
     SumsOf<2> seen{population[0], {}};
     if (&before != &bred_from) {
         seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
@@ -118,7 +118,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
             sums[1] += z - Numbers{column(before, i)};
         });
     }
-    // Three sums, each with one term per descendant: its genes; the mean of its parents' genes; the difference of the
+    // The three sums have one term per descendant: its genes; the mean of its parents' genes; the difference of the
     // two.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
         if (i + parents_prefetched < parents.size()) {

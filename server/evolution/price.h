@@ -66,7 +66,8 @@ void for_each_number(const std::optional<SelectionAccount>& account, Visit&& vis
 
 /// The inverse of for_each_number(): reads an account; nullopt if any number is missing.
 ///
-/// next  returns the next number, a std::optional<double>; called once per number, in the order of for_each_number().
+/// next  must return the next number, a std::optional<double>; called once per number, in the order of
+///       for_each_number().
 template <class Next>
 std::optional<SelectionAccount> account_from(Next&& next) {
     SelectionAccount account;

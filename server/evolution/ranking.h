@@ -16,13 +16,13 @@ namespace evod::evolution {
 
 class Ranking {
   public:
-    /// fitness  shape (population), finite. It must outlive the ranking, and so must `executor`.
+    /// fitness  the fitness of each organism, finite. The ranking refers to `fitness` and `executor`, which must
+    ///          outlive it.
     Ranking(std::span<const double> fitness, base::Executor& executor) : fitness_{fitness}, executor_{&executor} {}
-    /// Sorts on the calling thread.
+    /// Creates a ranking that sorts on the calling thread.
     Ranking(std::span<const double> fitness) : fitness_{fitness} {} // NOLINT(google-explicit-constructor)
 
-    /// Shape (population): the index of the organism of each rank, rank 0 the fittest. Not to be called by several
-    /// threads at once.
+    /// Returns the indices of all organisms, the fittest first. Only one thread at a time may call this function.
     std::span<const std::uint32_t> best_first();
 
     std::span<const double> fitness() const { return fitness_; }

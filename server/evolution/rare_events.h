@@ -17,8 +17,8 @@ class RareEvents {
   public:
     static constexpr unsigned trials_max = 160;
 
-    /// trials  at most trials_max.
-    /// chance  probability that a trial succeeds, in [0, 1); rounded to 2^-53.
+    /// trials  the number of trials, at most trials_max.
+    /// chance  the probability that a trial succeeds, in [0, 1); rounded to a multiple of 2^-53.
     RareEvents(unsigned trials, double chance) : trials_{trials} {
         EVOD_ASSERT(trials <= trials_max);
         EVOD_ASSERT(chance >= 0);
@@ -74,8 +74,7 @@ class RareEvents {
     static constexpr unsigned guides = 1024; // enough that most words need no search
     unsigned trials_;
     std::array<Digits, trials_max> all_fail_{}; // [k]: the probability that the first k + 1 trials all fail
-    std::array<std::uint8_t, guides> guide_{};  // [leading digits of a word]: the greatest skip that such a word can
-                                                // give
+    std::array<std::uint8_t, guides> guide_{};  // [leading digits of a word]: the greatest possible skip
 };
 
 } // namespace evod::evolution

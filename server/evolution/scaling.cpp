@@ -46,8 +46,8 @@ std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameter
         for (const std::uint32_t organism : ranking.best_first()) {
             scaled[organism] = weight;
             weight *= parameters.ranking_decay;
-            // Rounding would keep the weight at the smallest positive double in all later ranks, and computing with
-            // such subnormal numbers is slow.
+            // Without this test, rounding would keep the weight at the smallest positive double in all later ranks, and
+            // computing with such subnormal numbers is slow.
             if (weight < std::numeric_limits<double>::min()) {
                 weight = 0;
             }

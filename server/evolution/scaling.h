@@ -13,14 +13,14 @@
 
 namespace evod::evolution {
 
-/// The expected number of copies of the organism of rank `rank` (0 = fittest) when `population` organisms are drawn
-/// from `population`: pressure − 2(pressure − 1) · rank/(population − 1). It is 1 in a population of one.
+/// Returns the expected number of copies of the organism of rank `rank` (0 = fittest) when `population` organisms are
+/// drawn from `population`: pressure − 2(pressure − 1) · rank/(population − 1). It is 1 in a population of one.
 ///
 /// pressure  1 (all equal) to 2 (the worst is never drawn).
 /// Source    Baker 1985, "Adaptive selection methods for genetic algorithms".
 double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double pressure);
 
-/// The scaled fitness, shape (population).
+/// Returns the scaled fitness of each organism, depending on the parameter fitness_scaling.
 ///
 /// none                 the fitness, unchanged.
 /// windowing            the fitness minus the least fitness, so the worst gets 0; halved if that would overflow.

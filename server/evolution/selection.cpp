@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t spins_per_stream = 4096;
 constexpr std::size_t pointers_per_piece = 16384;
 
-/// Calls stop(i, turns) for each spin i of a roulette, in parallel. turns: where the spin stops.
+/// Calls stop(i, turns) for each spin i of a roulette, in parallel. `turns` is the position where the spin stops.
 template <class Stop>
 void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& executor, const Stop& stop) {
     executor.parallel_for(spins, spins_per_stream, [&](base::Range piece) {
@@ -25,8 +25,8 @@ void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& execu
     });
 }
 
-/// The position of one of `wanted` equally spaced pointers, in turns. The first pointer is at `offset` times the
-/// spacing.
+/// Returns the position of one of `wanted` equally spaced pointers, in turns. The first pointer is at `offset` times
+/// the spacing.
 double pointer_turns(std::size_t pointer, double offset, std::uint32_t wanted) {
     return (static_cast<double>(pointer) + offset) / wanted;
 }

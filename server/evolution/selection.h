@@ -23,7 +23,7 @@ namespace evod::evolution {
 std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wanted, const base::RandomKey& key,
                                          base::Executor& executor);
 
-/// Where each spin of spin_roulette() stops, in turns from the beginning of the first slot, in [0, 1).
+/// Returns where each spin of spin_roulette() stops, in turns from the beginning of the first slot, in [0, 1).
 std::vector<double> roulette_turns(std::uint32_t wanted, const base::RandomKey& key, base::Executor& executor);
 
 /// Stochastic universal sampling: one spin, with `wanted` equally spaced pointers. An organism with the share p of the
@@ -34,8 +34,8 @@ std::vector<double> roulette_turns(std::uint32_t wanted, const base::RandomKey& 
 std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
                                           base::Executor& executor);
 
-/// The pointer position of each pick of spin_universal(), in turns from the beginning of the first slot, in [0, 1)
-/// except for rounding.
+/// Returns the pointer position of each pick of spin_universal(), in turns from the beginning of the first slot, in [0,
+/// 1) except for rounding.
 std::vector<double> universal_turns(std::uint32_t wanted, base::RandomStream& random, base::Executor& executor);
 
 /// Picks different organisms; each set and order of them is equally likely. If `wanted` exceeds `population`, complete
@@ -45,11 +45,11 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
                                        base::Executor& executor);
 
 /// Picks the best `pool` organisms in order of rank, and repeats the list until there are `wanted` picks.
-/// pool     1 … population.
+/// pool     the number of different organisms to pick, 1 … population.
 /// returns  shape (wanted).
 std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted);
 
-/// The stream that universal sampling and random selection draw from.
+/// Returns the random stream from which universal sampling and random selection draw.
 base::RandomStream selection_stream(const base::RandomKey& key);
 
 struct Picks {
@@ -60,8 +60,8 @@ struct Picks {
 /// Picks organisms with the method, scaling and tournament rules of `parameters`. Roulette and universal sampling use a
 /// wheel of the scaled fitness (wheel.h describes how it treats negative weights and weights that are all 0).
 ///
-/// ranking  contains at least one organism.
-/// key      its purpose is Purpose::Selection.
+/// ranking  the organisms to pick from, at least one.
+/// key      the key of the draws; its purpose must be Purpose::Selection.
 std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Parameters& parameters,
                                   const base::RandomKey& key, base::Executor& executor);
 

@@ -11,7 +11,7 @@
 namespace evod::evolution {
 namespace {
 
-/// x^n for n >= 0. x is a probability that may be slightly negative because of rounding.
+/// Returns x^n for n >= 0. x is a probability that may be slightly negative because of rounding.
 double power(double x, double n) {
     if (x < std::numeric_limits<double>::min()) {
         return n == 0 ? 1 : 0;
@@ -45,7 +45,7 @@ double visit_weights(double least, double mode, double greatest, const Ratio& ra
     return sum;
 }
 
-/// visit_weights() for the binomial distribution: the number of successes in `trials` independent trials.
+/// Calls visit_weights() for the binomial distribution: the number of successes in `trials` independent trials.
 template <class Visit>
 double visit_binomial(double trials, double chance, const Visit& visit) {
     if (chance >= 1) {
@@ -57,8 +57,8 @@ double visit_binomial(double trials, double chance, const Visit& visit) {
         0, mode, trials, [=](double x) { return (trials - x) / (x + 1) * odds; }, visit);
 }
 
-/// visit_weights() for the hypergeometric distribution: the number of marked items among `drawn` items that are drawn
-/// from `all` without replacement.
+/// Calls visit_weights() for the hypergeometric distribution: the number of marked items among `drawn` items that are
+/// drawn from `all` without replacement.
 template <class Visit>
 double visit_hypergeometric(double all, double marked, double drawn, const Visit& visit) {
     const double least = std::max(0.0, drawn + marked - all), greatest = std::min(marked, drawn);
@@ -68,7 +68,8 @@ double visit_hypergeometric(double all, double marked, double drawn, const Visit
         [=](double x) { return (marked - x) / (x + 1) * ((drawn - x) / (all - marked - drawn + x + 1)); }, visit);
 }
 
-/// A rank wins at most once: it wins if it is a contestant and fewer than `winners` other contestants are fitter.
+/// Computes the wins of a rank in a tournament without replacement. A rank wins at most once: if it is a contestant and
+/// fewer than `winners` other contestants are fitter.
 WinsLaw wins_without_replacement(double rank, double population, double size, double winners) {
     double place_left = 0;
     const double all = visit_hypergeometric(population - 1, rank, size - 1, [&](double fitter, double weight) {
@@ -78,8 +79,8 @@ WinsLaw wins_without_replacement(double rank, double population, double size, do
     return {chance, chance, 1 - chance};
 }
 
-/// The wins of a rank in a tournament in which `contestants` contestants have this rank or a better one. Each of these
-/// contestants has exactly this rank with probability `own_share`.
+/// Computes the wins of a rank in a tournament in which `contestants` contestants have this rank or a better one. Each
+/// of these contestants has exactly this rank with probability `own_share`.
 WinsLaw wins_among(double contestants, double own_share, double winners) {
     if (contestants <= winners) { // each of these contestants wins
         const double mean = contestants * own_share;
@@ -115,7 +116,8 @@ WinsLaw wins_with_replacement(double rank, double population, double size, doubl
     return {law.mean / all, law.mean_square / all, law.none_chance / all};
 }
 
-/// Exactly ⌊expected⌋ or ⌈expected⌉ copies, as in universal sampling, truncation and random selection in rounds.
+/// Returns the distribution of the number of copies if that number is always ⌊expected⌋ or ⌈expected⌉, as in universal
+/// sampling, truncation and random selection in rounds.
 CopiesLaw rounded_copies(double expected) {
     const double nearest = std::round(expected);
     // A share of the wheel is a difference of rounded sums, so a number this close to a whole number is treated as

@@ -27,11 +27,15 @@ struct CopiesLaw {
 
 class SelectionLaw {
   public:
-    /// population  organisms to pick from, >= 1.
-    /// picks       as select() receives them.
+    /// Creates the law of one selection.
+    ///
+    /// population  the number of organisms to pick from, >= 1.
+    /// picks       the picks that select() receives.
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
+    /// Returns the distribution of the number of copies of one organism.
+    ///
     /// rank   the rank of the organism; 0 is the fittest.
     /// share  the organism's share of the wheel, for roulette and universal sampling; the other methods ignore it.
     CopiesLaw copies(std::uint32_t rank, double share) const;
@@ -54,7 +58,7 @@ struct WinsLaw {
 /// Computes how often the organism of rank `rank` wins one tournament. The time grows with the square root of
 /// tournament.size; with replacement and several winners, at most linearly.
 ///
-/// tournament  winners <= size; without replacement, also size <= population.
+/// tournament  must have winners <= size and, without replacement, size <= population.
 WinsLaw wins_of_rank(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

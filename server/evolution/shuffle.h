@@ -13,7 +13,7 @@
 
 namespace evod::evolution {
 
-/// Up to this many items are shuffled as a whole.
+/// The maximum number of items that are shuffled as a whole, not in parts.
 constexpr std::size_t shuffled_whole_max = 65536;
 
 /// Shuffles `items`, drawing from `random`. More than shuffled_whole_max items draw from separate streams instead,

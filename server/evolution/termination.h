@@ -35,11 +35,11 @@ struct GenerationResult {
     bool died_out;       // no organism was alive at the end, on any island
 };
 
-/// The progress after one more generation. Only a fitness above the best so far is an improvement, except that the
-/// first generation always counts as one.
+/// Returns the progress after one more generation. Only a fitness above the best so far is an improvement, except that
+/// the first generation always counts as one.
 Progress advance(Progress progress, const GenerationResult& result);
 
-/// The outcome after the last generation of `progress`; Running if no generation has ended yet.
+/// Returns the outcome after the last generation of `progress`; Running if no generation has ended yet.
 Outcome outcome(const Progress& progress, const Parameters& parameters);
 
 } // namespace evod::evolution

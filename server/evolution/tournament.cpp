@@ -107,18 +107,18 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
     const double ranks = population, draws = size, ends = ranks - draws + 1; // a skip is less than `ends`
     while (true) {
-        // A proposal from an approximate distribution, ...
+        // First, a proposal is drawn from an approximate distribution.
         const double x = ranks * (1 - base::pow(1 - random.uniform(), 1 / draws));
         if (x >= ends) {
             continue;
         }
         const double skip = std::floor(x);
-        // ... accepted by a cheap bound, ...
+        // The proposal is accepted if a cheap bound permits it.
         const double needed = base::pow(random.uniform() * ranks / ends, 1 / (draws - 1));
         if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1) {
             return static_cast<std::uint32_t>(skip);
         }
-        // ... or by the exact distribution.
+        // Otherwise the exact distribution decides whether the proposal is accepted.
         double product = 1, above = ranks - 1;
         double below = draws - 1 > skip ? ranks - draws : ranks - skip - 1;
         const double last = draws - 1 > skip ? ranks - skip : ends;
@@ -142,8 +142,8 @@ void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t siz
     }
 }
 
-/// The probability that each rank is the best of `size` different contestants, which means that no better rank is
-/// drawn. Negligible probabilities at the end are left out.
+/// Returns, for each rank, the probability that it is the best of `size` different contestants, which means that no
+/// better rank is drawn. Negligible probabilities at the end are left out.
 std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
     std::vector<double> chances;
     double all_missed = 1;
@@ -157,31 +157,32 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
 
 /// How the winners are found. Each method is the fastest in its case.
 enum class Method {
-    Held,            // contestants are drawn and compared
-    OrderStatistics, // ranks are drawn; for tournaments with replacement
-    WheelOfRanks,    // a rank is drawn; without replacement, one winner
-    WalkDownRanks,   // ranks are drawn; without replacement, several winners, a large part of the population
-    SkipRanks,       // ranks are drawn; without replacement, several winners, a small part of the population
+    CompareContestants, // contestants are drawn and compared
+    OrderStatistics,    // ranks are drawn; for tournaments with replacement
+    WheelOfRanks,       // a rank is drawn; without replacement, one winner
+    WalkDownRanks,      // ranks are drawn; without replacement, several winners, a large part of the population
+    SkipRanks,          // ranks are drawn; without replacement, several winners, a small part of the population
 };
 
-// Walking over this many ranks per winner costs as much as one skip.
+// Visiting this many ranks per winner one by one costs as much as drawing one skip.
 constexpr std::uint64_t walked_ranks_max = 13;
 
 Method choose_method(std::uint32_t population, const Tournament& tournament) {
     const std::uint64_t size = tournament.size, winners = tournament.winners;
     if (tournament.replacement) {
-        return size <= held_contestants_max || size < 4 * winners ? Method::Held : Method::OrderStatistics;
+        return size <= held_contestants_max || size < 4 * winners ? Method::CompareContestants
+                                                                  : Method::OrderStatistics;
     }
     if (winners == 1) {
-        return size <= held_contestants_max ? Method::Held : Method::WheelOfRanks;
+        return size <= held_contestants_max ? Method::CompareContestants : Method::WheelOfRanks;
     }
     if (size <= held_contestants_max) {
-        return Method::Held;
+        return Method::CompareContestants;
     }
     if (population <= walked_ranks_max * size) {
         return Method::WalkDownRanks;
     }
-    return size < 4 * winners ? Method::Held : Method::SkipRanks;
+    return size < 4 * winners ? Method::CompareContestants : Method::SkipRanks;
 }
 
 /// The rules of the tournaments of one selection.
@@ -201,8 +202,9 @@ Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint
             choose_method(population, {size, winners, tournament.replacement})};
 }
 
-/// Draws the contestants of Method::Held.
-void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSet& drawn, base::RandomStream& random) {
+/// Draws the contestants of Method::CompareContestants.
+void draw_compared_contestants(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSet& drawn,
+                               base::RandomStream& random) {
     if (rules.replacement) {
         draw_contestants(rules.population, contestants, random);
     } else {
@@ -211,7 +213,7 @@ void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSe
 }
 
 DrawnSet drawn_set_for(const Rules& rules) {
-    return DrawnSet{rules.method == Method::Held && !rules.replacement ? rules.size : 0};
+    return DrawnSet{rules.method == Method::CompareContestants && !rules.replacement ? rules.size : 0};
 }
 
 } // namespace
@@ -229,13 +231,13 @@ std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tourna
 std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
                                           std::uint32_t wanted, const base::RandomKey& key) {
     const Rules rules = rules_of(population, tournament, wanted);
-    if (rules.method != Method::Held) {
+    if (rules.method != Method::CompareContestants) {
         return {};
     }
     std::vector<std::uint32_t> contestants(rules.size);
     DrawnSet drawn = drawn_set_for(rules);
     base::RandomStream random{key, index};
-    draw_held(rules, contestants, drawn, random);
+    draw_compared_contestants(rules, contestants, drawn, random);
     return contestants;
 }
 
@@ -248,7 +250,7 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
     const Rules rules = rules_of(population, tournament, wanted);
     const std::uint32_t size = rules.size, winners = rules.winners;
     const Method method = rules.method;
-    const bool held = method == Method::Held;
+    const bool held = method == Method::CompareContestants;
     const Wheel wheel{method == Method::WheelOfRanks ? chances_of_ranks(population, size) : std::vector<double>{1}};
     const std::span<const std::uint32_t> best_first = held ? std::span<const std::uint32_t>{} : ranking.best_first();
     const Fitter fitter{ranking.fitness()};
@@ -270,8 +272,8 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
                 base::RandomStream random{key, static_cast<std::uint32_t>(first + i)};
                 const std::span<std::uint32_t> contestants = contestants_of(i);
                 switch (method) {
-                case Method::Held:
-                    draw_held(rules, contestants, drawn, random);
+                case Method::CompareContestants:
+                    draw_compared_contestants(rules, contestants, drawn, random);
                     break;
                 case Method::OrderStatistics:
                     draw_winning_ranks(population, size, contestants, random);

@@ -29,16 +29,16 @@ Tournament tournament_of(const Parameters& parameters);
 /// The best of k contestants from n organisms has rank r (0 = fittest) with probability ((n−r)^k − (n−r−1)^k) / n^k
 /// with replacement, and C(n−r−1, k−1) / C(n, k) without.
 ///
-/// ranking  contains at least one organism; ties go to the lower index.
-/// key      tournament i draws from the stream of entity i.
+/// ranking  the organisms, at least one. Ties go to the lower index.
+/// key      the key of the draws. Tournament i draws from the stream of entity i.
 /// returns  shape (wanted): each tournament's winners together, best first.
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor);
 
-/// The number of picks that each tournament of hold_tournaments() gives; the last tournament may give fewer.
+/// Returns the number of winners of each tournament of hold_tournaments(); the last tournament may have fewer.
 std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted);
 
-/// The contestants of one tournament of hold_tournaments(), in the order drawn; empty if its winners are drawn
+/// Returns the contestants of one tournament of hold_tournaments(), in the order drawn; empty if its winners are drawn
 /// directly.
 std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
                                           std::uint32_t wanted, const base::RandomKey& key);

@@ -20,8 +20,8 @@ void make_non_negative(std::vector<double>& weights) {
     }
 }
 
-/// A power of two that scales `greatest` to about 1, so that sums neither overflow nor lose all their digits.
-double near_one(double greatest) {
+/// Returns a power of two that scales `greatest` to about 1, so that sums neither overflow nor lose all their digits.
+double factor_to_about_one(double greatest) {
     return std::ldexp(1.0, std::clamp(-std::ilogb(greatest), -1000, 1000));
 }
 
@@ -36,7 +36,7 @@ Wheel::Wheel(std::vector<double> weights) : ends_{std::move(weights)} {
     if (greatest == 0) {
         std::fill(ends_.begin(), ends_.end(), 1.0);
     }
-    const double unit = greatest == 0 ? 1 : near_one(greatest);
+    const double unit = greatest == 0 ? 1 : factor_to_about_one(greatest);
     double end = 0;
     for (double& weight : ends_) {
         end += weight * unit;
@@ -60,7 +60,7 @@ std::uint32_t Wheel::at(double turns) const {
     EVOD_ASSERT(turns < 1);
     const double place = turns * ends_.back();
     std::uint32_t organism = guide_[static_cast<std::size_t>(turns * static_cast<double>(guide_.size()))];
-    // Rounding can put the guide one slot too far.
+    // Because of rounding, the guide may point one slot too far.
     while (organism > 0 && ends_[organism - 1] > place) {
         --organism;
     }

@@ -19,14 +19,14 @@ class Wheel {
     ///          matter, and their sum cannot overflow.
     explicit Wheel(std::vector<double> weights);
 
-    /// The organism at the position `turns`, in [0, 1) of a full turn: the first organism whose slot ends beyond that
-    /// position. A slot of width 0 is never hit.
+    /// Returns the organism at the position `turns`, in [0, 1) of a full turn: the first organism whose slot ends
+    /// beyond that position. A slot of width 0 is never hit.
     std::uint32_t at(double turns) const;
 
-    /// The position where each slot ends, in index order, shape (population). The last element is the circumference.
+    /// Returns the position where each organism's slot ends, in index order. The last element is the circumference.
     std::span<const double> slot_ends() const { return ends_; }
 
-    /// The organism's share of the circumference: the probability that a spin picks it.
+    /// Returns the organism's share of the circumference: the probability that a spin picks the organism.
     double share(std::uint32_t organism) const;
 
   private:

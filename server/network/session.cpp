@@ -135,7 +135,7 @@ asio::awaitable<void> Session::read() {
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
-                if (frame.error().beyond == codec::Beyond::FrameBytes) {
+                if (frame.error().exceeded == codec::ExceededLimit::FrameBytes) {
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 }
                 co_await fail_when_answered(
@@ -230,7 +230,7 @@ asio::awaitable<void> Session::discard_input() {
 
 void Session::on_frame(const codec::Frame& frame) {
     auto message = codec::parse_body<v1::ClientMessage>(frame.body);
-    if (!message && message.error().beyond == codec::Beyond::MessageDepth) {
+    if (!message && message.error().exceeded == codec::ExceededLimit::MessageDepth) {
         host_.limit_counters.met(Limit::MessageDepth);
     }
     if (!greeted_) {

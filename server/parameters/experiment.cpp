@@ -15,12 +15,12 @@ base::Refusal invalid(std::string message, std::vector<Violation> violations = {
         .code = base::RefusalCode::InvalidArgument, .message = std::move(message), .violations = std::move(violations)};
 }
 
-/// The value as an experiment file writes it.
+/// Returns the value in the form in which experiment files write it.
 std::string json_text(const ParameterValue& value) {
     return std::holds_alternative<std::string>(value) ? "\"" + to_text(value) + "\"" : to_text(value);
 }
 
-/// "mutation_chance at generation 30"
+/// Returns, for example, "mutation_chance at generation 30".
 std::string at_generation(std::string_view name, std::uint64_t generation) {
     return std::string{name} + " at generation " + std::to_string(generation);
 }
@@ -35,7 +35,7 @@ std::optional<std::uint64_t> generation_of(std::string_view key) {
 /// The values of one parameter by generation.
 class ValuesByGeneration {
   public:
-    /// values  the object after the name of the parameter; must outlive this object.
+    /// values  the JSON object that the experiment file gives for the parameter; must outlive this ValuesByGeneration.
     ValuesByGeneration(const std::string& name, const JsonNode& values)
         : name_{name}, node_{&values}, description_{find_parameter(name)} {
         if (description_ == nullptr) {
@@ -59,7 +59,7 @@ class ValuesByGeneration {
 
     const std::map<std::uint64_t, ParameterValue>& values() const { return values_; }
     const std::vector<Violation>& violations() const { return violations_; }
-    /// The line of the value for a generation; nullopt if the generation has no value.
+    /// Returns the line of the value for a generation; nullopt if the generation has no value.
     std::optional<std::size_t> line_at(std::uint64_t generation) const {
         const JsonMember* member = node_->find(std::to_string(generation));
         return member == nullptr ? std::nullopt : std::optional{member->line};
@@ -116,7 +116,7 @@ class ScheduleReader {
         return first;
     }
 
-    /// parameters  the parameters of generation 1, valid.
+    /// Completes the schedule, and returns its faults. `parameters` are those of generation 1, and must be valid.
     std::vector<Violation> finish(const Parameters& parameters, const JsonNode& document) {
         if (const std::size_t count = schedule_.value_count(); count > Schedule::values_max) {
             return {{"the schedule", "at most " + std::to_string(Schedule::values_max) + " values after generation 1",
@@ -135,8 +135,8 @@ class ScheduleReader {
     const Schedule& schedule() const { return schedule_; }
 
   private:
-    /// The line of the faulty value. If there is none, the line of its parameter; otherwise the line of a parameter
-    /// that changes in that generation.
+    /// Returns the line of the faulty value. If the file does not contain the value, returns the line of its parameter,
+    /// or else the line of a parameter that changes in that generation.
     std::optional<std::size_t> line_of(const ScheduleFault& fault, const JsonNode& document) const {
         if (const auto read = read_.find(fault.violation.field); read != read_.end()) {
             if (const auto line = read->second.line_at(fault.generation)) {
@@ -231,8 +231,8 @@ class ExperimentReader {
         }
     }
 
-    /// If the file does not set reference_population, it equals population_size. Its faults are then reported only for
-    /// population_size.
+    /// Adds the violations of `refused`. If the file does not set reference_population, that parameter equals
+    /// population_size; a fault of both is then reported only for population_size.
     void add_violations(const base::Refusal& refused) {
         for (const Violation& violation : refused.violations) {
             if (violation.field != "reference_population" || names_reference_) {
@@ -251,7 +251,7 @@ class ExperimentReader {
     bool names_reference_ = false;
 };
 
-/// "{"1": 0.2, "30": 0.05}"; empty if the parameter is not scheduled.
+/// Returns the scheduled values, for example {"1": 0.2, "30": 0.05}; empty if the parameter is not scheduled.
 std::string values_text(const Schedule& schedule, std::string_view name) {
     std::string text;
     for (const auto& [generation, assignments] : schedule.changes()) {

@@ -19,7 +19,7 @@ namespace evod::parameters {
 
 struct Experiment {
     Parameters parameters; // of generation 1
-    Schedule schedule;     // valid: faults_of() returns nothing
+    Schedule schedule;     // without faults (faults_of())
     std::optional<base::Seed> seed;
     std::string description;
 };
@@ -36,12 +36,12 @@ base::Result<Experiment> read_experiment(const JsonNode& document);
 std::optional<ParameterValue> parameter_value_of(const JsonNode& node);
 
 enum class Written { Differences, Everything }; // Differences: only the parameters that differ from their defaults
-/// The parameters as an experiment file, one per line, in registry order. Scheduled parameters are written with the
-/// values of the schedule.
+/// Returns the parameters as an experiment file, one per line, in registry order. Scheduled parameters are written with
+/// the values of the schedule.
 std::string to_experiment_text(const Parameters& parameters, Written written = Written::Differences,
                                const Schedule& schedule = {});
 
-/// A schedule alone, in the form of an experiment file; "{}\n" if it is empty.
+/// Returns the schedule alone, in the form of an experiment file; "{}\n" if the schedule is empty.
 std::string to_schedule_text(const Schedule& schedule);
 /// Reads the output of to_schedule_text(). Does not check whether the values fit the parameters of the run.
 base::Result<Schedule> parse_schedule(std::string_view text);

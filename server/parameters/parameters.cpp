@@ -108,8 +108,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & 
     return row.back();
 }
 
-/// An upper bound on the share of an island in which the centre of a new body cannot be placed, if every organism has
-/// the maximum size. Of bodies of the same kind as the new body, only their own area is counted.
+/// Returns an upper bound on the share of an island in which the centre of a new body cannot be placed, if every
+/// organism has the maximum size. Bodies of the same kind as the new body count only with their own area.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
     const auto square = [](double x) { return x * x; };
     const double radius = p.body_size_max * p.radius_per_unit_px;

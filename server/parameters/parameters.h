@@ -110,21 +110,21 @@ struct ParameterDescription {
 
     ParameterValue get(const Parameters& parameters) const;
     ParameterValue default_value() const { return get(Parameters{}); }
-    /// Copies the value of `from` to `to`.
+    /// Copies the value of this parameter from `from` to `to`.
     void copy(const Parameters& from, Parameters& to) const;
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
-/// All parameters: first those of the model, then those of the genetic algorithm, in the order of their lists.
+/// Returns all parameters: first those of the model, then those of the genetic algorithm, in the order of their lists.
 std::span<const ParameterDescription> parameter_registry();
 
-/// The parameters whose values differ, in the order of the registry.
+/// Returns the parameters whose values differ between `a` and `b`, in the order of the registry.
 std::vector<const ParameterDescription*> parameters_that_differ(const Parameters& a, const Parameters& b);
 
-/// Returns nullptr if no parameter has that name.
+/// Returns the parameter with this name; nullptr if there is none.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// The parameter names most similar to `name`, best first, at most three: for "did you mean".
+/// Returns at most three parameter names that are most similar to `name`, the most similar first, for "did you mean".
 std::vector<std::string_view> similar_parameter_names(std::string_view name);
 
 struct Assignment {
@@ -163,7 +163,8 @@ struct ParameterSet {
     std::uint64_t revision = 1; // increases with every accepted change
 };
 
-/// The set after a change. Values that take effect at once become active; other values are only requested.
+/// Returns `set` after a change to `requested`: values that take effect at once become active, other values are only
+/// requested.
 ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
 
 /// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.

@@ -32,7 +32,8 @@ void Schedule::add(std::uint64_t generation, const Assignment& assignment) {
         added.value = static_cast<double>(*whole);
     }
     auto& there = changes_[generation];
-    // Both pointers point into the registry, which is an array, so assignments are sorted in its order.
+    // Both pointers point into the registry, which is an array, so comparing them sorts assignments in the order of the
+    // registry.
     const auto place =
         std::ranges::find_if(there, [&](const Assignment& other) { return find_parameter(other.name) > description; });
     there.insert(place, std::move(added));

@@ -20,14 +20,15 @@
 
 namespace evod::parameters {
 
-/// Planned values, generation by generation.
+/// The scheduled values of parameters, generation by generation.
 class Schedule {
   public:
     /// The maximum number of values after generation 1, over all parameters.
     static constexpr std::size_t values_max = 4096;
 
     bool empty() const { return changes_.empty(); }
-    /// The values of a generation, in the order of the registry. Generation 1 has a value of every scheduled parameter.
+    /// Returns the values of a generation, in the order of the registry. Generation 1 has a value of every scheduled
+    /// parameter.
     std::span<const Assignment> at(std::uint64_t generation) const;
     /// All values, by generation.
     const std::map<std::uint64_t, std::vector<Assignment>>& changes() const { return changes_; }
@@ -35,8 +36,8 @@ class Schedule {
     /// The number of values after generation 1.
     std::size_t value_count() const;
 
-    /// assignment  valid (see fault_of()); its parameter can be scheduled (see can_be_scheduled()) and has no value yet
-    ///             in that generation.
+    /// Adds a value. The assignment must be valid (fault_of()). Its parameter must allow a schedule
+    /// (can_be_scheduled()) and must not have a value in that generation yet.
     void add(std::uint64_t generation, const Assignment& assignment);
     /// Removes all values of a parameter.
     void remove(std::string_view name);
@@ -69,13 +70,13 @@ struct PlannedChange {
 /// The maximum number of planned changes of a world.
 constexpr std::size_t planned_changes_max = 100;
 
-/// Whether the parameter can change while a world runs.
+/// Returns whether the parameter can change while a world runs.
 inline bool can_be_scheduled(const ParameterDescription& description) {
     return description.effect != base::Effect::Reset;
 }
 
-/// The requested parameters after assignments that are made while a world runs. Refused if the result is not valid, or
-/// if it is not valid without the parameters that wait for a reset.
+/// Returns the requested parameters after assignments that are made while a world runs. Refuses them if the result is
+/// not valid, or if it is not valid without the parameters that wait for a reset.
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix = "");
 /// Like request_of(), for assignments that are made at the beginning of a generation. That generation is bred with the
@@ -83,8 +84,9 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix = "");
 
-/// The parameters for breeding the next generation: `active`, with the requested values of the parameters that take
-/// effect at a generation. Parameters that take effect at a tick keep their active values while the generation is bred.
+/// Returns the parameters for breeding the next generation: `active`, with the requested values of the parameters that
+/// take effect at a generation. Parameters that take effect at a tick keep their active values while the generation is
+/// bred.
 Parameters breeding_with(const Parameters& active, const Parameters& requested);
 
 struct ScheduleFault {
@@ -94,7 +96,7 @@ struct ScheduleFault {
 /// Returns the violations that the schedule causes in a run that begins with these parameters and has no other changes.
 /// Stops at the first generation that has violations, and returns all violations of that generation.
 ///
-/// parameters  valid.
+/// parameters  the parameters in generation 1; must be valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);
 
 } // namespace evod::parameters

@@ -17,7 +17,7 @@
 
 namespace evod::physics {
 
-/// Islands are smaller than this, so that every position fits into a Coordinate.
+/// The side of an island is shorter than this, so that every position fits into a Coordinate.
 constexpr double island_size_max_px = 1 << 19;
 
 /// Converts px to units, rounded to the nearest unit, halves to even; |px| < island_size_max_px.
@@ -33,12 +33,12 @@ inline double to_px(Coordinate units) {
     return static_cast<double>(units) / units_per_px;
 }
 
-/// b − a in units. For a void body the subtraction may wrap around, but the result is still a large distance.
+/// Returns b − a in units. For a void body the subtraction may wrap around, but the result is still a large distance.
 inline Coordinate difference(Coordinate a, Coordinate b) {
     return static_cast<Coordinate>(static_cast<std::uint32_t>(b) - static_cast<std::uint32_t>(a));
 }
 
-/// b − a in px; exact up to 4,096 px.
+/// Returns b − a in px; exact up to 4,096 px.
 inline float distance_px(Coordinate a, Coordinate b) {
     return static_cast<float>(difference(a, b)) * px_per_unit;
 }
@@ -66,7 +66,7 @@ struct Circles : Bodies {
     std::size_t size() const { return size_; }
     bool is_void(std::size_t i) const { return x[i] == void_position; }
     void clear();
-    /// Appends void circles, or removes the last ones.
+    /// Changes the number of circles: appends void circles, or removes the last circles.
     void resize(std::size_t size);
     /// A circle at rest. put() replaces a void circle by it; different void circles may be replaced in parallel.
     struct AtRest {
@@ -77,9 +77,10 @@ struct Circles : Bodies {
     void put(std::size_t i, const AtRest& circle);
     /// Appends a circle at rest.
     void add(const AtRest& circle);
-    /// Makes the circle void.
+    /// Makes a circle void: an immovable placeholder that touches nothing.
     void remove(std::size_t i);
-    /// The circles order[0], order[1], … become circles 0, 1, …; circles that `order` leaves out are dropped.
+    /// Sorts the circles: order[0], order[1], … become circles 0, 1, …, and circles that `order` leaves out are
+    /// dropped.
     void reorder(const Reordering& reordering);
 
   private:
@@ -92,7 +93,7 @@ struct Boxes : Bodies {
 
     std::size_t size() const { return x.size(); }
     void clear();
-    /// Adds a box at rest. inverse_mass: 0 for an obstacle.
+    /// Adds a box at rest. new_inverse_mass must be 0 for an obstacle.
     void add(Coordinate at_x, Coordinate at_y, float new_half_width, float new_half_height, float new_inverse_mass);
 };
 

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t cells_per_block = 1024;
 
 float greatest_radius(const Circles& circles) {
-    float greatest[lanes_max] = {}; // several maxima, so that no comparison waits for the previous one
+    float greatest[lanes_max] = {}; // one maximum per lane, so that no comparison waits for the previous one
     for (std::size_t i = 0; i < circles.radius.size(); i += lanes_max) {
         for (std::size_t lane = 0; lane < lanes_max; ++lane) {
             greatest[lane] = std::max(greatest[lane], circles.radius[i + lane]);
@@ -26,7 +26,7 @@ float greatest_radius(const Circles& circles) {
 void Strips::choose_cells(std::size_t circles, const Area& area, float reach_px) {
     const double width = std::max(area.width, 1), height = std::max(area.height, 1);
     const double share = width * height / static_cast<double>(std::max<std::size_t>(circles, 1));
-    // A little higher than the reach, to allow for rounding in later comparisons.
+    // The reach is increased a little, to allow for rounding in later comparisons.
     const double reach = static_cast<double>(reach_px) * units_per_px * (1 + 1e-5) + 2;
     const double strip_height = std::max({reach, std::sqrt(share) / 2, 256.0});
     const double column_width = std::max(share / std::min(strip_height, height), 256.0);
@@ -109,7 +109,7 @@ std::uint32_t Strips::strip_of_place(std::size_t k) const {
 }
 
 bool NearPairs::stale(const Circles& circles, const Boxes& boxes) const {
-    // A little less than half the skin, to allow for rounding of distances.
+    // Bodies may move a little less than half the skin, to allow for rounding of distances.
     const float allowed = skin_px_ / 2 - 0.01f;
     if (circles.size() != circle_count_ || boxes.size() != box_anchor_x_.size() || allowed <= 0 ||
         displacement_square_ > allowed * allowed) {
@@ -188,8 +188,8 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
             const std::size_t end = std::min(begin + circles_per_block, range.end);
             std::uint32_t strip = strips_.strip_of_place(begin);
             std::size_t strip_end = strips_.strip(strip).end;
-            std::size_t below = 0, below_end = 0; // places in the next strip: from the left end of the window to the
-                                                  // end of the strip
+            // Places in the next strip: from the left end of the window to the end of the strip.
+            std::size_t below = 0, below_end = 0;
             const auto enter_strip = [&](std::size_t k) {
                 while (k >= strip_end) {
                     strip_end = strips_.strip(++strip).end;

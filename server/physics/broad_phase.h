@@ -33,11 +33,11 @@ constexpr std::size_t circles_per_block = 512;
 constexpr std::size_t block_count(std::size_t circles) {
     return (circles + circles_per_block - 1) / circles_per_block;
 }
-/// Whether a loop over so many circles is long enough to be divided among several threads.
+/// Returns whether a loop over this many circles is long enough to be divided among several threads.
 constexpr bool worth_dividing(std::size_t circles) {
     return circles >= 4096;
 }
-/// The number of blocks that one piece of a parallel loop processes: all of them if the loop is not worth dividing.
+/// Returns how many blocks one piece of a parallel loop processes: all blocks if the loop is not worth dividing.
 constexpr std::size_t blocks_per_piece(std::size_t circles) {
     return worth_dividing(circles) ? 1 : block_count(circles) + 1;
 }
@@ -59,24 +59,25 @@ void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks
 /// The circles that are not void, sorted by strip, and within a strip by (x, id).
 class Strips {
   public:
-    /// reach_px  the greatest distance at which neighbours will be requested; also the minimum height of a strip.
+    /// Sorts the circles. `reach_px` is the greatest distance at which neighbours will be requested, and the minimum
+    /// height of a strip.
     void sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor);
 
     /// The indices of the circles, in sorted order.
     std::span<const std::uint32_t> order() const { return order_; }
-    /// Must be called after the circles have been reordered by order(). order() is then 0, 1, 2, ….
+    /// Resets order() to 0, 1, 2, …. Must be called after the circles have been reordered by order().
     void follow_reordering();
 
     std::uint32_t strip_count() const { return strips_; }
     double strip_height_px() const {
         return static_cast<double>(std::uint64_t{1} << scale_bits) / static_cast<double>(strip_scale_) / units_per_px;
     }
-    /// The range of order() that contains the circles of a strip.
+    /// Returns the range of order() that contains the circles of a strip.
     base::Range strip(std::uint32_t strip) const {
         const std::size_t cell = std::size_t{strip} * columns_;
         return {first_[cell], first_[cell + columns_]};
     }
-    /// The strip that contains place k of order().
+    /// Returns the strip that contains place k of order().
     std::uint32_t strip_of_place(std::size_t k) const;
     std::uint32_t strip_at(std::int64_t y) const { return index_at(y, strip_scale_, strips_); }
     /// A range of neighbouring cells in one strip, as indices into first_.
@@ -95,11 +96,11 @@ class Strips {
             visit(Stretch{row + first_column, row + end_column});
         }
     }
-    /// The range of order() that contains the circles of a stretch.
+    /// Returns the range of order() that contains the circles of a stretch.
     base::Range places(Stretch stretch) const { return {first_[stretch.first_cell], first_[stretch.end_cell]}; }
     /// Prefetches the memory that places() reads.
     void prefetch(Stretch stretch) const { __builtin_prefetch(&first_[stretch.first_cell]); }
-    /// A place in order() at or shortly before the first circle of the strip with x >= left.
+    /// Returns a place in order() at or shortly before the first circle of the strip whose x is at least `left`.
     std::size_t place_of(std::uint32_t strip, std::int64_t left) const {
         return first_[std::size_t{strip} * columns_ + index_at(left, column_scale_, columns_)];
     }
@@ -124,21 +125,22 @@ class Strips {
     base::Column<std::uint32_t> order_;
 };
 
-/// The list of pairs that are at most the skin apart.
+/// The list of pairs of bodies whose gap is at most the skin.
 class NearPairs {
   public:
     struct Pair {
         std::uint32_t a, b; // indices of the two bodies
     };
 
-    /// Whether pairs that are not listed might touch, so that the list must be renewed. True before the first list.
+    /// Returns whether pairs that are not listed might touch, so that the list must be renewed; true before the first
+    /// list.
     bool stale(const Circles& circles, const Boxes& boxes) const;
     /// Makes stale() return true; for use after all bodies have been replaced.
     void invalidate() {
         displacement_square_ = std::numeric_limits<float>::infinity();
         skin_share_ = 1;
     }
-    /// Must be called when a circle becomes void. Its displacement is ignored from then on.
+    /// Ignores the displacement of a circle from now on. Must be called when the circle becomes void.
     void remove(std::size_t circle) {
         EVOD_ASSERT(circle < circle_count_);
         anchor_x_[circle] = anchor_y_[circle] = void_position;
@@ -159,17 +161,18 @@ class NearPairs {
     /// Stores the present positions of the circles as their anchors, and sorts the circles.
     void sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor);
     const Strips& strips() const { return strips_; }
-    /// Must be called after the circles have been reordered by strips().order().
+    /// Applies a new order of the circles to the stored data. Must be called after the circles have been reordered by
+    /// strips().order().
     void follow_reordering(const Circles& circles, base::Executor& executor);
     /// Lists the pairs; uses the result of the last sort().
     void list(const Circles& circles, const Boxes& boxes, base::Executor& executor);
 
-    /// The pairs of circles that were found in a block of circles.
+    /// Returns the pairs of circles that were found in a block of circles.
     std::span<const Pair> circle_pairs(std::size_t block) const {
         EVOD_ASSERT(block < pairs_of_block_.size());
         return pairs_of_block_[block];
     }
-    /// a is a circle, b a box.
+    /// Pairs of a circle (Pair::a) and a box (Pair::b).
     std::span<const Pair> circle_box_pairs() const { return circle_box_pairs_; }
     /// Pairs of boxes, at least one of which can move.
     std::span<const Pair> box_pairs() const { return box_pairs_; }
@@ -178,8 +181,8 @@ class NearPairs {
     const base::Column<Coordinate>& anchor_y() const { return anchor_y_; }
     float skin_px() const { return skin_px_; }
 
-    /// Calls visit(stretch) for stretches. Together they contain every circle that is now at most `radius` px from (x,
-    /// y), and some other circles.
+    /// Calls visit(stretch) for several stretches. Together they contain every circle that is now at most `radius` px
+    /// from (x, y), and some other circles.
     template <class Visit>
     void for_each_stretch_near(Coordinate x, Coordinate y, float radius, Visit&& visit) const {
         const auto reach = static_cast<std::int64_t>((radius + std::sqrt(displacement_square_) + 0.1f) * units_per_px);

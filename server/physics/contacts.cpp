@@ -33,13 +33,13 @@ struct Body {
     std::size_t index;
 };
 
-/// overlap.normal points from a to b.
+/// Resolves one contact. overlap.normal must point from `a` to `b`.
 void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) {
     const float mass_a = a.bodies.inverse_mass[a.index], mass_b = b.bodies.inverse_mass[b.index];
     const float total = mass_a + mass_b;
     EVOD_ASSERT(total > 0);
     const float nx = overlap.normal_x, ny = overlap.normal_y;
-    // Immovable bodies are not written to, because several contacts of the same one may be resolved in parallel.
+    // Immovable bodies are not written to, because several contacts of one such body may be resolved in parallel.
     const auto move = [&](Body body, float distance) {
         if (body.bodies.inverse_mass[body.index] == 0) {
             return;
@@ -76,7 +76,7 @@ Overlap overlap_of(const Circles& circles, std::size_t a, std::size_t b) {
                          circles.radius[a], circles.radius[b]);
 }
 
-/// The sort key of contacts.
+/// Returns the identity of a body, by which contacts are sorted.
 std::uint32_t identity_of(const Circles& circles, std::uint32_t body) {
     return body & box_bit ? body : circles.id[body];
 }

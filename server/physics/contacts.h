@@ -52,8 +52,8 @@ class Contacts {
     std::vector<std::vector<Contact>> found_in_block_; // per block of circles; kept between ticks
     std::vector<Contact> found_with_boxes_;
     std::vector<Contact> left_;
-    base::Column<std::uint32_t> first_of_circle_, first_of_box_; // the least identity among the body's contacts;
-                                                                 // no_identity if there is none
+    // Per body: the least identity of the other bodies in its unresolved contacts; no_identity if there are none.
+    base::Column<std::uint32_t> first_of_circle_, first_of_box_;
 };
 
 } // namespace evod::physics

@@ -20,13 +20,15 @@ struct Integration {
     float velocity_kept = 1; // factor by which damping multiplies every velocity in a tick
 };
 
-/// damping_rate  1/s, >= 0: after t seconds the share e^(−rate·t) of a velocity is left.
+/// Returns the constants of a tick.
+///
+/// damping_rate  in 1/s, >= 0: after t seconds the share e^(−damping_rate·t) of a velocity is left.
 Integration integration(Integrator integrator, double tick_s, double damping_rate);
 
-/// The damping rate, 1/s, that leaves the share `share_kept` of a velocity after 1/60 s; share_kept in (0, 1].
+/// Returns the damping rate, 1/s, that leaves the share `share_kept` of a velocity after 1/60 s; share_kept in (0, 1].
 double damping_rate(double share_kept);
 
-/// The velocity after acceleration and damping.
+/// Returns the velocity after acceleration and damping.
 inline float accelerate(const Integration& i, float velocity, float acceleration) {
     return (velocity + acceleration * i.tick_s) * i.velocity_kept;
 }

@@ -1,4 +1,4 @@
-// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
+// This file is a kernel: it is compiled once for each instruction set. base/lanes.h describes what it may include.
 #include "server/physics/motion_kernels.h"
 
 #include "server/base/lanes.h"

@@ -9,7 +9,7 @@
 
 namespace evod::physics {
 
-/// Columns as in Circles, padded to full vectors.
+/// Pointers to the columns of Circles and to others of the same length, padded to full vectors.
 struct MotionColumns {
     std::int32_t *x, *y;
     float *velocity_x, *velocity_y;
@@ -44,10 +44,11 @@ struct MotionKernels {
     /// Limits speeds, and applies velocities to positions. Moves circles that are beyond a wall back inside;
     /// bounces them off the wall if they still move outward.
     MoveCounts (*move)(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules);
-    // begin is a multiple of lanes_max. Up to lanes_max − 1 void circles beyond `end` are processed too.
+    // Kernels process whole vectors: `begin` must be a multiple of lanes_max, and up to lanes_max − 1 circles after
+    // `end`, which are padding, are processed too.
 };
 
-/// The kernels for the instructions in use (base/instructions.h).
+/// Returns the kernels for the instruction set in use (base/instructions.h).
 const MotionKernels& motion_kernels();
 
 } // namespace evod::physics

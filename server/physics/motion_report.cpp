@@ -15,7 +15,7 @@ double rounded_for_sums(double x) {
     return std::rint(x * parts) / parts;
 }
 
-/// extent_of(i)  returns the radius or least half side of body i, px.
+/// Adds the motion of `count` bodies to `report`. extent_of(i) must return the radius or least half side of body i, px.
 template <class ExtentOf>
 void add_motion(MotionReport& report, const Bodies& bodies, std::size_t count, double tick_s, ExtentOf&& extent_of) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ void add_overlap(MotionReport& report, double depth, double extent) {
     report.deepest_overlap_share = std::max(report.deepest_overlap_share, depth / extent);
 }
 
-/// How far a body extends beyond the walls along one axis, px.
+/// Returns how far a body extends beyond the walls along one axis, px.
 double beyond(Coordinate position, float extent_px, Coordinate size) {
     const Coordinate extent = to_units(extent_px); // rounded as in the test against walls
     return to_px(std::max({extent - position, position + extent - size, 0}));

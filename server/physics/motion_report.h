@@ -13,20 +13,19 @@
 
 namespace evod::physics {
 
+/// The motion of all bodies. The extent of a body is its radius or its least half side.
 struct MotionReport {
     std::uint32_t body_count = 0;              // bodies that can move
     double kinetic_energy = 0;                 // kg px²/s²
     double momentum_x = 0, momentum_y = 0;     // kg px/s
     std::uint32_t touching_count = 0;          // pairs of bodies, at least one of which can move
     double deepest_overlap_px = 0;             // greatest overlap of two bodies, or of a movable body and a wall
-    double deepest_overlap_share = 0;          // greatest overlap as a share of the smaller body's radius or least half
-                                               // side
-    double fastest_px_s = 0, fastest_step = 0; // fastest_step: greatest movement in a tick as a share of the body's
-                                               // radius or least half side
+    double deepest_overlap_share = 0;          // greatest overlap, as a share of the smaller body's extent
+    double fastest_px_s = 0, fastest_step = 0; // fastest_step: greatest movement in a tick, as a share of the extent
     double strip_px = 0;                       // height of the strips in which contacts are searched
 };
 
-/// near  the near pairs of these bodies; may be stale.
+/// Measures the motion of all bodies. `near` contains their near pairs, and may be stale.
 MotionReport report_motion(const Circles& circles, const Boxes& boxes, const Area& area, double tick_s,
                            const NearPairs& near);
 

@@ -23,7 +23,7 @@ constexpr std::size_t padded(std::size_t size) {
 
 class Reordering {
   public:
-    /// order  indices into the columns, none of them twice.
+    /// order  the indices of the elements to keep, in their new order; each at most once.
     /// spare  working memory, shared by all columns; owned by the caller.
     Reordering(std::span<const std::uint32_t> order, base::Column<std::uint32_t>& spare, base::Executor& executor)
         : order_{order}, spare_{spare}, executor_{executor} {}

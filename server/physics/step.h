@@ -33,7 +33,7 @@ struct StepCounts {
 
 class Stepper {
   public:
-    /// Performs one tick. force: the force on each circle, padded like the columns.
+    /// Performs one tick. `force` contains the force on each circle, padded like the columns.
     StepCounts step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                     const Forces& force, base::Executor& executor);
 
@@ -49,9 +49,9 @@ class Stepper {
     void accelerate(Circles& circles, std::size_t block, const Forces& force);
     /// Applies damping and bounces off walls to the boxes, and finds their contacts; then resolves all contacts.
     void collide(Circles& circles, Boxes& boxes, base::Executor& executor);
-    /// Velocities → positions for one block of circles. Blocks may be processed in parallel.
+    /// Moves one block of circles by their velocities. Blocks may be processed in parallel.
     void move(Circles& circles, std::size_t block);
-    /// Velocities → positions for the boxes.
+    /// Moves the boxes by their velocities.
     StepCounts finish(Boxes& boxes);
 
   private:

@@ -16,7 +16,8 @@ ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key
             .pair_key = key.pair_key()};
 }
 
-/// Copies of the columns of a few bodies. Columns that are not set are not read.
+/// Copies of the columns of a few organisms, for OrganismKernels::predict(), which does not read the columns that are
+/// nullptr here.
 struct FewOrganisms {
     static constexpr std::size_t room = physics::circles_per_block;
     struct View {

@@ -31,7 +31,7 @@ struct BehaviourRules {
     float force_per_unit;  // kg px/s² per gene unit
 };
 
-/// Pointers to the columns that kernels process. Valid until a column grows or is reordered.
+/// Returns pointers to the columns that kernels process. The pointers are valid until a column grows or is reordered.
 OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
                                  const Items& poison);
 
@@ -49,13 +49,13 @@ void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules
 struct Intention {
     Choice choice = Choice::None;                   // None: the organism is dead or has no body
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; the organism's own position if it
-                                                    // wanders
+    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; if it wanders, its own position
 };
 
 /// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.
-/// None of the bodies may be void.
-/// intentions  shape (bodies_asked).
+/// `bodies_asked` must contain no placeholders of dead organisms.
+///
+/// intentions  receives one Intention for each element of bodies_asked.
 void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                         const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
                         std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);

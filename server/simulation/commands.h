@@ -15,19 +15,19 @@
 
 namespace evod::simulation {
 
-/// The permanent identity of a run: a random number, drawn outside the core whenever a world is created, forked or
-/// reset. Not part of the state.
+/// The permanent identity of a run: a random number that is drawn outside the core whenever a world is created, forked
+/// or reset. It is not part of the world's state.
 struct RunId {
     std::uint64_t high = 0, low = 0;
     friend bool operator==(const RunId&, const RunId&) = default;
 };
 
-/// 32 lower-case hexadecimal digits.
+/// Returns the id as 32 lower-case hexadecimal digits.
 std::string to_text(const RunId& id);
-/// The id as 16 bytes, most significant first.
+/// Returns the id as 16 bytes, most significant byte first.
 std::string to_bytes(const RunId& id);
 
-/// Simulated seconds per second, 0.001 to 10,000; nullopt: as fast as possible.
+/// The speed of a world in simulated seconds per second, 0.001 to 10,000; nullopt: as fast as possible.
 using Speed = std::optional<double>;
 constexpr double speed_min = 0.001, speed_max = 10'000;
 
@@ -37,8 +37,7 @@ struct CreateWorld {
     base::Seed seed;
     RunId run_id;
     FirstPopulation first_population = {}; // valid for these parameters
-    parameters::Schedule schedule = {};    // valid: faults_of() returns nothing; generation 1 has the values of
-                                           // `parameters`
+    parameters::Schedule schedule = {};    // without faults (faults_of()); generation 1 as in `parameters`
 };
 struct DeleteWorld {
     std::string world;
@@ -58,8 +57,9 @@ struct RunUntilTick {
 };
 struct ReleaseLease {
     std::string world;
-    std::optional<std::uint64_t> lease = {}; // RunControl::lease at the time when the lease was granted or extended;
-                                             // refused if it has changed since. nullopt: release any lease
+    // The value of RunControl::lease when the lease was granted or extended. The command is refused if that value has
+    // changed since. nullopt: releases any lease.
+    std::optional<std::uint64_t> lease = {};
 };
 struct Pause {
     std::string world;
@@ -88,8 +88,8 @@ struct CancelChange {
 struct ForkWorld {
     std::string world; // the world to fork
     std::string name;  // name of the new world; as in CreateWorld
-    // The new world starts at the first moment of this generation of the original; nullopt: from its present state.
-    // Earlier generations exist only in a run file.
+    // The fork starts at the first moment of this generation of `world`, which must be stored in a run file; nullopt:
+    // the fork starts at the present state of `world`.
     std::optional<std::uint64_t> at_generation;
     RunId run_id;
 };

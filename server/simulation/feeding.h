@@ -24,15 +24,15 @@ struct Touch {
 
 class Feeding {
   public:
-    /// Prepares for `blocks` blocks. Each block clears its touches when it is searched.
+    /// Prepares a search of `blocks` blocks. find_touches() clears the previous touches of its block.
     void begin(std::size_t blocks);
 
-    /// Finds the touches of a block; blocks may be searched in parallel. `at_items` contains every body of the block
-    /// that touches an item, and may contain other bodies.
+    /// Finds which bodies of a block touch items. Blocks may be searched in parallel. `at_items` must contain every
+    /// body of the block that touches an item; it may contain other bodies.
     void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
                       const Items& items);
 
-    /// Decides which body gets each item, over all blocks. Returns the number of items touched.
+    /// Decides which body gets each item, after all blocks have been searched. Returns the number of touched items.
     std::size_t award();
 
     std::span<const Touch> touches(std::size_t block) const { return touches_of_block_[block]; }

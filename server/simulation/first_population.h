@@ -11,11 +11,11 @@
 
 namespace evod::simulation {
 
-/// One matrix per island; nullptr: chromosomes are drawn from the seed. Shared, because it is never changed and may be
-/// large.
+/// The chromosomes of the first generation, one matrix per island; nullptr: they are drawn from the seed. Worlds share
+/// the matrices, which never change and may be large.
 using FirstPopulation = std::shared_ptr<const std::vector<evolution::GeneMatrix>>;
 
-/// Whether two first populations have equal genes; 0 and −0 are equal.
+/// Returns whether two first populations have equal genes; 0 and −0 are equal.
 bool same(const FirstPopulation& a, const FirstPopulation& b);
 
 /// Returns why a world with these parameters cannot begin with this population: a wrong number of islands or organisms,

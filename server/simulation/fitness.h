@@ -5,11 +5,11 @@
 
 namespace evod::simulation {
 
-/// The sum of the genes: greatest with every gene at its upper bound.
+/// Returns the sum of the genes, which is greatest if every gene is at its upper bound.
 double gene_sum(const evolution::Chromosome& genes);
 
-/// −(10 n + Σ (x² − 10 cos 2πx)) with x = (gene − 150)/25 for each of the n genes: 0 if every gene is 150, with a local
-/// maximum near every 25 gene units.
+/// Returns −(10 n + Σ (x² − 10 cos 2πx)) with x = (gene − 150)/25 for each of the n genes: 0 if every gene is 150, with
+/// a local maximum near every 25 gene units.
 /// Source  Rastrigin 1974; Mühlenbein, Schomisch & Born 1991, "The parallel genetic algorithm as function optimizer".
 double rastrigin(const evolution::Chromosome& genes);
 

@@ -12,7 +12,7 @@
 namespace evod::simulation {
 namespace {
 
-// Kinds of entities in the state hash, besides organisms. The numbers determine the hashes of every run.
+// The kinds of entities in the state hash, except organisms. The hashes of every run depend on these numbers.
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
@@ -452,7 +452,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         return wrong("number of crates");
     }
 
-    // Speeds were limited when the tick ended, except for rounding.
+    // Every tick limits the speeds at its end, so a greater speed can only be a rounding error.
     const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
     const auto can_move = [&](const auto& body) {
         return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&

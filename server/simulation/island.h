@@ -5,7 +5,8 @@
 // positions → deaths → hash.
 //
 // Organisms are stored strip by strip, in the order of their positions, so that neighbours share cache lines. They are
-// sorted again from time to time as they move. Dead organisms leave void bodies until the next sorting.
+// sorted again from time to time as they move. Until the next sorting, a dead organism leaves a void body: an immovable
+// placeholder that touches nothing.
 //
 // Owner        World. Islands share nothing, so a world advances them in parallel.
 // Threads      a tick is two loops over blocks of organisms. Work that concerns single organisms runs between and after
@@ -42,11 +43,12 @@ class Island {
   public:
     Island(base::Seed seed, std::uint32_t index) : seed_{seed}, index_{index} {}
 
-    /// Replaces everything: new organisms grown from `bred`, food, poison, obstacles and crates.
+    /// Replaces everything on the island. Creates the organisms whose chromosomes are in `bred`, and places food,
+    /// poison, obstacles and crates.
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
-    /// tick  the tick within the generation; 1 for the first.
+    /// Performs one tick. `tick` is its number within the generation, from 1.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
     IslandShape shape() const;
@@ -57,24 +59,25 @@ class Island {
     /// Sets the island to a state that check() has accepted.
     void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
 
-    /// Fitness of every organism, by id, at the end of tick `tick` of the generation: seconds lived + health at the
-    /// end, or the function of the chromosome.
+    /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: seconds lived + health, or
+    /// a function of the chromosome alone.
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
-    /// What organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before it. The
-    /// choice is None for dead organisms and on islands without bodies.
+    /// Predicts what organisms [ids.begin, ids.end) will do in `tick` of the generation if no item reappears before
+    /// that tick. The choice is None for dead organisms and on islands without bodies.
     std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                       base::Range ids) const;
 
-    /// The index in bodies() of a living organism; nullopt if it is dead.
+    /// Returns the index in bodies() of the organism with this id; nullopt if the organism is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
     /// The index in bodies() of every organism born in this generation, by id; no_body for the dead. Empty if there are
     /// no bodies.
     std::span<const std::uint32_t> bodies_by_id() const { return body_of_; }
     static constexpr std::uint32_t no_body = ~0U;
 
-    /// How fast living organisms and crates move, and how deeply they overlap; all zeros if there are no bodies.
+    /// Measures how fast living organisms and crates move, and how deeply they overlap; all zeros if there are no
+    /// bodies.
     physics::MotionReport motion_report(const parameters::Parameters& parameters) const;
 
     std::uint32_t index() const { return index_; }
@@ -84,7 +87,7 @@ class Island {
 
     std::uint32_t alive_count() const { return alive_count_; }
     const Living& living() const { return living_; } // indexed by body
-    /// The circles of the living organisms, in any order; void bodies for dead organisms.
+    /// The circles of the living organisms, in any order, and placeholders (void circles) of dead organisms.
     const physics::Circles& bodies() const { return bodies_; }
     const physics::Boxes& boxes() const { return boxes_; } // first the crates, then the obstacles
     std::uint32_t crate_count() const { return crate_count_; }
@@ -96,7 +99,7 @@ class Island {
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
-    /// All live statistics except health_mean, which would need a loop over all organisms.
+    /// Returns all live statistics except health_mean, which would need a loop over all organisms.
     LiveStatistics live_counts() const;
 
   private:
@@ -105,7 +108,7 @@ class Island {
     void reorder(base::Executor& executor);
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
     void move(std::size_t block);
-    /// Returns the hash of the living organisms.
+    /// Lets organisms eat, and removes the organisms that die. Returns the hash of the living organisms.
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
     base::StateHash hash_of_boxes() const;

@@ -131,7 +131,8 @@ void Items::choose_cells(std::uint32_t count) {
     columns_ = cells(area_.width);
     rows_ = cells(area_.height);
     const std::size_t cell_count = std::size_t{rows_} * columns_;
-    // Room for overflow buckets. It is enough for evenly distributed items; obstacles may crowd items together.
+    // Reserves room for overflow buckets. It is enough for evenly distributed items; obstacles may crowd items
+    // together.
     const std::size_t room = cell_count + cell_count / 16 + 16;
     buckets_.reserve(room + 1);
     items_.reserve(room);
@@ -143,7 +144,8 @@ void Items::choose_cells(std::uint32_t count) {
     counts_.assign(cell_count, 0);
     spare_.clear();
     spare_.reserve(room - cell_count);
-    // Enough for the items that disappear and reappear in a tick, unless organisms eat nearly all items at once.
+    // Reserves enough for the items that disappear and reappear in a tick, unless organisms eat nearly all items at
+    // once.
     const std::size_t events = count / 16 + 64;
     changes_.reserve(2 * events);
     due_.reserve(events);
@@ -224,7 +226,7 @@ void Items::insert(std::uint32_t item, std::uint32_t cell) {
 }
 
 void Items::take_out(std::uint32_t item, std::uint32_t place) {
-    // Other removals may have moved the item.
+    // Earlier removals may have moved the item to another place of its cell.
     std::uint32_t holder = place / slots, slot = place % slots;
     const std::uint32_t cell = holder < std::size_t{rows_} * columns_ ? holder : cell_of(item);
     if (items_[holder][slot] != item || slot >= counts_[holder]) {

@@ -41,8 +41,8 @@ class Items {
     void begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
                           const physics::Area& area, const BoxGrid& obstacles, base::Executor& executor);
 
-    /// Places new items at the given places, shape (rules.count). Reappearing items use the draws of island 0,
-    /// generation 1.
+    /// Places new items at `places`, which has rules.count elements. Reappearing items use the random draws of island
+    /// 0, generation 1.
     void begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
                   base::Executor& executor);
 
@@ -51,8 +51,8 @@ class Items {
         std::uint32_t due_tick;   // 0: present; otherwise the tick at whose beginning it reappears
         friend bool operator==(const Item&, const Item&) = default;
     };
-    /// Returns why `items` cannot be the items after `tick` of the generation; nullptr if they can. resting: items no
-    /// longer reappear, even if they are due.
+    /// Returns why `items` cannot be the items after `tick` of the generation; nullptr if they can. If `resting` is
+    /// true, items no longer reappear, even if they are due.
     const char* fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const;
     /// Sets the items; fault_of() must have accepted them.
     void restore(std::span<const Item> items, base::Executor& executor);
@@ -60,15 +60,15 @@ class Items {
     /// Lets the items that are due at the beginning of `tick` reappear, each at a new random place.
     void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
 
-    /// Removes a present item during `tick`.
+    /// Removes an item that an organism eats in `tick`. The item must be present.
     void consume(std::uint32_t item, std::uint32_t tick);
 
     // set_due() and take_out() are the two parts of consume(), for many items.
-    /// Sets when the item is present again. May be called in parallel for different items. Returns the change of the
-    /// hash.
+    /// Sets the tick at which an item that is eaten in `tick` reappears. Several threads may call this function for
+    /// different items. Returns the change of the hash.
     base::StateHash set_due(std::uint32_t item, std::uint32_t tick);
-    /// Removes an item from the grid. Only one thread may call it at a time. place: the place of the item before any
-    /// item was removed in this tick.
+    /// Removes an item from the grid. Only one thread at a time may call this function. `place` is the place of the
+    /// item before any item was removed in this tick.
     void take_out(std::uint32_t item, std::uint32_t place);
     void add_to_hash(const base::StateHash& change) { hash_ += change; }
     /// Prefetches the memory that take_out() reads.
@@ -81,24 +81,25 @@ class Items {
     /// Prefetches the item that set_due() writes.
     void prefetch_item(std::uint32_t item) const { __builtin_prefetch(&all_[item], 1); }
 
-    /// Prefetches the memory that a query at (x, y) reads.
+    /// Prefetches the memory that a query at (x, y) will read.
     void prefetch(physics::Coordinate x, physics::Coordinate y) const {
         __builtin_prefetch(&bucket(row_at(y) * columns_ + column_at(x)));
     }
 
-    /// The nearest item whose centre is at most `radius` px from (x, y), and a lower bound on the distance of all other
-    /// items.
+    /// Returns the nearest item whose centre is at most `radius` px from (x, y), and a lower bound on the distance of
+    /// all other items.
     TwoNearest two_nearest(physics::Coordinate x, physics::Coordinate y, float radius) const {
         TwoNearest found;
         const ItemQuery query{x, y, radius};
         items_kernels().two_nearest(grid(), &query, &found, 1);
         return found;
     }
-    /// The item at a TwoNearest::place.
+    /// Returns the item at `place`, a TwoNearest::place; `none` if that is none.
     std::uint32_t item_at(std::uint32_t place) const {
         return place == none ? none : items_[place / slots][place % slots];
     }
-    /// The grid in the form that items_kernels() read, for many queries. Valid until an item is added.
+    /// Returns the grid in the form that items_kernels() read, for many queries. The result is valid until an item is
+    /// added.
     ItemGrid grid() const;
 
     /// Calls found(item, its place, square of the distance) for every item whose centre is at most `radius` px from (x,
@@ -149,7 +150,7 @@ class Items {
     template <class PlaceOf>
     void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
                base::Executor& executor, PlaceOf&& place_of);
-    /// item_of(id)  returns the current state of an item.
+    /// Replaces all items. item_of(id) must return the new state of an item.
     template <class ItemOf>
     void put_all(base::Executor& executor, ItemOf&& item_of);
     void choose_cells(std::uint32_t count);

@@ -1,4 +1,4 @@
-// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
+// This file is a kernel: it is compiled once for each instruction set. base/lanes.h describes what it may include.
 #include "server/simulation/items_kernels.h"
 
 #include "server/base/lanes.h"
@@ -21,7 +21,7 @@ T greatest(T a, T b) {
     return a < b ? b : a;
 }
 
-/// to − from. For empty slots the subtraction may wrap around, but the result is still a large distance.
+/// Returns to − from. For empty slots the subtraction may wrap around, but the result is still a large distance.
 Floats distances(std::int32_t from, const std::int32_t* to) {
     return to_floats((Integers)(load<Words>(to) - static_cast<std::uint32_t>(from)));
 }
@@ -58,7 +58,7 @@ class Search {
         }
     }
 
-    /// Tests the buckets of a cell after the first.
+    /// Tests all buckets of a cell except its first bucket.
     void look_at_overflow(std::uint32_t cell) {
         // The positions are already loaded. Testing them avoids reading grid_.next for most buckets.
         for (std::uint32_t b = cell;
@@ -84,8 +84,8 @@ class Search {
         }
     }
 
-    /// The squared distance of the second nearest item so far, units²; greater than any possible value if there is
-    /// none.
+    /// Returns the squared distance of the second nearest item so far, units²; greater than any possible distance if
+    /// there is no such item.
     float others_square() const {
         const float best = least_lane(best_);
         const Floats without_best = best_ == best ? all_lanes(__FLT_MAX__) : best_;
@@ -110,8 +110,8 @@ class Search {
     }
 
   private:
-    /// For the rare case of several items at the same distance: finds the one with the lowest id. Searches all cells
-    /// within that distance, item by item.
+    /// Finds the item with the lowest id among several items at the same distance. This case is rare, so the function
+    /// searches all cells within that distance, item by item.
     std::uint32_t lowest_id_at(float square, std::uint32_t place) const;
 
 #if EVOD_LANES == 8

@@ -29,8 +29,9 @@ struct ItemGrid {
 };
 
 struct TwoNearest {
-    std::uint32_t place; // bucket of the nearest item · ItemBucket::slots + its slot; of equally near items, the one
-                         // with the lowest id; no_item if there is none
+    // The bucket of the nearest item, times ItemBucket::slots, plus its slot; no_item if there is none. Of equally near
+    // items, the one with the lowest id.
+    std::uint32_t place;
     std::int32_t x, y;   // its position; void_position if there is none
     float square;        // its squared distance, px²; radius² if there is none
     float others_square; // lower bound on the squared distance of all other items, px²; at most radius²
@@ -50,7 +51,7 @@ struct ItemsKernels {
     void (*two_nearest)(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count);
 };
 
-/// The kernels for the instructions in use (base/instructions.h).
+/// Returns the kernels for the instruction set in use (base/instructions.h).
 const ItemsKernels& items_kernels();
 
 } // namespace evod::simulation

@@ -12,7 +12,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-/// The number of generations of the run that have ended.
+/// Returns how many generations of the run have ended.
 std::uint64_t generations_over(const World& world) {
     return world.moment().generation - (world.generation_over() ? 0 : 1);
 }
@@ -64,7 +64,7 @@ std::string ids_of(const std::vector<parameters::PlannedChange>& planned) {
     return ids.empty() ? "none: nothing is planned" : ids;
 }
 
-/// Why the change cannot be planned; nullopt if it can.
+/// Returns why the change cannot be planned; nullopt if it can.
 std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& command) {
     std::vector<base::Violation> violations;
     const parameters::PlannedMoment& at = *command.at;
@@ -319,7 +319,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
             return *refused;
         }
     }
-    // A replay needs no lease: it belongs to the client that opened it.
+    // A replay needs no lease, because a replay belongs to the client that opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased) {
         ++entry.control.lease;

@@ -23,7 +23,7 @@ constexpr std::size_t worlds_max = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
-/// The goals of a world and its requested speed.
+/// The run control of a world: its goals, pause and requested speed.
 struct RunControl {
     bool endless = false;                          // run without end; excludes until_generation
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended
@@ -72,20 +72,21 @@ struct Entry {
     std::optional<Replay> replay = std::nullopt;   // nullopt: a live world; otherwise the world is a replay
     std::optional<Storage> storage = std::nullopt; // nullopt: the world's run is not stored
 
-    /// Whether this is a replay whose original world is in the laboratory. Such a replay is found only by its own name.
+    /// Returns whether this is a replay whose original world is in the laboratory. find() finds such a replay only by
+    /// its own name.
     bool replays_another_world() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
-    /// Whether the world should advance: a goal has not been reached, and the world is not paused.
+    /// Returns whether the world should advance: it has a goal that it has not reached, and it is not paused.
     bool wants_tick() const;
 };
 
 /// The result of a command.
 struct Applied {
     std::string world;
-    std::uint64_t tick = 0;                             // the change holds from this tick on
-    std::optional<parameters::ParameterSet> parameters; // SetParameters: the complete set after the change; after a dry
-                                                        // run, the set that would result
+    std::uint64_t tick = 0; // the change holds from this tick on
+    // SetParameters: the complete set after the change; after a dry run, the set that would result.
+    std::optional<parameters::ParameterSet> parameters;
     // SetParameters: the planned change, with id 0 after a dry run. CancelChange: the cancelled change.
     std::optional<parameters::PlannedChange> planned = std::nullopt;
 };
@@ -102,7 +103,7 @@ class Laboratory {
     void dismiss(std::string_view name) {
         std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
     }
-    /// Adds `world` as a fork. Refused in the same cases as CreateWorld.
+    /// Adds `world` as a fork. Refuses the command in the cases in which CreateWorld is refused.
     base::Result<Applied> fork(const ForkWorld& command, World world);
 
     /// Sets the storage state of all live worlds, including those created later. The simulation loop calls it, so that
@@ -113,18 +114,18 @@ class Laboratory {
     /// Advances a world that wants a tick by one tick, and removes the goals that it has reached.
     void advance(Entry& entry, base::Executor& executor);
 
-    /// The world with that name. An empty name means the only world or, if there are several, the world `default`. If
-    /// no world is found: a refusal NOT_FOUND that lists the existing names.
+    /// Returns the world with that name. An empty name means the only world or, if there are several, the world
+    /// `default`. If no world is found: a refusal NOT_FOUND that lists the existing names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 
-    /// Whether there are worlds_max worlds; replays of other worlds do not count.
+    /// Returns whether the laboratory has worlds_max worlds, not counting replays whose original world is in it.
     bool is_full() const;
 
     /// The worlds, in order of creation.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
 
-    /// The events since the last call, in order.
+    /// Returns and removes the events since the last call, oldest first.
     std::vector<Event> take_events() { return std::exchange(events_, {}); }
 
   private:
@@ -141,7 +142,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
-    /// Why no world of that name can be created; nullopt if one can.
+    /// Returns why no world with that name can be created; nullopt if one can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;
     void collect_events(Entry& entry);

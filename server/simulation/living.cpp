@@ -20,7 +20,7 @@ void for_each_column(Living& living, F&& visit) {
     visit(living.poison_radius, 0.0f);
 }
 
-/// Health lost per tick: the rate times 1 + the costs of the genes, never below 0.
+/// Returns the health lost per tick: the rate times 1 + the costs of the genes, never below 0.
 float loss_per_tick(const evolution::Chromosome& genes, const parameters::Parameters& p) {
     const auto share = [&](evolution::Gene gene) { return static_cast<double>(genes(gene)) / 100; };
     const auto square = [](double x) { return x * x; };

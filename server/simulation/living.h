@@ -15,9 +15,9 @@ namespace evod::simulation {
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
 
 /// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
-/// of physics::Circles, void bodies included.
+/// of physics::Circles, including placeholders of dead organisms (void bodies).
 struct Living {
-    base::Column<float> health;                     // −infinity for void bodies
+    base::Column<float> health;                     // −infinity for placeholders of dead organisms
     base::Column<float> loss_per_tick;              // health that a tick of life costs
     base::Column<float> normal_speed, impulse;      // gene units
     base::Column<float> food_radius, poison_radius; // px; how far the organism perceives
@@ -30,10 +30,10 @@ struct Living {
     void reorder(const physics::Reordering& reordering);
 };
 
-/// The limit above which a meal cannot raise health; infinite if there is none.
+/// Returns the limit above which a meal cannot raise health; infinity if there is no limit.
 float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& parameters);
 
-/// Radius and mass of the body grown from a chromosome, px and kg.
+/// The radius and mass of an organism's body, which its gene body_size determines.
 struct BodyShape {
     float radius_px, mass_kg;
 };
@@ -41,7 +41,7 @@ BodyShape body_shape(float body_size_gene, const parameters::Parameters& paramet
 
 /// The kind of organisms in the state hash.
 constexpr std::uint32_t organism_hash_kind = 1;
-/// An organism's part of the state hash; organism_kernels().hash computes many at once.
+/// Returns an organism's part of the state hash. organism_kernels().hash computes the parts of many organisms at once.
 base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body);
 
 /// What happened to each organism that was born, by id.

@@ -1,4 +1,4 @@
-// A kernel, compiled once for each set of instructions. base/lanes.h describes what it may include.
+// This file is a kernel: it is compiled once for each instruction set. base/lanes.h describes what it may include.
 #include "server/simulation/organism_kernels.h"
 
 #include "server/base/hash_lanes.h"
@@ -17,7 +17,7 @@ void append(FoundIndices& found, std::size_t begin, unsigned bits) {
     }
 }
 
-/// to − from, px; see physics::distance_px.
+/// Returns to − from in px, like physics::distance_px().
 Floats distances(Integers from, Integers to) {
     return to_floats((Integers)((Words)to - (Words)from)) * physics::px_per_unit;
 }
@@ -43,7 +43,8 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
     return {dx, dy, dx * dx + dy * dy};
 }
 
-/// If `predicting`, health is not subtracted, and the choices are written to `choices`.
+/// Chooses the forces of organisms. If `predicting` is true, health is not subtracted, and `choices` receives the
+/// choices.
 template <bool predicting>
 inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                         float* force_x, float* force_y, std::int32_t* choices) {
@@ -133,7 +134,7 @@ void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
 
 HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
                FoundIndices& dying) {
-    HashSums sums;
+    HashSumsPerLane sums;
     const std::uint32_t kind_key = kind * 0x85ebca6bu;
     for (std::size_t i = begin; i < end; i += lanes) {
         const Floats health = load<Floats>(columns.health + i);

@@ -9,7 +9,7 @@
 
 namespace evod::simulation {
 
-/// The views of organisms on the items of one kind (perception.h).
+/// What organisms know about the items of one kind: their views, which perception.h describes.
 struct ViewColumns {
     float* others;       // every item except the nearest is at least this far away, px
     std::int32_t *x, *y; // position of the nearest item
@@ -17,13 +17,14 @@ struct ViewColumns {
     float item_radius;   // px
 };
 
-/// Columns by body index, padded to full vectors, void bodies included (physics::Circles).
+/// The columns of organisms, by the index of the body (physics::Circles). They include placeholders of dead organisms,
+/// and are padded to full vectors.
 struct OrganismColumns {
     const std::int32_t *x, *y;
     const float *velocity_x, *velocity_y;
     const float* body_radius;
     const std::uint32_t* id;
-    float* health; // −infinity for void bodies
+    float* health; // −infinity for placeholders of dead organisms
     const float *loss_per_tick, *normal_speed, *impulse;
     std::int32_t *seen_x, *seen_y; // where the organism was when its views were last updated
     ViewColumns food, poison;
@@ -43,7 +44,7 @@ struct FoundIndices {
     std::size_t count = 0;
 };
 
-/// What an organism does in a tick. The numbers are those of the protocol.
+/// What an organism does in a tick. The protocol uses the same numbers.
 enum class Choice : std::uint8_t { None, Wander, Seek, Flee };
 
 struct HashWords {
@@ -51,12 +52,12 @@ struct HashWords {
 };
 
 struct OrganismKernels {
-    // In every kernel, `begin` must be a multiple of physics::lanes_max. Up to lanes_max − 1 void bodies beyond `end`
-    // are processed too.
+    // Kernels process whole vectors: `begin` must be a multiple of physics::lanes_max, and up to lanes_max − 1 elements
+    // after `end`, which are padding, are processed too.
 
-    /// Finds the organisms whose view is stale: others < 0.
+    /// Finds the organisms whose view is stale, which means that their element of `others` is negative.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
-    /// Subtracts the health that a tick costs; then chooses forces from current views: see behaviour.h.
+    /// Subtracts the health that a tick costs, and chooses forces by the rules of behaviour.h. Views must not be stale.
     /// force_x, force_y  forces on the organisms from `begin` on, padded; kg px/s². Element 0 is for organism `begin`.
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                    float* force_x, float* force_y);
@@ -75,7 +76,7 @@ struct OrganismKernels {
                       FoundIndices& dying);
 };
 
-/// The kernels for the instructions in use (base/instructions.h).
+/// Returns the kernels for the instruction set in use (base/instructions.h).
 const OrganismKernels& organism_kernels();
 
 } // namespace evod::simulation

@@ -26,8 +26,8 @@ namespace {
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
 constexpr float needs_search = -1;
-// The view of a void body: the body has void_position, and the stored item is at 0. Their distance is finite, so
-// arithmetic with it is harmless.
+// The view of a void body, the placeholder of a dead organism: the body has void_position, and the stored item is at 0.
+// Their distance is finite, so arithmetic with it is harmless.
 constexpr float never = 1e30f;
 constexpr Coordinate far_from_void = 0;
 
@@ -36,7 +36,7 @@ float search_radius(float radius, float body_radius, float item_radius) {
     return reach + std::max(reach / 4, least_skin_px);
 }
 
-/// Slightly less than a distance, to allow for rounding of distances and positions.
+/// Returns slightly less than `distance`, to allow for rounding of distances and positions.
 float safely_below(float distance) {
     return distance - (distance * 1e-6f + 0.002f);
 }
@@ -135,8 +135,8 @@ void Perception::notice(View& view, const Circles& bodies, const physics::NearPa
 std::size_t Perception::notice(View& view, const Circles& bodies, const physics::NearPairs& near,
                                const base::Column<float>& radius, std::span<const Items::Change> changes,
                                std::size_t affected_max) {
-    // A change may be anywhere, so memory is prefetched well before it is read: first the start of a stretch's list,
-    // then the list, then the bodies.
+    // Changed items are scattered over the island, so memory is prefetched well before it is read: first where the list
+    // of a stretch begins, then the list, then the bodies.
     struct Near {
         const Items::Change* change;
         physics::Strips::Stretch stretch;

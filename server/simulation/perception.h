@@ -42,10 +42,10 @@ class Perception {
                        Items& poison, base::Executor& executor);
 
     void reorder(const physics::Reordering& reordering);
-    /// Must be called when a body becomes void.
+    /// Forgets what an organism sees. Must be called when it dies and its body becomes void.
     void remove(std::size_t body);
 
-    /// Sets the columns that kernels need.
+    /// Sets the members of `columns` that describe views.
     void add_to(OrganismColumns& columns, const Living& living, const Items& food, const Items& poison);
 
   private:
@@ -69,7 +69,8 @@ class Perception {
     static void finish_search(const Searches& searches, View& view, const Items& items);
     static void notice(View& view, const physics::Circles& bodies, const physics::NearPairs& near,
                        const base::Column<float>& radius, Items& items, base::Executor& executor);
-    /// Returns the number of bodies near the changes. If it exceeds affected_max, not all of them were updated.
+    /// Updates the views of the bodies near `changes`. Returns the number of these bodies. If it exceeds affected_max,
+    /// some views were not updated.
     static std::size_t notice(View& view, const physics::Circles& bodies, const physics::NearPairs& near,
                               const base::Column<float>& radius, std::span<const Items::Change> changes,
                               std::size_t affected_max);

@@ -24,13 +24,13 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  the type that describes the size of a body, stored with its place; 4 or 8 bytes.
+/// What  the type that describes the size of a body; 4 or 8 bytes. The grid stores one What with each place.
 template <class What>
 class PlaceGrid {
   public:
     PlaceGrid() = default;
 
-    /// expected_count  the number of bodies to be placed; there are about five per two cells.
+    /// Creates an empty grid for about expected_count bodies: on average five bodies per two cells.
     PlaceGrid(const physics::Area& area, std::size_t expected_count) {
         const double width = std::max(area.width, 1), height = std::max(area.height, 1);
         const double cells = std::max(static_cast<double>(expected_count) / 2.5, 1.0);
@@ -44,7 +44,7 @@ class PlaceGrid {
 
     void add(Place place, What what) {
         std::size_t cell = std::size_t{rows_.at(place.y)} * columns_.count + columns_.at(place.x);
-        while (cells_[cell].things[slots - 1].place.x != nowhere) {
+        while (cells_[cell].bodies[slots - 1].place.x != nowhere) {
             if (cells_[cell].next == 0) {
                 const auto added = static_cast<std::uint32_t>(cells_.size());
                 cells_.emplace_back();
@@ -52,15 +52,15 @@ class PlaceGrid {
             }
             cell = cells_[cell].next;
         }
-        const auto free = std::find_if(cells_[cell].things.begin(), cells_[cell].things.end(),
-                                       [](const Thing& thing) { return thing.place.x == nowhere; });
+        const auto free = std::find_if(cells_[cell].bodies.begin(), cells_[cell].bodies.end(),
+                                       [](const StoredBody& body) { return body.place.x == nowhere; });
         *free = {place, what};
         ++count_;
     }
 
-    /// Whether condition(place, what) is true for any body whose centre is at most `reach` units from `place` along
-    /// both axes. The condition may also be called for bodies further away, and must be false for a body of size 0 that
-    /// is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
+    /// Returns whether condition(place, what) is true for any body whose centre is at most `reach` units from `place`
+    /// along both axes. The condition may also be called for bodies further away, and must be false for a body of size
+    /// 0 that is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
     template <class Condition>
     bool any_near(Place place, physics::Coordinate reach, const Condition& condition) const {
         const Window window = window_of(place, reach);
@@ -93,14 +93,14 @@ class PlaceGrid {
     // The position of empty slots. It is so far beyond the wall that no radius reaches it, and so near that its
     // difference from any place on an island fits into 32 bits.
     static constexpr physics::Coordinate nowhere = -(1 << 26);
-    struct Thing {
+    struct StoredBody {
         Place place{nowhere, nowhere};
         What what{};
     };
-    static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(Thing);
+    static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(StoredBody);
     struct alignas(64) Cell {
-        std::array<Thing, slots> things; // used slots come first
-        std::uint32_t next = 0;          // the overflow cell; 0: none
+        std::array<StoredBody, slots> bodies; // used slots come first
+        std::uint32_t next = 0;               // the overflow cell; 0: none
     };
     static_assert(sizeof(Cell) == 64);
 
@@ -108,7 +108,7 @@ class PlaceGrid {
     struct Stripes {
         std::uint32_t count = 1;
         physics::Coordinate length = 0;
-        // Stripes per unit, times 2^32.
+        // The number of stripes per unit of length, times 2^32.
         std::uint64_t per_unit = (std::uint64_t{count} << 32) / (static_cast<std::uint64_t>(length) + 1);
 
         std::uint32_t at(physics::Coordinate coordinate) const {
@@ -129,8 +129,8 @@ class PlaceGrid {
     bool any_in(std::size_t cell, const Condition& condition) const {
         do {
             bool found = false;
-            for (const Thing& thing : cells_[cell].things) {
-                found |= condition(thing.place, thing.what);
+            for (const StoredBody& body : cells_[cell].bodies) {
+                found |= condition(body.place, body.what);
             }
             if (found) {
                 return true;

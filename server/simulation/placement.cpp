@@ -15,7 +15,7 @@ using physics::Coordinate;
 // A set of parameters is accepted only if there is room, so running out of attempts means a defect.
 constexpr int tries_max = 1'000'000;
 
-/// Uniform in margin … size − margin.
+/// Draws a coordinate that is uniform in margin … size − margin.
 Coordinate uniform_coordinate(base::RandomStream& random, Coordinate margin, Coordinate size) {
     EVOD_ASSERT(size >= 2 * std::int64_t{margin});
     return margin + static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(size - 2 * margin) + 1));
@@ -26,8 +26,8 @@ Place uniform_place(base::RandomStream& random, Coordinate margin, const physics
     return {x, uniform_coordinate(random, margin, area.height)};
 }
 
-/// The greatest distance, along either axis, between the centre of a body of `half_size_px` and the centre of a body
-/// that touches it. A few units are added, because shape tests round.
+/// Returns the greatest distance, along either axis, between the centre of a body of `half_size_px` and the centre of a
+/// body that touches it. A few units are added, because shape tests round.
 Coordinate reach_of(float half_size_px, float widest_px) {
     return physics::to_units(half_size_px + widest_px) + 2;
 }
@@ -44,7 +44,8 @@ class PlacedCircles {
     bool clear(Place place, float radius) const {
         return grid_.empty() ||
                !grid_.any_near(place, reach_of(radius, widest_px_), [&](Place other, float other_radius) {
-                   // physics::circle_circle without depth and normal, which are not needed here.
+                   // Does the same test as physics::circle_circle(), but without depth and normal, which are not needed
+                   // here.
                    const float dx = physics::distance_px(other.x, place.x), dy = physics::distance_px(other.y, place.y);
                    const float touch = other_radius + radius;
                    return dx * dx + dy * dy <= touch * touch;

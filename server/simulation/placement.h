@@ -37,7 +37,7 @@ class BoxGrid {
     float widest_px_ = 0; // greatest half width or half height
 };
 
-/// A uniform random place for a circle, inside the walls and clear of `boxes`.
+/// Draws a uniform random place for a circle, inside the walls and clear of `boxes`.
 Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
 
 /// The rules of place_boxes(), which places obstacles, then crates that are clear of obstacles and of each other.
@@ -53,11 +53,10 @@ struct PlacedBoxes {
 PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
                         const physics::Area& area);
 
-/// Uniform random places for circles, one after another, clear of walls, `boxes` and each other.
+/// Draws uniform random places for circles, one after another, clear of walls, `boxes` and each other.
 ///
-/// radius_px  shape (count). The caller has checked that bodies and boxes cover at most 0.4 of the area (validate() in
-///            parameters.h).
-/// returns    shape (count).
+/// radius_px  one radius per circle. Bodies and boxes must cover at most 0.4 of the area (validate() in parameters.h).
+/// returns    one place per circle.
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,
                                  base::Executor& executor);

@@ -40,13 +40,13 @@ struct Extremes {
     std::array<float, evolution::gene_count> gene_min, gene_max;
 };
 
-/// One population, processed block by block.
+/// A population, whose organisms are processed block by block.
 struct Population {
     std::span<const double> fitness;
     const evolution::GeneMatrix& genes;
     base::Executor& executor;
 
-    /// The results of `of_block(range)`, in order of blocks.
+    /// Returns the results of of_block(range) for all blocks, in order.
     template <class Result, class OfBlock>
     std::vector<Result> each_block(const OfBlock& of_block) const {
         std::vector<Result> results((fitness.size() + organisms_per_block - 1) / organisms_per_block);
@@ -55,7 +55,7 @@ struct Population {
         return results;
     }
 
-    /// Σ (value − centre)^power, power 1 or 2.
+    /// Returns Σ (value − centre)^power for the fitness and for each gene; power is 1 or 2.
     template <unsigned power>
     Sums sums(const Sums& centre) const {
         const auto raised = [](double difference) { return power == 1 ? difference : difference * difference; };

@@ -30,8 +30,7 @@ struct GenerationStatistics {
     std::uint32_t organism_count = 0;
     double fitness_best = 0, fitness_mean = 0, fitness_median = 0, fitness_worst = 0, fitness_deviation = 0;
     std::array<GeneStatistics, evolution::gene_count> genes;
-    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene whose bounds are equal
-                          // counts 0
+    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); 0 for a gene with equal bounds
     std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint64_t clamp_count = 0;       // genes that were clamped when the generation was bred
@@ -82,7 +81,8 @@ void for_each_number(Statistics&& s, Visit&& visit) {
 
 class Island;
 
-/// The statistics of the generation that has just ended. fitness: shape (organisms), by id.
+/// Computes the statistics of the generation that has just ended. `fitness` contains the fitness of each organism, by
+/// id.
 GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
                                            std::span<const double> fitness, base::Executor& executor);
 
@@ -95,8 +95,8 @@ struct LiveStatistics {
 
 /// Computes LiveStatistics::health_mean.
 ///
-/// health       health of all bodies, in any order; −infinity for void bodies.
-/// alive_count  number of bodies that are not void.
+/// health       health of all bodies, in any order; −infinity for placeholders of dead organisms.
+/// alive_count  number of living organisms.
 double mean_health(std::span<const float> health, std::uint32_t alive_count);
 
 } // namespace evod::simulation

@@ -372,7 +372,7 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     if (generation_tick == 0) {
         return false;
     }
-    // Half a tick of tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
+    // The half tick is a tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
     return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
 }
 

@@ -78,9 +78,9 @@ class World {
 
     /// Creates the first generation, at moment (1, 0).
     ///
-    /// parameters        valid.
-    /// first_population  valid for these parameters; nullptr: drawn from the seed.
-    /// schedule          must have the values of `parameters` in generation 1.
+    /// parameters        the parameters of generation 1; must be valid.
+    /// first_population  the chromosomes of generation 1, valid for these parameters; nullptr: drawn from the seed.
+    /// schedule          the schedule of the run; must have the values of `parameters` in generation 1.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
           parameters::Schedule schedule = {});
 
@@ -94,22 +94,23 @@ class World {
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
           parameters::Schedule schedule = {});
 
-    /// A copy of this world as it was at the first moment of its generation.
+    /// Returns a copy of this world as it was at the first moment of its generation.
     ///
-    /// keep_requests  keeps the parameters that were requested after that moment; ignored after the first tick.
+    /// keep_requests  if true, the copy keeps the parameters that were requested after that moment; ignored once the
+    ///                generation has had a tick.
     World at_its_opening(base::Executor& executor, bool keep_requests = false) const;
 
-    /// The data that restore() needs to bring a world to this moment.
+    /// Returns the data that restore() needs to bring a world to this moment.
     WorldState state(base::Executor& executor) const;
-    /// The number of entities on each island. Every state of this generation has these numbers.
+    /// Returns the number of entities on each island. Every state of this generation has these numbers.
     std::vector<IslandShape> shapes() const;
     /// Brings a world at the beginning of a generation to a later moment of that generation. It then continues as the
     /// world on which state() was called. Refused, with nothing changed, if the state is impossible. Does not check the
     /// state hash; a caller that knows it compares it with hash().
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
-    /// The parameters that the run begins with after a reset: the requested parameters, with the schedule's values of
-    /// generation 1. Refused if they are not valid together.
+    /// Returns the parameters that the run begins with after a reset: the requested parameters, with the schedule's
+    /// values of generation 1. Returns a refusal if they are not valid together.
     base::Result<parameters::Parameters> beginning() const;
     /// Restarts the run with the parameters of beginning(), the same schedule and, if one was given, the same first
     /// population. That population must be valid for these parameters. Throws std::bad_alloc, with nothing changed, if
@@ -148,8 +149,8 @@ class World {
     void request_parameters(const parameters::Parameters& requested);
 
     bool generation_over() const { return generation_over_; }
-    /// At the end of a generation: the termination criterion that holds with the active parameters. During a
-    /// generation: Running.
+    /// Returns the termination criterion that holds with the active parameters at the end of a generation; during a
+    /// generation, Running.
     evolution::Outcome outcome() const;
 
     /// The opening of the present generation. Island::born() contains its organisms.
@@ -163,8 +164,8 @@ class World {
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.
     bool has_bodies() const { return parameters_.active.fitness == parameters::FitnessFunction::Life; }
-    /// What organisms [ids.begin, ids.end) of an island will do next, if no item reappears before. The choice is None
-    /// for dead organisms, at the end of a generation, and if there are no bodies.
+    /// Predicts what organisms [ids.begin, ids.end) of an island will do next, if no item reappears before that. The
+    /// choice is None for dead organisms, at the end of a generation, and if there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
     /// The number of living organisms on all islands.
     std::uint64_t alive_count() const;
@@ -175,7 +176,7 @@ class World {
     /// The fitness in the ended generation, per island, by id. Empty during a generation.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
 
-    /// The events since the last call, in order.
+    /// Returns and removes the events since the last call, oldest first.
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
   private:
@@ -187,20 +188,21 @@ class World {
     void apply_planned_for(std::uint64_t generation);
     /// Applies the changes planned for the tick that has just ended.
     void apply_planned_now();
-    /// Requests all of the changes. If `requested` is a refusal, drops them and reports why.
+    /// Requests the parameters in `requested`, which contain `changes`. If `requested` is a refusal, drops the changes
+    /// and reports why.
     ///
     /// id, by  ParametersChanged::planned and ParametersChanged::by.
     void apply_planned(std::span<const parameters::Assignment> changes,
                        const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
-    /// Whether a generation ends after `generation_tick`, if `alive` organisms are alive.
+    /// Returns whether a generation ends after `generation_tick` if `alive` organisms are then alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
     void end_generation(base::Executor& executor);
     void find_fitness(base::Executor& executor);
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
-    /// The chromosomes to breed from, per island. If migrants arrive, these are new matrices, which are stored in
-    /// `migrated`; otherwise the chromosomes of the ended generation.
+    /// Returns the chromosomes to breed from, one matrix per island. If migrants arrive, these are new matrices, which
+    /// are stored in `migrated`; otherwise they are the chromosomes of the ended generation.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     /// Sets the founders of the organisms in `bred`.
     void find_founders(const std::vector<evolution::NextGeneration>& bred);
@@ -222,8 +224,8 @@ class World {
     Founders founders_;
     std::vector<std::vector<double>> fitness_; // fitness in the ended generation: per island, by id
     evolution::Progress progress_;
-    std::vector<std::uint8_t> died_out_; // per island: whether its last organism died in this tick; working memory,
-                                         // kept between ticks
+    // Per island: whether its last organism died in this tick. Kept between ticks to reuse the memory.
+    std::vector<std::uint8_t> died_out_;
 };
 
 } // namespace evod::simulation

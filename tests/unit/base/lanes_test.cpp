@@ -54,7 +54,7 @@ TEST(Lanes, DirectionsNearQuarterTurnsEqualSingleOnes) {
 
 TEST(Lanes, HashSumsIncludeOnlyUsedLanes) {
     RandomStream random{RandomKey{Seed{2}, Purpose::ScenarioTest, 0, 0}, 0};
-    HashSums sums;
+    HashSumsPerLane sums;
     StateHash expected;
     for (int trial = 0; trial < 500; ++trial) {
         const Words id = some_words(random), a = some_words(random), b = some_words(random), c = some_words(random),

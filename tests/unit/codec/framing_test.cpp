@@ -56,7 +56,7 @@ TEST(Body, IsParsedDownToTheDepthLimit) {
                              within(2, within(10, groups(message_depth_max - 1)))}) {
         const auto deep = parse_body<ClientMessage>(bytes_of(body));
         ASSERT_FALSE(deep);
-        EXPECT_EQ(deep.error().beyond, Beyond::MessageDepth) << deep.error().what;
+        EXPECT_EQ(deep.error().exceeded, ExceededLimit::MessageDepth) << deep.error().what;
         EXPECT_NE(deep.error().what.find("more than 100 deep"), std::string::npos) << deep.error().what;
     }
 }
@@ -66,7 +66,7 @@ TEST(Body, DamageIsNotReportedAsDepth) {
     for (const std::string body : {"\xff\xff\xff", "\x12\x7f", "\xa4\x06", "\x12\x04\x12\x02\xff\xfe"}) {
         const auto damaged = parse_body<ClientMessage>(bytes_of(body));
         ASSERT_FALSE(damaged);
-        EXPECT_EQ(damaged.error().beyond, Beyond::Nothing) << damaged.error().what;
+        EXPECT_EQ(damaged.error().exceeded, ExceededLimit::Nothing) << damaged.error().what;
         EXPECT_NE(damaged.error().what.find("is not a evod.v1.ClientMessage"), std::string::npos);
     }
     // A string that looks like nested messages is no message.
