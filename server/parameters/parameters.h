@@ -124,7 +124,9 @@ std::vector<const ParameterDescription*> parameters_that_differ(const Parameters
 /// Returns nullptr if no parameter has that name.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// The parameter names most similar to `name`, best first, at most three: for "did you mean".
+/// The existing names most similar to `name`, best first, at most three: for "did you mean".
+std::vector<std::string_view> similar_names(std::string_view name, std::span<const std::string_view> existing);
+/// The parameter names most similar to `name`.
 std::vector<std::string_view> similar_parameter_names(std::string_view name);
 
 struct Assignment {
