@@ -1,5 +1,6 @@
 // The entry point of evod. Registers all subcommands; see server/commands/commands.h.
-#include "proto/command_line/command.h"
+#include "proto/command_line/completion.h"
+#include "proto/command_line/terminal.h"
 #include "server/commands/commands.h"
 #include "server/commands/termination.h"
 
@@ -20,7 +21,8 @@ int main(int argument_count, char** arguments) {
     // client could fill the log.
     google::protobuf::SetLogHandler(nullptr);
 
-    evod::command_line::Command app{"evod", "An evolution laboratory that runs as a server.", "evod " EVOD_VERSION};
+    evod::command_line::Command app{"evod", "evod: an evolution laboratory that runs as a server",
+                                    "evod " EVOD_VERSION};
     add_server(app);
     add_run_command(app);
     add_compare_command(app);
@@ -34,13 +36,16 @@ int main(int argument_count, char** arguments) {
     add_certificate_command(app);
     add_parameters_command(app);
     add_limits_command(app);
+    add_help_commands(app);
 
+    if (complete(app, argument_count, arguments)) {
+        return 0;
+    }
     const std::optional<int> ended = app.parse(argument_count, arguments);
     const int status = ended ? *ended : app.run();
-    // A server continues even if its log cannot be written.
-    if (standard_output_is_log() || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush())) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) {
         return status;
     }
-    std::cerr << "evod: standard output cannot be written: the disk may be full\n";
+    evod::command_line::print_error("evod", "standard output cannot be written: the disk may be full");
     return status == 0 ? 1 : status;
 }

@@ -12,7 +12,7 @@ namespace {
 
 Error malformed(std::string_view text, const std::string& why) {
     return {.kind = Error::Kind::Usage,
-            .what = "server: got '" + std::string{text} + "', allowed HOST, HOST:PORT or [IPV6]:PORT: " + why};
+            .what = "got " + std::string{text} + ", allowed HOST, HOST:PORT or [IPV6]:PORT: " + why};
 }
 
 } // namespace
@@ -60,11 +60,9 @@ std::string to_text(const Endpoint& endpoint) {
 }
 
 std::string to_text(const evod::v1::Status& status) {
-    std::string name = evod::v1::Code_IsValid(status.code()) ? evod::v1::Code_Name(status.code()) : "CODE_UNKNOWN";
-    std::string text = name.substr(std::string{"CODE_"}.size());
-    if (!status.message().empty()) {
-        text += ": " + status.message();
-    }
+    std::string text = !status.message().empty()               ? status.message()
+                       : evod::v1::Code_IsValid(status.code()) ? evod::v1::Code_Name(status.code())
+                                                               : "unknown code " + std::to_string(status.code());
     for (const auto& violation : status.violations()) {
         text += "\n  " + violation.field() + ": got " + violation.got() + ", allowed " + violation.allowed();
     }

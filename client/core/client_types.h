@@ -60,7 +60,7 @@ inline bool worlds_wait(const evod::v1::Storage& storage) {
     return storage.state() == evod::v1::STORAGE_STATE_STALLED || storage.state() == evod::v1::STORAGE_STATE_BEHIND;
 }
 
-/// Returns "INVALID_ARGUMENT: the message", followed by one line for each violation.
+/// Returns the message for people, followed by one line for each violation. Programs read the code and the reason.
 std::string to_text(const evod::v1::Status& status);
 
 // ---- the connection --------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ namespace {
 core::Endpoint endpoint_of(const std::string& text) {
     auto endpoint = core::parse_endpoint(text);
     if (!endpoint) {
-        throw Stop{ExitCode::Usage, endpoint.error().what};
+        throw Stop{ExitCode::Usage, "--server: " + endpoint.error().what};
     }
     return *std::move(endpoint);
 }
@@ -172,6 +172,17 @@ std::string state_of(const v1::WorldInfo& world) {
     }
 }
 
+std::string colored_state_of(const v1::WorldInfo& world) {
+    const std::string state = state_of(world);
+    if (world.state() == v1::RUN_STATE_TERMINATED) {
+        return world.outcome() == v1::OUTCOME_EXTINCTION ? in_color(state, Color::Red) : state;
+    }
+    if (world.state() != v1::RUN_STATE_RUNNING) {
+        return state;
+    }
+    return in_color(state, state == "running" ? Color::Green : Color::Yellow);
+}
+
 std::string storage_problem(const v1::Storage& storage) {
     switch (storage.state()) {
     case v1::STORAGE_STATE_FAILING:
@@ -204,7 +215,7 @@ std::string speed_of(const v1::WorldInfo& world) {
 }
 
 std::string sentence(const v1::WorldInfo& world) {
-    std::string text = world.name() + ": " + state_of(world) + " at " + speed_of(world) + ", generation " +
+    std::string text = world.name() + ": " + colored_state_of(world) + " at " + speed_of(world) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
     // A replay stops at its end and waits there, even if its goal is later.
@@ -222,10 +233,10 @@ std::string sentence(const v1::WorldInfo& world) {
     return text;
 }
 
-void stop_for(const std::string& what, const Mistakes& mistakes) {
-    std::string text = what;
+void stop_for(const Mistakes& mistakes) {
+    std::string text;
     for (const std::string& line : mistakes.lines) {
-        text += (text.empty() ? "" : "\n  ") + line;
+        text += (text.empty() ? "" : "\n") + line;
     }
     throw Stop{ExitCode::Usage, text};
 }

@@ -16,10 +16,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::command_line {
 class Command;
-}
+struct Candidate;
+struct IncompleteWord;
+} // namespace evod::command_line
 
 namespace evod::ctl {
 
@@ -76,6 +79,8 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 
 /// Returns the state of a world in words: "running", "paused", …, "waits for the disk".
 std::string state_of(const v1::WorldInfo& world);
+/// Returns the state in a colour: green while the world runs, yellow if it waits for the disk, red if it is extinct.
+std::string colored_state_of(const v1::WorldInfo& world);
 /// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
 /// Empty if there is no problem.
 std::string storage_problem(const v1::Storage& storage);
@@ -86,8 +91,8 @@ std::string speed_of(const v1::WorldInfo& world);
 /// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
-/// Throws Stop with a text that contains `what` and then one line for each mistake.
-[[noreturn]] void stop_for(const std::string& what, const Mistakes& mistakes);
+/// Throws Stop with one line for each mistake.
+[[noreturn]] void stop_for(const Mistakes& mistakes);
 
 /// From now on Ctrl-C sets a flag instead of ending the program.
 void catch_interrupts();
@@ -107,10 +112,8 @@ void add_breeding_command(command_line::Command& app, const Common& common);
 void add_export_command(command_line::Command& app, const Common& common);
 void add_watch_commands(command_line::Command& app, const Common& common);
 void add_top_command(command_line::Command& app, const Common& common);
-void add_complete_command(command_line::Command& app);
 
-/// Prints the possible completions of the last word in `words`. Prints nothing if the completions come from the server
-/// and it does not answer.
-void complete(const command_line::Command& app, const std::vector<std::string>& words);
+/// Returns completions that the server knows: names of worlds and parameters. Empty if it does not answer.
+std::vector<command_line::Candidate> values_of_server(const command_line::IncompleteWord& incomplete);
 
 } // namespace evod::ctl

@@ -70,7 +70,7 @@ v1::Request request_of(const Common& common, const ExportOptions& options) {
         }
         const auto organism = organism_named(options.of);
         if (!organism) {
-            throw Stop{ExitCode::Usage, "--of: must be GENERATION:ISLAND:ORGANISM, not " + options.of};
+            throw Stop{ExitCode::Usage, "--of: got " + options.of + ", allowed GENERATION:ISLAND:ORGANISM"};
         }
         *command.mutable_of() = *organism;
     }

@@ -37,15 +37,29 @@ const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::st
     return nullptr;
 }
 
-/// Formats the value of a parameter: "mutation_chance=0.05", followed by its pending and scheduled values.
+/// Returns when a value that waits takes effect: "after the next reset".
+std::string start_of_pending(const std::string& name, const Registry& registry) {
+    const auto* description = registry.find(name);
+    const auto effect = description == nullptr ? v1::PARAMETER_EFFECT_NEXT_GENERATION : description->effect();
+    return effect == v1::PARAMETER_EFFECT_RESET       ? "after the next reset"
+           : effect == v1::PARAMETER_EFFECT_NEXT_TICK ? "from the next tick"
+                                                      : "from the next generation";
+}
+
+/// Formats what `set` has done: "mutation_chance=0.05", or "fitness: gene_sum after the next reset (now life)".
+std::string changed_line_of(const v1::ParameterState& state, const Registry& registry) {
+    return state.has_pending()
+               ? state.name() + ": " + to_text(state.pending()) + " " + start_of_pending(state.name(), registry) +
+                     " (now " + to_text(state.value()) + ")\n"
+               : state.name() + "=" + to_text(state.value()) + "\n";
+}
+
+/// Formats the value of a parameter: "mutation_chance=0.05", followed by its pending and scheduled values, as
+/// `get` prints it.
 std::string line_of(const v1::ParameterState& state, const Registry& registry, const v1::ParameterSet& set) {
     std::string coming;
     if (state.has_pending()) {
-        const auto* description = registry.find(state.name());
-        const auto effect = description == nullptr ? v1::PARAMETER_EFFECT_NEXT_GENERATION : description->effect();
-        coming = to_text(state.pending()) + (effect == v1::PARAMETER_EFFECT_RESET       ? " after a reset"
-                                             : effect == v1::PARAMETER_EFFECT_NEXT_TICK ? " from the next tick"
-                                                                                        : " from the next generation");
+        coming = to_text(state.pending()) + " " + start_of_pending(state.name(), registry);
     }
     for (const auto& scheduled : set.schedule()) {
         if (scheduled.name() == state.name()) {
@@ -61,7 +75,7 @@ void set(const Common& common, const SetOptions& options) {
     const Registry registry = caller.registry();
     auto assignments = registry.assignments(options.words);
     if (!assignments) {
-        stop_for("nothing was set:", assignments.error());
+        stop_for(assignments.error());
     }
     v1::Request request;
     auto& command = *request.mutable_set_parameters();
@@ -91,7 +105,7 @@ void set(const Common& common, const SetOptions& options) {
         std::string text = options.dry_run ? "allowed; it would be:\n" : "";
         for (const auto& assignment : *assignments) {
             if (const auto* state = find(response.parameters(), assignment.name())) {
-                text += line_of(*state, registry, response.parameters());
+                text += changed_line_of(*state, registry);
             }
         }
         if (!options.dry_run) {
@@ -125,7 +139,7 @@ void get(const Common& common, const std::vector<std::string>& names) {
             }
         }
         if (!mistakes.lines.empty()) {
-            stop_for("", mistakes);
+            stop_for(mistakes);
         }
         parameters = std::move(some);
     }

@@ -39,15 +39,20 @@ void status(const Common& common) {
                      {"ISLANDS", Align::Right},
                      {"SEED", Align::Right}}};
         for (const auto& world : worlds.worlds()) {
-            table.add({world.name(), state_of(world), speed_of(world), std::to_string(world.generation()),
+            table.add({world.name(), colored_state_of(world), speed_of(world), std::to_string(world.generation()),
                        std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
                        std::to_string(world.island_count()), std::to_string(world.seed())});
         }
         std::string text = "evod " + caller.welcome().server_version() + " at " +
                            core::to_text(*core::parse_endpoint(common.server)) + "\n";
-        for (const std::string& line :
-             {durability_warning(caller.welcome()), storage_problem(caller.welcome().storage())}) {
-            text += line.empty() ? "" : line + "\n";
+        const bool only_replays =
+            !worlds.worlds().empty() && std::ranges::all_of(worlds.worlds(), &v1::WorldInfo::has_replay);
+        if (only_replays) {
+            text += "it shows a stored run, which it does not change\n";
+        }
+        for (const std::string& line : {only_replays ? std::string{} : durability_warning(caller.welcome()),
+                                        storage_problem(caller.welcome().storage())}) {
+            text += line.empty() ? "" : in_color(line, Color::Yellow) + "\n";
         }
         return text + (worlds.worlds().empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
     });

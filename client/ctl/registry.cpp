@@ -1,6 +1,7 @@
 #include "client/ctl/registry.h"
 
 #include "client/ctl/text.h"
+#include "proto/command_line/suggestion.h"
 
 #include <boost/throw_exception.hpp>
 
@@ -63,7 +64,7 @@ std::vector<std::string> Registry::names() const {
 }
 
 std::string Registry::unknown(std::string_view name) const {
-    return "there is no parameter '" + std::string{name} + "'" + did_you_mean(name, names());
+    return std::string{name} + ": unknown parameter" + command_line::did_you_mean(name, names());
 }
 
 Checked<std::vector<v1::ParameterAssignment>> Registry::assignments(const std::vector<std::string>& words) const {
@@ -76,8 +77,7 @@ Checked<std::vector<v1::ParameterAssignment>> Registry::assignments(const std::v
         if (parameter == nullptr) {
             mistakes.lines.push_back(unknown(name));
         } else if (equals == std::string::npos) {
-            mistakes.lines.push_back("'" + word + "' has no value: write " + name + "=VALUE, allowed " +
-                                     allowed(*parameter));
+            mistakes.lines.push_back(name + ": got no value, allowed " + name + "=VALUE with " + allowed(*parameter));
         } else if (auto value = parse_value(*parameter, std::string_view{word}.substr(equals + 1))) {
             auto& assignment = result.emplace_back();
             assignment.set_name(name);
@@ -95,7 +95,8 @@ Checked<std::vector<v1::ParameterAssignment>> Registry::assignments(const std::v
 Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& parameter, std::string_view word) {
     v1::ParameterValue value;
     const auto wrong = [&](const std::string& hint = {}) {
-        return Mistakes{{parameter.name() + ": got '" + std::string{word} + "', allowed " + allowed(parameter) + hint}};
+        return Mistakes{{parameter.name() + ": got " + (word.empty() ? "nothing" : std::string{word}) + ", allowed " +
+                         allowed(parameter) + hint}};
     };
     switch (parameter.kind()) {
     case v1::PARAMETER_KIND_REAL: {
@@ -125,7 +126,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_CHOICE: {
         const std::vector<std::string> choices{parameter.choices().begin(), parameter.choices().end()};
         if (std::ranges::find(choices, word) == choices.end()) {
-            return wrong(did_you_mean(word, choices));
+            return wrong(command_line::did_you_mean(word, choices));
         }
         value.set_choice(std::string{word});
         return value;
@@ -156,7 +157,7 @@ std::string allowed(const v1::ParameterDescription& parameter) {
         return number_text(parameter.min(), text::Exponent::IfLong) + " to " +
                number_text(parameter.max(), text::Exponent::IfLong);
     case v1::PARAMETER_KIND_COUNT:
-        return fixed(parameter.min(), 0) + " to " + fixed(parameter.max(), 0) + ", whole";
+        return "a whole number, " + fixed(parameter.min(), 0) + " to " + fixed(parameter.max(), 0);
     case v1::PARAMETER_KIND_FLAG:
         return "true or false";
     default: {

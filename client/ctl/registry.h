@@ -30,7 +30,7 @@ class Registry {
     const v1::ParameterDescription* find(std::string_view name) const;
     std::vector<std::string> names() const;
 
-    /// Returns the error for an unknown name: "there is no parameter 'mutation_chanse'; did you mean mutation_chance?"
+    /// Returns the error for an unknown name: "mutation_chanse: unknown parameter; did you mean mutation_chance?"
     std::string unknown(std::string_view name) const;
 
     /// Parses words of the form name=value. Does not check ranges: the server checks them and reports all violations

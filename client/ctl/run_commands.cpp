@@ -1,6 +1,8 @@
 // Commands that control worlds: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
+#include "client/ctl/pace.h"
 #include "client/ctl/registry.h"
+#include "client/ctl/screen.h"
 #include "client/ctl/text.h"
 #include "proto/codec/framing.h"
 #include "proto/codec/population_csv.h"
@@ -96,7 +98,7 @@ void create(const Common& common, const CreateOptions& options) {
     if (!options.words.empty()) {
         const auto assignments = caller.registry().assignments(options.words);
         if (!assignments) {
-            stop_for("nothing was created:", assignments.error());
+            stop_for(assignments.error());
         }
         command.mutable_parameters()->Assign(assignments->begin(), assignments->end());
     }
@@ -186,9 +188,17 @@ void shut_down(const Common& common) {
 
 // ---- running ---------------------------------------------------------------------------------------------------
 
+/// The end of the generations that a world runs.
+struct Goal {
+    Durations durations;
+    double simulated_s; // simulated seconds of the run when the goal is reached, at most
+    double whole_s;     // simulated seconds from the beginning to the goal
+};
+
 /// Prints progress on stderr. On a terminal it overwrites a single line; otherwise it prints one line per generation.
 class Progress {
   public:
+    explicit Progress(std::optional<Goal> goal) : goal_{goal} {}
     ~Progress() {
         if (live_ && shown_) {
             std::cerr << '\n';
@@ -201,9 +211,21 @@ class Progress {
             mean += island.fitness_mean() / finished.statistics_size();
         }
         if (finished.statistics_size() > 0) {
-            std::cerr << (live_ ? "\r\033[K" : "") << "generation " << finished.statistics(0).generation() << ": best "
-                      << fixed(best, 1) << ", mean " << fixed(mean, 1) << (live_ ? "" : "\n") << std::flush;
-            shown_ = true;
+            last_ = "generation " + std::to_string(finished.statistics(0).generation()) + ": best " + fixed(best, 1) +
+                    ", mean " + fixed(mean, 1);
+            if (!live_) {
+                std::cerr << last_ << std::endl;
+            } else if (!goal_) {
+                print_live(last_);
+            }
+        }
+    }
+    /// Shows on a terminal how near the goal is.
+    void show(const v1::WorldInfo& world) {
+        if (live_ && goal_ && goal_->whole_s > 0) {
+            const double left_s = std::max(0.0, goal_->simulated_s - world.simulated_s());
+            print_live(progress_text(1 - left_s / goal_->whole_s, real_s(world, goal_->durations, left_s)) +
+                       (last_.empty() ? "" : "; " + last_));
         }
     }
 
@@ -220,20 +242,28 @@ class Progress {
     }
 
   private:
+    void print_live(const std::string& line) {
+        std::cerr << "\r\033[K" << clip_lines(line, terminal_size().columns - 1) << std::flush;
+        shown_ = true;
+    }
+
+    const std::optional<Goal> goal_;
     const bool live_ = ::isatty(STDERR_FILENO) == 1;
     bool shown_ = false;
-    std::string trouble_;
+    std::string last_, trouble_; // last_: the generation that ended last
 };
 
 /// Waits until `reached(world)` returns true or the world stops running. Prints each generation when it ends.
 ///
+/// goal     for the progress; nullopt: unknown.
 /// returns  the final state of the world.
 template <class Reached>
-v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached& reached) {
+v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached& reached,
+                       std::optional<Goal> goal = {}) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds poll_interval{500}; // polls the world too, because events may be lost
     catch_interrupts();
-    Progress progress;
+    Progress progress{goal};
     for (auto look_at = Clock::now();;) {
         if (interrupted()) {
             throw Stop{ExitCode::Refused, "stopped waiting; the world continues to run"};
@@ -244,6 +274,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
                 throw Stop{ExitCode::Refused, begun.name() + " was reset meanwhile"};
             }
             progress.show(world.storage());
+            progress.show(world);
             if (reached(world) || world.state() != v1::RUN_STATE_RUNNING) {
                 for (const auto& event : caller.connection().take_events()) {
                     if (event.world() == begun.name() && event.has_generation_finished()) {
@@ -272,6 +303,32 @@ void require_reached(bool reached, const v1::WorldInfo& world) {
     }
 }
 
+Durations durations_of(Caller& caller, const std::string& world) {
+    v1::Request request;
+    request.mutable_get_parameters()->set_world(world);
+    const v1::Response response = caller.call(std::move(request));
+    Durations durations{};
+    for (const auto& parameter : response.parameters().parameters()) {
+        if (parameter.name() == "generation_s") {
+            durations.generation_s = parameter.value().real();
+        } else if (parameter.name() == "tick_s") {
+            durations.tick_s = parameter.value().real();
+        }
+    }
+    return durations;
+}
+
+/// Prints how long the world will need; returns its goal.
+std::optional<Goal> announce(Caller& caller, const v1::WorldInfo& world, std::optional<std::uint64_t> generations) {
+    const Durations durations = durations_of(caller, world.name());
+    std::cerr << plan_text(world, durations, generations) << '\n';
+    if (!generations) {
+        return std::nullopt;
+    }
+    const double left_s = simulated_s_left(world, durations, *generations);
+    return Goal{.durations = durations, .simulated_s = world.simulated_s() + left_s, .whole_s = left_s};
+}
+
 void run(const Common& common, std::optional<std::uint64_t> generations, bool wait) {
     Caller caller{common};
     v1::Request request;
@@ -284,7 +341,9 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
     v1::Response response = caller.call(std::move(request));
     if (wait) {
-        const v1::WorldInfo world = wait_for(caller, response.world(), [](const v1::WorldInfo&) { return false; });
+        const auto goal = announce(caller, response.world(), generations);
+        const v1::WorldInfo world = wait_for(
+            caller, response.world(), [](const v1::WorldInfo&) { return false; }, goal);
         *response.mutable_world() = world;
         print_world(common, response);
         // When a world has run all requested generations, it has no goal any more. A world that was paused before, or a
@@ -375,7 +434,8 @@ v1::Speed parse_speed(std::string_view word) {
     double factor = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
     if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(factor)) {
-        throw Stop{ExitCode::Usage, "'" + std::string{word} + "' is not a speed: write 2 for twice real time, or max"};
+        throw Stop{ExitCode::Usage, "SPEED: got " + std::string{word} +
+                                        ", allowed max, or 0.001 to 10000, such as 2 for twice real time"};
     }
     speed.set_real_time_factor(factor);
     return speed;
@@ -412,7 +472,7 @@ void add_world_commands(command_line::Command& app, const Common& common) {
 
     auto& delete_command = app.add_command("delete", "Remove a world and its history").group(group);
     auto& name = delete_command.keep(std::string{});
-    delete_command.add_option("NAME", &name, "Name of the world").required();
+    delete_command.add_option("WORLD", &name, "Name of the world").required();
     delete_command.action([&] { remove(common, name); });
 
     auto& fork_command =

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace evod::ctl {
@@ -60,6 +59,41 @@ std::string sparkline(std::span<const double> values, std::size_t width_max) {
     return line;
 }
 
+std::string bar(double share, std::size_t width) {
+    static constexpr std::array parts{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"}; // eighths of a character
+    const auto eighths =
+        static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * 8 * static_cast<double>(width)));
+    std::string text;
+    for (std::size_t i = 0; i < eighths / 8; ++i) {
+        text += "█";
+    }
+    text += parts[eighths % 8];
+    return text + std::string(width - width_of(text), ' ');
+}
+
+namespace {
+
+bool colors_used = false;
+
+/// Returns the length of an escape sequence that in_color() adds at the start of `text`; 0 if there is none.
+std::size_t color_bytes(std::string_view text) {
+    if (!colors_used || !text.starts_with("\033[")) {
+        return 0;
+    }
+    const std::size_t end = text.find_first_not_of("0123456789", 2);
+    return end != std::string_view::npos && text[end] == 'm' ? end + 1 : 0;
+}
+
+} // namespace
+
+std::string in_color(const std::string& text, Color color) {
+    return colors_used && !text.empty() ? command_line::colored(text, color) : text;
+}
+
+void use_colors(bool used) {
+    colors_used = used;
+}
+
 std::string short_time(double seconds) {
     const auto with_unit = [](double value, const char* unit) { return fixed(value, value < 9.95 ? 1 : 0) + unit; };
     return seconds < 0.9995e-3 ? with_unit(seconds * 1e6, " µs")
@@ -81,12 +115,23 @@ std::string short_bytes(double bytes) {
 }
 
 std::size_t width_of(std::string_view utf8) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    std::size_t width = 0;
+    for (std::size_t i = 0; i < utf8.size(); ++i) {
+        if (const std::size_t color = color_bytes(utf8.substr(i)); color > 0) {
+            i += color - 1;
+        } else {
+            width += (static_cast<unsigned char>(utf8[i]) & 0xc0) != 0x80 ? 1 : 0;
+        }
+    }
+    return width;
 }
 
 std::string visible(std::string utf8) {
     for (std::size_t i = 0; i < utf8.size(); ++i) {
+        if (const std::size_t color = color_bytes(std::string_view{utf8}.substr(i)); color > 0) {
+            i += color - 1;
+            continue;
+        }
         const auto byte = static_cast<unsigned char>(utf8[i]);
         const bool second_of_control = // second byte of a control character from U+0080 to U+009F
             i > 0 && static_cast<unsigned char>(utf8[i - 1]) == 0xc2 && byte >= 0x80 && byte < 0xa0;
@@ -103,11 +148,16 @@ std::string visible(std::string utf8) {
 std::string clip_lines(std::string_view utf8, std::size_t width) {
     std::string text;
     std::size_t column = 0;
-    for (const char c : utf8) {
-        const bool begins = (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-        column = c == '\n' ? 0 : column + (begins ? 1 : 0);
+    for (std::size_t i = 0; i < utf8.size(); ++i) {
+        if (const std::size_t color = color_bytes(utf8.substr(i)); color > 0) {
+            text += utf8.substr(i, color); // a colour that begins before the edge may end after it
+            i += color - 1;
+            continue;
+        }
+        const bool begins = (static_cast<unsigned char>(utf8[i]) & 0xc0) != 0x80;
+        column = utf8[i] == '\n' ? 0 : column + (begins ? 1 : 0);
         if (column <= width) {
-            text += c;
+            text += utf8[i];
         }
     }
     return text;
@@ -123,53 +173,6 @@ std::string clip_page(std::string_view utf8, std::size_t width, std::size_t line
         end = line_end;
     }
     return clip_lines(utf8.substr(0, end), width);
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // Optimal string alignment distance: Damerau's distance, with the restriction that each substring is edited at most
-    // once. Stores only three rows of the table.
-    std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
-    std::iota(above.begin(), above.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = std::min(row[j], before[j - 2] + 1);
-            }
-        }
-        std::swap(before, above);
-        std::swap(above, row);
-    }
-    return above[b.size()];
-}
-
-std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names) {
-    std::vector<std::pair<std::size_t, std::string>> ranked;
-    for (const std::string& name : names) {
-        const std::size_t distance = edit_distance(word, name);
-        // A word that is part of a name counts as similar: "mutation" to "mutation_chance".
-        const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
-        if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
-            ranked.emplace_back(distance, name);
-        }
-    }
-    std::ranges::sort(ranked);
-    std::vector<std::string> result;
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, ranked.size()); ++i) {
-        result.push_back(std::move(ranked[i].second));
-    }
-    return result;
-}
-
-std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
-    const auto candidates = nearest(word, names);
-    std::string text;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        text += (i == 0 ? "; did you mean " : i + 1 == candidates.size() ? " or " : ", ") + candidates[i];
-    }
-    return text.empty() ? text : text + "?";
 }
 
 } // namespace evod::ctl

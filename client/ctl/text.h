@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/core/duration.h"
+#include "proto/command_line/terminal.h"
 #include "proto/text/number_text.h"
 
 #include <cstdint>
@@ -36,7 +37,17 @@ class Table {
 /// are equal, the bars have middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
-/// Makes text from a server safe to print on a terminal: replaces control characters except line breaks by '?'.
+/// Draws a bar that fills `share`, 0 to 1, of `width` characters; the rest is blank.
+std::string bar(double share, std::size_t width);
+
+using command_line::Color;
+/// Colours a text for standard output. Without use_colors(), returns the text as it is.
+std::string in_color(const std::string& text, Color color);
+/// Whether in_color() adds escape sequences from now on. It does not at first.
+void use_colors(bool used);
+
+/// Makes text from a server safe to print on a terminal: replaces control characters except line breaks by '?'. Keeps
+/// the sequences of in_color().
 std::string visible(std::string utf8);
 
 using core::duration;
@@ -46,7 +57,7 @@ using text::number_text;
 std::string short_time(double seconds);
 /// Formats a number of bytes: "512 B", "1.5 KiB", "12 MiB".
 std::string short_bytes(double bytes);
-/// Returns the number of characters (code points) in a text.
+/// Returns the number of characters (code points) in a text, without those that in_color() adds.
 std::size_t width_of(std::string_view utf8);
 
 /// Cuts each line after `width` characters, so that no line wraps on a terminal of this width.
@@ -55,13 +66,5 @@ std::string clip_lines(std::string_view utf8, std::size_t width);
 /// Returns the beginning of `utf8`, as much as a terminal of this width and height shows without scrolling. Cuts lines
 /// as clip_lines() does. The last line has no line break, so that the cursor stays at its end.
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines);
-
-/// Returns the edit distance: the smallest number of insertions, deletions, replacements and swaps of adjacent
-/// characters that turn `a` into `b`.
-std::size_t edit_distance(std::string_view a, std::string_view b);
-/// Returns at most three names that are similar to the misspelled `word`, the most similar first.
-std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names);
-/// Returns "; did you mean A or B?" with the names most similar to `word`; empty if no name is similar.
-std::string did_you_mean(std::string_view word, std::span<const std::string> names);
 
 } // namespace evod::ctl

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -54,6 +55,8 @@ struct TickTimes {
     }
 };
 
+constexpr std::size_t bar_width = 16;
+
 class Page {
   public:
     explicit Page(const Measurements& measurements) : measurements_{measurements} {}
@@ -75,8 +78,9 @@ class Page {
     std::string bytes_per_s(std::string_view name, std::string_view label = {}) const {
         return short_bytes(risen(name, label) / measurements_.between_s) + "/s";
     }
-    std::string cpu(std::string_view name, std::string_view label = {}) const {
-        return fixed(100 * risen(name, label) / measurements_.between_s, 0) + " %";
+    /// Returns the share of one processor that was used: 1.5 if one and a half were busy.
+    double processors(std::string_view name, std::string_view label = {}) const {
+        return risen(name, label) / measurements_.between_s;
     }
     bool reports(std::string_view name) const { return family_in(measurements_.after, name) != nullptr; }
 
@@ -100,16 +104,16 @@ class Page {
         return times;
     }
 
-    std::string processor() const {
-        std::string text = cpu("process_cpu_seconds_total");
-        if (const auto* threads = family_in(measurements_.after, "evod_thread_cpu_seconds_total")) {
-            for (const auto& sample : threads->samples()) {
+    /// Returns the threads with the share of a processor that each of them used.
+    std::vector<std::pair<std::string, double>> threads() const {
+        std::vector<std::pair<std::string, double>> threads;
+        if (const auto* family = family_in(measurements_.after, "evod_thread_cpu_seconds_total")) {
+            for (const auto& sample : family->samples()) {
                 const std::string& thread = sample.labels(0).value();
-                text += (&sample == &threads->samples(0) ? ": " : ", ") + thread + " " +
-                        cpu("evod_thread_cpu_seconds_total", thread);
+                threads.emplace_back(thread, processors("evod_thread_cpu_seconds_total", thread));
             }
         }
-        return text;
+        return threads;
     }
 
     std::string clients() const {
@@ -130,10 +134,10 @@ class Page {
         if (!reports("evod_storage_state")) {
             return "runs are not recorded";
         }
-        std::string state = "keeps up";
+        std::string state = in_color("keeps up", Color::Green);
         for (const char* other : {"behind", "failing", "stalled"}) {
             if (now("evod_storage_state", other) > 0) {
-                state = other;
+                state = in_color(other, std::string_view{other} == "behind" ? Color::Yellow : Color::Red);
             }
         }
         return state + "; " + short_bytes(now("evod_journal_waiting_bytes")) + " waiting, the oldest for " +
@@ -163,16 +167,18 @@ class Page {
         std::ranges::stable_sort(all, std::ranges::greater{}, &v1::MetricSample::value);
         const std::size_t room = std::max<std::size_t>(lines_max, 2) - 1; // lines below the titles
         const std::size_t shown = all.size() <= room ? all.size() : room - 1;
-        Table table{{{"world"},
-                     {"ticks/s", Table::Align::Right},
-                     {"mean tick", Table::Align::Right},
-                     {"median", Table::Align::Right},
-                     {"99 %", Table::Align::Right}}};
+        const double fastest = std::max(all.front().value(), 1.0);
+        Table table{{{"WORLD"},
+                     {"TICKS/S", Table::Align::Right},
+                     {""},
+                     {"TICK MEAN", Table::Align::Right},
+                     {"P50", Table::Align::Right},
+                     {"P99", Table::Align::Right}}};
         for (std::size_t i = 0; i < shown; ++i) {
             const std::string& world = all[i].labels(0).value();
             const TickTimes times = tick_times(world);
             const bool any = times.count > 0;
-            table.add({world, fixed(all[i].value(), 0),
+            table.add({world, fixed(all[i].value(), 0), bar(all[i].value() / fastest, bar_width),
                        any ? short_time(times.sum / static_cast<double>(times.count)) : "-",
                        any ? times.quantile(0.5) : "-", any ? times.quantile(0.99) : "-"});
         }
@@ -195,27 +201,44 @@ std::string top_text(const Measurements& measurements, const std::string& server
                        duration(std::max(0.0, now_s - page.now("process_start_time_seconds"))) + "\n\n";
     std::size_t lines = 2;
     const auto line = [&](std::string_view title, const std::string& value) {
-        text += std::string{title} + std::string(11 - title.size(), ' ') + value + "\n";
+        text += std::string{title} + std::string(title.size() < 15 ? 15 - title.size() : 1, ' ') + value + "\n";
         ++lines;
     };
+    const auto percent = [](double share) { return fixed(100 * share, 0) + " %"; };
     line("memory", short_bytes(page.now("process_resident_memory_bytes")));
-    line("processor", page.processor());
+    line("processor", percent(page.processors("process_cpu_seconds_total")));
+    const auto threads = page.threads();
+    for (std::size_t i = 0; i < threads.size(); i += 2) { // two threads in a line
+        const auto bar_of = [&](double share) {
+            const std::string number = percent(share);
+            return bar(share, bar_width) + std::string(number.size() < 6 ? 6 - number.size() : 1, ' ') + number;
+        };
+        const bool has_second = i + 1 < threads.size();
+        line("  " + threads[i].first,
+             bar_of(threads[i].second) +
+                 (has_second
+                      ? "  " + threads[i + 1].first +
+                            std::string(threads[i + 1].first.size() < 12 ? 12 - threads[i + 1].first.size() : 1, ' ') +
+                            bar_of(threads[i + 1].second)
+                      : ""));
+    }
     line("clients", page.clients());
-    line("streams", page.count("evod_subscriptions", "snapshots") + " of snapshots, " +
-                        page.count("evod_subscriptions", "events") + " of events");
     line("logins", page.count("evod_logins_failed_total") + " failed");
-    line("requests", page.per_s("evod_requests_total") + "; " + page.count("evod_mailbox_requests") + " of " +
-                         page.count("evod_mailbox_requests_max") + " waiting");
+    line("subscriptions", page.count("evod_subscriptions", "snapshots") + " to snapshots, " +
+                              page.count("evod_subscriptions", "events") + " to events");
+    const double waiting = page.now("evod_mailbox_requests"), waiting_max = page.now("evod_mailbox_requests_max");
+    line("requests", bar(waiting_max > 0 ? waiting / waiting_max : 0, bar_width) + " " + fixed(waiting, 0) + " of " +
+                         fixed(waiting_max, 0) + " waiting; " + page.per_s("evod_requests_total"));
     line("received", page.bytes_per_s("evod_received_bytes_total"));
     line("sent", page.bytes_per_s("evod_sent_bytes_total", "stream") + " of snapshots, " +
-                     page.bytes_per_s("evod_sent_bytes_total", "control") + " of replies and events; " +
+                     page.bytes_per_s("evod_sent_bytes_total", "control") + " of replies; " +
                      short_bytes(page.now("evod_client_buffer_bytes")) + " waiting");
     line("snapshots",
          page.per_s("evod_snapshots_sent_total") + ", dropped " + page.per_s("evod_snapshots_dropped_total"));
     line("events", page.count("evod_events_dropped_total") + " dropped");
     line("disk", page.disk());
     if (const std::string limits = page.limits(); !limits.empty()) {
-        line("limits", limits);
+        line("limits reached", in_color(limits, Color::Yellow));
     }
     text += "\n";
     return text + page.worlds(lines_max > lines + 1 ? lines_max - lines - 1 : 2);

@@ -1,11 +1,62 @@
 #include "proto/command_line/command.h"
 
+#include "proto/command_line/terminal.h"
+#include "proto/command_line/usage_error.h"
+#include "proto/command_line/words.h"
+
 #include <CLI/CLI.hpp>
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <iostream>
 
 namespace evod::command_line {
 namespace {
+
+/// The width of the help: that of the terminal, but neither too narrow nor too wide to read.
+std::size_t help_width() {
+    winsize size{};
+    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return std::clamp<std::size_t>(known ? size.ws_col : 100, 60, 100);
+}
+
+/// The format of CLI11, with wrapped explanations.
+class HelpFormat : public CLI::Formatter {
+  public:
+    HelpFormat() { column_width(26); }
+
+    std::string make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const override {
+        // CLI11 prints two empty lines between groups of options.
+        return CLI::detail::find_and_replace(CLI::Formatter::make_help(command, name, mode), "\n\n\n", "\n\n");
+    }
+    std::string make_option_desc(const CLI::Option* option) const override {
+        return explanation(option->get_description());
+    }
+    std::string make_subcommand(const CLI::App* command) const override {
+        std::stringstream out;
+        CLI::detail::format_help(out, command->get_name(), explanation(command->get_description()), get_column_width());
+        return out.str();
+    }
+    std::string make_footer(const CLI::App* command) const override {
+        const CLI::App* const program = command->get_parent();
+        const std::string footer = CLI::Formatter::make_footer(command);
+        return footer +
+               (program != nullptr && command->get_fallthrough()
+                    ? (footer.empty() ? "" : "\n") + ("Options of " + program->get_name() + " are accepted too: see " +
+                                                      program->get_name() + " --help\n")
+                    : "");
+    }
+
+  private:
+    std::string explanation(const std::string& text) const { return wrapped(text, help_width() - get_column_width()); }
+};
+
+/// "evod run" for the subcommand run.
+std::string words_of(const CLI::App& command) {
+    return (command.get_parent() != nullptr ? words_of(*command.get_parent()) + " " : "") + command.get_name();
+}
 
 void hand_down_options(const CLI::App& program, const std::string& owner) {
     if (program.get_subcommands().empty()) {
@@ -43,7 +94,11 @@ Option Option::check(Check check) const {
 }
 
 Option Option::choices(const std::vector<std::string>& choices) const {
-    option_->check(CLI::IsMember(choices));
+    option_->type_name(joined(choices, "|")); // OptionDescription reads the choices from it
+    option_->check([choices](const std::string& word) {
+        return std::ranges::find(choices, word) != choices.end() ? std::string{}
+                                                                 : "got " + word + ", allowed " + joined(choices);
+    });
     return *this;
 }
 
@@ -82,22 +137,32 @@ bool Option::is_given() const {
 }
 
 Command::Command(const std::string& name, const std::string& help, const std::string& version)
-    : app_{std::make_shared<CLI::App>(help, name)} {
-    app_->set_version_flag("--version", version);
+    : app_{std::make_shared<CLI::App>(help, name)}, version_{version} {
+    app_->formatter(std::make_shared<HelpFormat>());
+    app_->set_help_flag("-h,--help", "Print this help and exit");
+    app_->set_version_flag("-V,--version", version, "Print the version and exit");
 }
 
 Option Command::add_option(const std::string& name, Target target, const std::string& help) {
-    return Option{std::visit([&](auto* variable) { return app_->add_option(name, *variable, help); }, target)};
+    CLI::Option* const option = std::visit(
+        [&](auto* variable) {
+            CLI::Option* const added = app_->add_option(name, *variable, help);
+            const std::string kind = added->get_type_name();
+            return kind == "TEXT" ? added : added->type_name("NUMBER");
+        },
+        target);
+    return Option{option_group_.empty() ? option : option->group(option_group_)};
 }
 
 Option Command::add_flag(const std::string& name, bool* target, const std::string& help) {
-    return Option{app_->add_flag(name, *target, help)};
+    CLI::Option* const option = app_->add_flag(name, *target, help);
+    return Option{option_group_.empty() ? option : option->group(option_group_)};
 }
 
 Command& Command::add_command(const std::string& name, const std::string& help) {
     app_->require_subcommand(action_ ? 0 : 1, 1);
     commands_.push_back(Command{app_->get_subcommand_ptr(app_->add_subcommand(name, help))});
-    return commands_.back();
+    return commands_.back().footer(""); // CLI11 would inherit the footer
 }
 
 Command& Command::group(const std::string& heading) {
@@ -110,8 +175,8 @@ Command& Command::footer(const std::string& text) {
     return *this;
 }
 
-Command& Command::help_column(std::size_t column) {
-    app_->get_formatter()->column_width(column);
+Command& Command::option_group(const std::string& heading) {
+    option_group_ = heading;
     return *this;
 }
 
@@ -139,16 +204,10 @@ std::optional<int> Command::parse(int argument_count, const char* const* argumen
         }
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
-        const int status = app_->exit(error);
-        const bool is_unexpected = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-        if (is_unexpected && !commands_.empty() && app_->get_subcommands().empty()) {
-            std::cerr << "Commands are";
-            for (const Command& command : commands_) {
-                std::cerr << ' ' << command.name();
-            }
-            std::cerr << '\n';
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+            return app_->exit(error); // prints the help or the version
         }
-        return status == 0 ? 0 : exit_usage;
+        return reject(text_of(error, *app_));
     }
 }
 
@@ -162,7 +221,8 @@ int Command::run() {
 }
 
 int Command::reject(const std::string& error) const {
-    app_->exit(CLI::ValidationError{error});
+    print_error(app_->get_name(), error);
+    std::cerr << "See " << words_of(given_parser(*app_)) << " --help\n";
     return exit_usage;
 }
 
@@ -170,14 +230,59 @@ std::string Command::name() const {
     return app_->get_name();
 }
 
-std::vector<std::string> Command::option_names() const {
-    std::vector<std::string> names;
+std::string Command::help() const {
+    return app_->get_description();
+}
+
+std::string Command::heading() const {
+    return app_->get_group();
+}
+
+std::string Command::footer() const {
+    return app_->get_footer();
+}
+
+std::string Command::help_text() const {
+    return app_->get_formatter()->make_help(app_.get(), words_of(*app_), CLI::AppFormatMode::Normal);
+}
+
+const Command* Command::command(std::string_view name) const {
+    const auto found = std::ranges::find(commands_, name, &Command::name);
+    return found == commands_.end() ? nullptr : &*found;
+}
+
+const Command* Command::given_command() const {
+    const auto found = std::ranges::find_if(commands_, [](const Command& c) { return c.app_->parsed(); });
+    return found == commands_.end() ? nullptr : &*found;
+}
+
+std::vector<OptionDescription> Command::options() const {
+    std::vector<OptionDescription> options;
     for (const CLI::Option* option : std::as_const(*app_).get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-            names.push_back("--" + name);
+        OptionDescription& description = options.emplace_back();
+        for (const std::string& name : option->get_snames()) {
+            description.names.push_back("-" + name);
         }
+        for (const std::string& name : option->get_lnames()) {
+            description.names.push_back("--" + name);
+        }
+        description.positional = option->get_positional() ? option->get_name(true) : "";
+        description.value = option->get_items_expected_max() == 0 ? "" : option->get_type_name();
+        if (description.value.find('|') != std::string::npos) {
+            description.choices = CLI::detail::split(description.value, '|');
+        }
+        description.help = option->get_description();
+        description.default_value = option->get_default_str();
+        description.environment = option->get_envname();
+        description.group = option->get_group();
+        description.is_required = option->get_required();
+        description.is_list = option->get_items_expected_max() > 1;
     }
-    return names;
+    return options;
+}
+
+bool Command::accepts_options_of_program() const {
+    return app_->get_parent() != nullptr && app_->get_fallthrough();
 }
 
 } // namespace evod::command_line

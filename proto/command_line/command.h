@@ -1,6 +1,6 @@
 // Command line: the options and subcommands of a program, their help, and the action of each subcommand. evod, evoctl
-// and evoview use this header. CLI11 parses the command line and prints the help. Only command.cpp includes CLI11,
-// because including it adds seven seconds to the compile time of a source file.
+// and evoview use this header. CLI11 parses the command line and prints the help. Only sources of this folder
+// include CLI11, because including it adds seven seconds to the compile time of a source file.
 //
 // Owner    the main thread. Variables to which options write must outlive parse() and run(); keep() gives them the
 //          lifetime of the command.
@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -67,6 +68,16 @@ class Option {
     CLI::Option* option_; // owned by CLI11's App
 };
 
+/// What the program knows about an option, for help texts, man pages and completions.
+struct OptionDescription {
+    std::vector<std::string> names;   // "-h", "--help"; empty for a value that can only be given by its position
+    std::string positional;           // name of the value in the usage; empty for a pure option
+    std::string value;                // kind of the value: "NUMBER", "csv|jsonl"; empty for a flag
+    std::vector<std::string> choices; // the allowed words; empty if other words are allowed
+    std::string help, default_value, environment, group;
+    bool is_required = false, is_list = false; // is_list: several values may follow
+};
+
 /// The program or one of its subcommands.
 class Command {
   public:
@@ -83,10 +94,10 @@ class Command {
 
     /// Sets the heading under which the help of the program lists this subcommand.
     Command& group(const std::string& heading);
-    /// Sets a text that the help prints after the options. Subcommands that are added later inherit it.
+    /// Sets the heading under which the help lists the options that are added later.
+    Command& option_group(const std::string& heading);
+    /// Sets a text that the help prints after the options.
     Command& footer(const std::string& text);
-    /// Sets the column at which the explanations of options begin in the help.
-    Command& help_column(std::size_t column);
     /// Also accepts options of this command after the name of a subcommand. Applies to subcommands that are added
     /// later.
     Command& accept_options_after_commands();
@@ -124,9 +135,21 @@ class Command {
     int reject(const std::string& error) const;
 
     std::string name() const;
+    std::string help() const;    // one sentence
+    std::string heading() const; // the heading of this subcommand in the help of the program
+    std::string footer() const;
+    const std::string& version() const { return version_; }
+    /// The text that --help prints.
+    std::string help_text() const;
     const std::list<Command>& commands() const { return commands_; }
-    /// All names that begin with two dashes: "--help", "--seed", …
-    std::vector<std::string> option_names() const;
+    /// Returns the subcommand with this name, or nullptr.
+    const Command* command(std::string_view name) const;
+    /// Returns the subcommand that the command line contained, or nullptr.
+    const Command* given_command() const;
+    /// The options in the order in which they were added.
+    std::vector<OptionDescription> options() const;
+    /// Whether options of the program are also accepted after the name of this subcommand.
+    bool accepts_options_of_program() const;
 
   private:
     explicit Command(std::shared_ptr<CLI::App> app) : app_{std::move(app)} {}
@@ -135,7 +158,9 @@ class Command {
     std::shared_ptr<CLI::App> app_;
     std::list<Command> commands_;
     std::function<int()> action_;
-    std::string owner_; // owner of options that are handed down; empty: none are handed down
+    std::string version_;      // of the program; empty for a subcommand
+    std::string option_group_; // heading for the next options; empty: "Options"
+    std::string owner_;        // owner of options that are handed down; empty: none are handed down
     std::vector<std::shared_ptr<void>> kept_;
 };
 

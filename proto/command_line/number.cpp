@@ -24,15 +24,15 @@ std::string WholeNumber::operator()(const std::string& word) const {
     const bool has_leading_zero = word.size() > 1 && word.front() == '0';
     return read(word, number) && !has_leading_zero && number >= min && number <= max
                ? std::string{}
-               : "must be a whole number, " + std::to_string(min) + " to " + std::to_string(max) + ", not " + word;
+               : "got " + word + ", allowed a whole number, " + std::to_string(min) + " to " + std::to_string(max);
 }
 
 std::string RealNumber::operator()(const std::string& word) const {
     double number = 0;
     return read(word, number) && number >= min && number <= max
                ? std::string{}
-               : "must be a number, " + number_text(min, Exponent::Never) + " to " + number_text(max, Exponent::Never) +
-                     ", not " + word;
+               : "got " + word + ", allowed " + number_text(min, Exponent::Never) + " to " +
+                     number_text(max, Exponent::Never);
 }
 
 } // namespace evod::command_line

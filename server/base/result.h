@@ -91,6 +91,9 @@ struct Violation {
     std::string got;     // "1.5"
 };
 
+/// What Violation::got contains if `field` is a name that does not exist.
+inline constexpr const char* unknown_name = "an unknown name";
+
 /// The error that is returned for a refused request. A refused request has changed nothing.
 struct Refusal {
     RefusalCode code = RefusalCode::InvalidArgument;

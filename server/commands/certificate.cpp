@@ -17,7 +17,7 @@ struct CertificateOptions {
 
 int create_certificate(const CertificateOptions& options) {
     if (const auto created = access::create_certificate(options.hosts, options.folder); !created) {
-        return fail("evod certificate", created.error());
+        return fail(created.error());
     }
     return 0;
 }
@@ -25,7 +25,8 @@ int create_certificate(const CertificateOptions& options) {
 } // namespace
 
 void add_certificate_command(command_line::Command& app) {
-    auto& command = app.add_command("certificate", "Create a key and a self-signed certificate for TLS");
+    auto& command =
+        app.add_command("certificate", "Create a key and a self-signed certificate for TLS").group("Access");
     auto& options = command.keep(CertificateOptions{});
     command.add_option("host", &options.hosts, "Host names and IP addresses with which clients connect to the server")
         .required();

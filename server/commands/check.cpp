@@ -14,7 +14,7 @@ namespace {
 int check(const std::string& path) {
     const base::Result<parameters::Experiment> experiment = experiments::load_experiment(path);
     if (!experiment) {
-        return fail("evod check", experiment.error());
+        return fail(experiment.error());
     }
     std::cout << path << ": valid";
     if (!experiment->description.empty()) {
@@ -33,7 +33,8 @@ int check(const std::string& path) {
 } // namespace
 
 void add_check_command(command_line::Command& app) {
-    auto& command = app.add_command("check", "Check an experiment file and print the parameters that it changes");
+    auto& command = app.add_command("check", "Check an experiment file and print the parameters that it changes")
+                        .group("Experiments");
     auto& path = command.keep(std::string{});
     command.add_option("experiment", &path, "Experiment file (JSON)").required();
     command.action([&] { return check(path); });

@@ -31,7 +31,7 @@ void add_certificate_command(command_line::Command& app);
 void add_parameters_command(command_line::Command& app);
 void add_limits_command(command_line::Command& app);
 
-/// Whether stdout contains a log, because a server has started. May be called from any thread.
-bool standard_output_is_log();
+/// Whether this process is a server, which writes its errors to the log. May be called from any thread.
+bool is_server();
 
 } // namespace evod::commands

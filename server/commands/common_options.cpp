@@ -1,19 +1,27 @@
 #include "server/commands/common_options.h"
 
+#include "proto/command_line/terminal.h"
+
 #include <algorithm>
 #include <cstdlib>
-#include <iostream>
 #include <thread>
 
 namespace evod::commands {
 
-int fail(std::string_view command, const std::string& error) {
-    std::cerr << command << ": " << error << '\n';
+int fail(const std::string& error) {
+    command_line::print_error("evod", error);
     return exit_error;
 }
 
-int fail(std::string_view command, const base::Refusal& error) {
-    return fail(command, base::to_text(error));
+int fail(const base::Refusal& error) {
+    const auto names_option = [](const base::Violation& violation) { return violation.field.starts_with("--"); };
+    if (error.violations.empty() || !std::ranges::all_of(error.violations, names_option)) {
+        return fail(base::to_text(error));
+    }
+    for (const base::Violation& violation : error.violations) { // each says what the message says
+        fail(base::to_text(violation));
+    }
+    return exit_error;
 }
 
 std::size_t default_thread_count() {
@@ -34,10 +42,10 @@ std::string data_folder_or_default(const std::string& given) {
     return {};
 }
 
-bool find_data_folder(std::string_view command, std::string& folder) {
+bool find_data_folder(std::string& folder) {
     folder = data_folder_or_default(folder);
     if (folder.empty()) {
-        fail(command, no_data_folder);
+        fail(no_data_folder);
     }
     return !folder.empty();
 }

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 
 namespace evod::commands {
 
@@ -16,9 +15,9 @@ inline constexpr command_line::WholeNumber any_number{}, generation_number{.min 
 constexpr int exit_error = 1;
 constexpr int exit_interrupted = 130; // ended by SIGINT or SIGTERM
 
-/// Prints an error to stderr, preceded by the name of the command: "evod run: …". Returns exit_error.
-int fail(std::string_view command, const std::string& error);
-int fail(std::string_view command, const base::Refusal& error);
+/// Prints an error to stderr, preceded by the name of the program: "evod: …". Returns exit_error.
+int fail(const std::string& error);
+int fail(const base::Refusal& error);
 
 /// The number of processors, at least 1. This is the default of --threads and --jobs.
 std::size_t default_thread_count();
@@ -31,6 +30,6 @@ inline constexpr const char* no_data_folder =
     "there is no default folder for runs, because neither XDG_STATE_HOME nor HOME is set: name a folder with --data";
 
 /// Replaces an empty `folder` with the default. If there is no default, prints the error and returns false.
-bool find_data_folder(std::string_view command, std::string& folder);
+bool find_data_folder(std::string& folder);
 
 } // namespace evod::commands

@@ -88,7 +88,7 @@ bool write_file(const std::string& option, const std::string& path, const auto& 
     if (file.flush()) {
         return true;
     }
-    fail("evod compare", option + ": cannot write " + path + ": the disk may be full");
+    fail(option + ": cannot write " + path + ": the disk may be full");
     return false;
 }
 
@@ -122,7 +122,7 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
                         " runs with the same seeds; bands: 95 % confidence interval of that mean",
                     lives ? "mean fitness (seconds lived + health at the end)" : "mean fitness", path);
     if (!drawn) {
-        fail("evod compare", "--plot: " + to_text(drawn.error()));
+        fail("--plot: " + to_text(drawn.error()));
     }
     return drawn.has_value();
 }
@@ -132,13 +132,13 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
 int compare(const CompareOptions& options) {
     const auto plan = experiments::plan_comparison(options.request);
     if (!plan) {
-        return fail("evod compare", plan.error());
+        return fail(plan.error());
     }
     if (const auto checked = check_outputs(options); !checked) {
-        return fail("evod compare", checked.error());
+        return fail(checked.error());
     }
     if (options.replicates < replicates_advised) {
-        std::cerr << "evod compare: --replicates: fewer than " << replicates_advised
+        std::cerr << "evod: --replicates: fewer than " << replicates_advised
                   << " replicates can show only large differences\n";
     }
     catch_interrupts();
@@ -175,7 +175,8 @@ int compare(const CompareOptions& options) {
 
 void add_compare_command(command_line::Command& app) {
     auto& command =
-        app.add_command("compare", "Compare a world with its controls, or with other worlds, using the same seeds");
+        app.add_command("compare", "Compare a world with its controls, or with other worlds, using the same seeds")
+            .group("Experiments");
     auto& options = command.keep(CompareOptions{});
     auto& request = options.request;
     request.drawn_seed = network::draw_seed();

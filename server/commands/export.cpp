@@ -88,10 +88,9 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
 
 void report_omitted_generations(RunFile& file) {
     if (const auto count = replay::generations_out_of_reach(file)) {
-        std::cerr << "evod export: " << count
+        std::cerr << "evod: " << count
                   << " generations are omitted: the file does not contain their organisms, and this evod cannot "
-                     "simulate them "
-                     "again, because another version of the model simulated them\n";
+                     "simulate them again, because another version of the model simulated them\n";
     }
 }
 
@@ -156,14 +155,15 @@ Result<void> export_to(const ExportOptions& options) {
 
 int export_run(const ExportOptions& options) {
     if (const Result<void> done = export_to(options); !done) {
-        return fail("evod export", done.error());
+        return fail(done.error());
     }
     return 0;
 }
 
 void add_export_command(command_line::Command& app) {
     auto& command =
-        app.add_command("export", "Export a table of a run file as CSV or JSON lines, or the whole run as a folder");
+        app.add_command("export", "Export a table of a run file as CSV or JSON lines, or the whole run as a folder")
+            .group("Run files");
     auto& options = command.keep(ExportOptions{});
     options.threads = default_thread_count();
     command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();

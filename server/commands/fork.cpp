@@ -37,27 +37,26 @@ base::Refusal with_fork_options(base::Refusal refused) {
 /// Prints a description of the new world, or an error. Returns the exit status.
 int fork(const ForkOptions& options) {
     if (!simulation::is_world_name(options.name)) {
-        return fail("evod fork",
-                    "--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
+        return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
     }
     // fork() only reads the origin, so a server may write to that file at the same time.
     const auto origin = run_file::RunFile::open_checked(options.run_file);
     if (!origin) {
-        return fail("evod fork", origin.error());
+        return fail(origin.error());
     }
     // Uses a snapshot of the file, so that a server cannot purge a generation while fork() reads it.
     if (const auto held = (*origin)->pin_snapshot(); !held) {
-        return fail("evod fork", held.error());
+        return fail(held.error());
     }
     const auto folder = run_file::DataFolder::open(options.data_folder);
     if (!folder) {
-        return fail("evod fork", folder.error());
+        return fail(folder.error());
     }
     base::InlineExecutor executor;
     const auto moment = replay::fork(**origin, options.at_generation, folder->file_of(options.name), options.name,
                                      network::draw_run_id(), executor);
     if (!moment) {
-        return fail("evod fork", with_fork_options(moment.error()));
+        return fail(with_fork_options(moment.error()));
     }
     std::cout << "world \"" << options.name << "\" begins with "
               << (options.at_generation ? "" : "tick " + std::to_string(moment->generation_tick) + " of ")
@@ -70,7 +69,8 @@ int fork(const ForkOptions& options) {
 
 void add_fork_command(command_line::Command& app) {
     auto& command =
-        app.add_command("fork", "Create a new world from a generation of a stored run, or from the end of the run");
+        app.add_command("fork", "Create a new world from a generation of a stored run, or from the end of the run")
+            .group("Run files");
     auto& options = command.keep(ForkOptions{});
     command.add_option("run", &options.run_file, "Run file, NAME.evod; the run may still be in progress").required();
     command

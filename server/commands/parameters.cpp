@@ -49,13 +49,13 @@ std::string parameter_list() {
 } // namespace
 
 void add_parameters_command(command_line::Command& app) {
-    app.add_command("parameters", "Print every parameter, as in docs/PARAMETERS.md").action([] {
+    app.add_command("parameters", "Print every parameter, as in docs/PARAMETERS.md").group("Help").action([] {
         std::cout << parameter_list();
     });
 }
 
 void add_limits_command(command_line::Command& app) {
-    app.add_command("limits", "Print every limit of the network, as in docs/OPERATIONS.md").action([] {
+    app.add_command("limits", "Print every limit of the network, as in docs/OPERATIONS.md").group("Help").action([] {
         std::cout << network::limit_list();
     });
 }

@@ -29,4 +29,8 @@ std::string table_row(const simulation::GenerationStatistics& s, bool with_islan
                     static_cast<unsigned long long>(s.poison_eaten), s.diversity);
 }
 
+std::string real_time_text(double factor) {
+    return row_text("%.*f × real time", factor < 0.1 ? 3 : factor < 10 ? 1 : 0, factor);
+}
+
 } // namespace evod::commands

@@ -11,4 +11,7 @@ namespace evod::commands {
 std::string table_heading(bool with_island);
 std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
 
+/// Formats a speed: "0.3 × real time", "7269 × real time".
+std::string real_time_text(double factor);
+
 } // namespace evod::commands

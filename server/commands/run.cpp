@@ -115,9 +115,9 @@ void print_summary(const simulation::World& world, const Cost& cost) {
                 static_cast<unsigned long long>(world.moment().tick), world.moment().simulated_s,
                 base::to_text(world.hash()).c_str());
     if (cost.tick_s > 0) {
-        std::printf("%.2f M organism-ticks/s, %.0f × real time (%.2f s in ticks)\n",
+        std::printf("%.2f M organism-ticks/s, %s (%.2f s in ticks)\n",
                     static_cast<double>(cost.organism_ticks) / cost.tick_s / 1e6,
-                    world.moment().simulated_s / cost.tick_s, cost.tick_s);
+                    real_time_text(world.moment().simulated_s / cost.tick_s).c_str(), cost.tick_s);
     }
     std::printf("start-up %.3f s, turnover of generations %.3f s\n", cost.start_s, cost.turnover_s);
 }
@@ -147,12 +147,12 @@ int status_of(evolution::Outcome outcome) {
 int run(const RunOptions& options) {
     const auto experiment = experiment_of(options);
     if (!experiment) {
-        const int status = fail("evod run", experiment.error());
+        const int status = fail(experiment.error());
         return experiment.error().code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
     }
     auto first_population = experiments::load_population(options.population, experiment->parameters);
     if (!first_population) {
-        return fail("evod run", "--population: " + base::to_text(first_population.error()));
+        return fail("--population: " + base::to_text(first_population.error()));
     }
     std::ofstream csv;
     std::optional<replay::Table> table;
@@ -161,7 +161,7 @@ int run(const RunOptions& options) {
         csv.open(options.csv);
         table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns());
         if (!csv.flush()) {
-            return fail("evod run", "--csv: cannot write " + options.csv + ": " + std::strerror(errno));
+            return fail("--csv: cannot write " + options.csv + ": " + std::strerror(errno));
         }
     }
     catch_interrupts();
@@ -201,7 +201,7 @@ int run(const RunOptions& options) {
         }
         std::fflush(stdout);
         if (table && !csv.flush()) {
-            return fail("evod run", "--csv: cannot write " + options.csv + ": the disk may be full");
+            return fail("--csv: cannot write " + options.csv + ": the disk may be full");
         }
     }
     progress.clear();
@@ -213,7 +213,7 @@ int run(const RunOptions& options) {
 } // namespace
 
 void add_run_command(command_line::Command& app) {
-    auto& command = app.add_command("run", "Run an experiment without a network");
+    auto& command = app.add_command("run", "Run an experiment without a network").group("Experiments");
     auto& options = command.keep(RunOptions{});
     command.add_option("experiment", &options.experiment, "Experiment file (JSON); default: the default world");
     command

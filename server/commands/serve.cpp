@@ -54,7 +54,7 @@ int run_server(network::ServerOptions options) {
     const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
     const auto server = network::Server::open(std::move(options));
     if (!server) {
-        return fail("evod", server.error());
+        return fail(server.error());
     }
     if (!folder.empty()) {
         log::info("runs are stored in {}", folder);
@@ -77,7 +77,7 @@ int run_server(network::ServerOptions options) {
 
 } // namespace
 
-bool standard_output_is_log() {
+bool is_server() {
     return is_logging;
 }
 
@@ -91,12 +91,13 @@ void add_server(Command& app) {
     app.action([&options] {
         begin_log(options);
         auto server = server_options(options);
-        return server ? run_server(*std::move(server)) : fail("evod", server.error());
+        return server ? run_server(*std::move(server)) : fail(server.error());
     });
 }
 
 void add_replay_command(Command& app) {
-    auto& command = app.add_command("replay", "Serve a stored run as a replay, which clients can view but not change");
+    auto& command = app.add_command("replay", "Serve a stored run as a replay, which clients can view but not change")
+                        .group("Run files");
     auto& options = command.keep(ServeOptions{});
     auto& run = command.keep(network::ServerOptions::Replay{});
     command.add_option("run", &run.path, "Run file, NAME.evod; the run may still be in progress").required();

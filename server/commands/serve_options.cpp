@@ -85,31 +85,17 @@ base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
 } // namespace
 
 void add_server_options(Command& command, ServeOptions& options) {
+    command.add_option("--threads", &options.threads, "Number of simulation threads")
+        .check(thread_count)
+        .show_default();
+    command.option_group("Listening");
     command
         .add_option("--bind", &options.bind_address, "IP address on which the server listens; 0.0.0.0: all interfaces")
         .show_default();
     command.add_option("--port", &options.port, "TCP port on which the server listens; 0: any free port")
         .check(port_number)
         .show_default();
-    command.add_option("--threads", &options.threads, "Number of simulation threads")
-        .check(thread_count)
-        .show_default();
     add_http_options(command, options);
-    command
-        .add_option("--log-level", &options.log_level,
-                    "Lowest level that is logged; debug adds every refusal, trace every request")
-        .choices({log::level_names.begin(), log::level_names.end()})
-        .show_default();
-    command
-        .add_option("--log-format", &options.log_format,
-                    "Format of the log: text, or json with one JSON object per line")
-        .choices({"text", "json"})
-        .show_default();
-    command.add_flag(
-        "--require-token", &options.token_needed,
-        "Require a token even if the server listens only on the loopback interface; on other interfaces the "
-        "server always requires one");
-    add_tls_options(command, options.tls);
     const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
         command.add_option(name, &count, help).check(WholeNumber{1, 1'000'000}).show_default();
     };
@@ -117,9 +103,27 @@ void add_server_options(Command& command, ServeOptions& options) {
                  "Maximum number of simultaneous sessions; each session uses one file descriptor");
     add_sessions("--sessions-per-address-max", options.session_bounds.sessions_per_address_max,
                  "Maximum number of simultaneous sessions from one IPv4 address or one IPv6 /64 prefix");
+    command.option_group("Access and TLS");
+    command.add_flag(
+        "--require-token", &options.token_needed,
+        "Require a token even if the server listens only on the loopback interface; on other interfaces the "
+        "server always requires one");
+    add_tls_options(command, options.tls);
+    command.option_group("Log");
+    command
+        .add_option("--log-level", &options.log_level,
+                    "Lowest level that is logged on standard error; debug adds every refusal, trace every request")
+        .choices({log::level_names.begin(), log::level_names.end()})
+        .show_default();
+    command
+        .add_option("--log-format", &options.log_format,
+                    "Format of the log: text, or json with one JSON object per line")
+        .choices({"text", "json"})
+        .show_default();
 }
 
 void add_first_world_options(Command& command, ServeOptions& options) {
+    command.option_group("First world");
     command.add_option("--experiment", &options.experiment_file,
                        "Experiment file (JSON) with the parameters of the first world");
     command
@@ -134,12 +138,13 @@ void add_first_world_options(Command& command, ServeOptions& options) {
         .add_option("--speed", &options.speed,
                     "Speed of the first or the restored world in simulated seconds per second, 0.001 to 10000, or max")
         .check([](const std::string& text) {
-            return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
+            return parse_speed(text) ? std::string{} : "got " + text + ", allowed max, or 0.001 to 10000";
         });
     command.add_flag("--start", &options.start, "Run the first or the restored world at once, without a goal");
 }
 
 void add_storage_options(Command& command, ServeOptions& options) {
+    command.option_group("Storage");
     const auto data = command.add_option("--data", &options.data_folder,
                                          "Folder for run files and the token file; the server restores the worlds "
                                          "stored in it; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");

@@ -281,7 +281,8 @@ Result<int> run_sweep(const SweepOptions& options) {
 } // namespace
 
 void add_sweep_command(command_line::Command& app) {
-    auto& command = app.add_command("sweep", "Run an experiment many times with different parameters and seeds");
+    auto& command = app.add_command("sweep", "Run an experiment many times with different parameters and seeds")
+                        .group("Experiments");
     auto& options = command.keep(SweepOptions{});
     command
         .add_option("sweep", &options.file,
@@ -319,7 +320,7 @@ void add_sweep_command(command_line::Command& app) {
                    "--gather found missing runs, 130 interrupted: the same command resumes the sweep.");
     command.action([&] {
         const Result<int> status = run_sweep(options);
-        return status ? *status : fail("evod sweep", status.error());
+        return status ? *status : fail(status.error());
     });
 }
 

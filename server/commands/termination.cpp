@@ -66,7 +66,7 @@ const char* missing_resource(std::exception_ptr thrown) {
     }
     const char* const missing = missing_resource(std::current_exception());
     memory_for_last_message.reset();
-    if (standard_output_is_log()) {
+    if (is_server()) {
         log::error("{}: evod is shutting down; restart it to resume the runs", missing);
     } else {
         std::cerr << "evod: " << missing << '\n';

@@ -20,7 +20,7 @@ int add_token(const TokenOptions& options) {
     const access::Role role = *access::role_named(options.role);
     const auto secret = access::add_token(options.folder, options.name, role);
     if (!secret) {
-        return fail("evod token", secret.error());
+        return fail(secret.error());
     }
     std::cerr << "token of " << options.name << ", role " << access::name_of(role)
               << ": it cannot be printed again; evoctl and evoview read it from the environment variable EVOD_TOKEN or "
@@ -32,10 +32,10 @@ int add_token(const TokenOptions& options) {
 int list_tokens(const TokenOptions& options) {
     const auto tokens = access::read_tokens(options.folder);
     if (!tokens) {
-        return fail("evod token", tokens.error());
+        return fail(tokens.error());
     }
     if (tokens->empty()) {
-        std::cerr << "evod token: there are no tokens in " << options.folder
+        std::cerr << "evod: there are no tokens in " << options.folder
                   << ": create one with evod token add NAME --role ROLE\n";
     }
     std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "CREATED ON");
@@ -47,7 +47,7 @@ int list_tokens(const TokenOptions& options) {
 
 int revoke_token(const TokenOptions& options) {
     if (const auto revoked = access::revoke_token(options.folder, options.name); !revoked) {
-        return fail("evod token", revoked.error());
+        return fail(revoked.error());
     }
     return 0;
 }
@@ -55,13 +55,13 @@ int revoke_token(const TokenOptions& options) {
 } // namespace
 
 void add_token_command(command_line::Command& app) {
-    auto& token = app.add_command("token", "Create, list and revoke the tokens of clients on other machines");
+    auto& token =
+        app.add_command("token", "Create, list and revoke the tokens of clients on other machines").group("Access");
     auto& options = token.keep(TokenOptions{});
     const auto set_up = [&options](command_line::Command& command, int (*act)(const TokenOptions&)) {
         command.add_option("--data", &options.folder,
                            "Data folder of the server; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
-        command.action(
-            [&options, act] { return find_data_folder("evod token", options.folder) ? act(options) : exit_error; });
+        command.action([&options, act] { return find_data_folder(options.folder) ? act(options) : exit_error; });
     };
 
     auto& add = token.add_command("add", "Create a token and print it; it cannot be printed again");

@@ -4,6 +4,7 @@
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/progress_line.h"
+#include "server/commands/report.h"
 #include "server/runtime/worker_pool.h"
 
 #include <chrono>
@@ -32,7 +33,7 @@ std::string text_of(const StoredMoment& moment) {
 }
 
 void print_difference(const std::string& path, const Difference& difference) {
-    std::cerr << "evod verify: " << path << " differs from the run that its parameters and seed produce\n"
+    std::cerr << "evod: " << path << " differs from the run that its parameters and seed produce\n"
               << "last tick that agrees: "
               << (difference.agrees ? text_of(*difference.agrees) + ": " + difference.agreeing_part : "none") << '\n'
               << "first that differs: " << text_of(difference.differs) << ": " << difference.part << ": stored "
@@ -59,7 +60,7 @@ int verify(const VerifyOptions& options) {
     const auto start = Clock::now();
     const auto file = run_file::RunFile::open_checked(options.run);
     if (!file) {
-        return fail("evod verify", file.error());
+        return fail(file.error());
     }
 
     ProgressLine progress;
@@ -78,27 +79,28 @@ int verify(const VerifyOptions& options) {
     });
     progress.clear();
     if (!verified) {
-        return fail("evod verify", verified.error());
+        return fail(verified.error());
     }
     if (verified->difference) {
         print_difference(options.run, *verified->difference);
         return exit_error;
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    const double factor = verified->simulated_s / seconds;
     std::printf(
         "%s: everything agrees: %llu generations, %llu ticks, %llu state hashes, %llu checkpoints compared in %.2f s, "
-        "%.*f × real time\n",
+        "%s\n",
         options.run.c_str(), static_cast<unsigned long long>(verified->generations),
         static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
-        static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
+        static_cast<unsigned long long>(verified->checkpoints), seconds,
+        real_time_text(verified->simulated_s / seconds).c_str());
     return 0;
 }
 
 } // namespace
 
 void add_verify_command(command_line::Command& app) {
-    auto& command = app.add_command("verify", "Simulate a stored run again and compare the result with the run file");
+    auto& command = app.add_command("verify", "Simulate a stored run again and compare the result with the run file")
+                        .group("Run files");
     auto& options = command.keep(VerifyOptions{});
     command.add_option("run", &options.run, "Run file, NAME.evod; the run may still be in progress").required();
     command.add_option("--threads", &options.threads, "Number of simulation threads")

@@ -156,7 +156,7 @@ std::optional<Hypercube> read_hypercube(const JsonNode& node, SweepErrors& error
         } else if (member->name == "parameters") {
             hypercube.parameters = &member->value;
         } else {
-            errors.add(parameters::with_line(field, member->line), "samples, parameters", "an unknown name");
+            errors.add(parameters::with_line(field, member->line), "samples, parameters", base::unknown_name);
         }
     }
     if (errors.violations.size() > errors_before) {

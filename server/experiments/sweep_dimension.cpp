@@ -137,7 +137,7 @@ const char* read_range_members(Dimension& dimension, Range& range, const JsonNod
             }
         } else {
             errors.add(parameters::with_line(name, member->line),
-                       steps == Steps::Needed ? "from, to, steps, scale" : "from, to, scale", "an unknown name");
+                       steps == Steps::Needed ? "from, to, steps, scale" : "from, to, scale", base::unknown_name);
         }
     }
     return !has_from ? "from" : !has_to ? "to" : !has_steps ? "steps" : nullptr;

@@ -42,6 +42,25 @@ void read_whole(const JsonMember& member, std::uint64_t least, std::uint64_t gre
     }
 }
 
+/// Returns the members that are allowed instead of an unknown one, and which of them the author may have meant.
+std::string members_instead_of(const std::string& name) {
+    static constexpr std::string_view members[] = {"description",     "experiment", "grid", "list",
+                                                   "latin_hypercube", "replicates", "seed", "generations"};
+    std::string allowed, meant;
+    for (const std::string_view member : members) {
+        allowed += (allowed.empty() ? "" : ", ") + std::string{member};
+    }
+    if (name == "parameters") {
+        meant = "grid";
+    } else if (parameters::find_parameter(name) != nullptr) {
+        meant = "grid." + name;
+    }
+    for (const std::string_view member : parameters::similar_names(name, members)) {
+        meant += (meant.empty() ? "" : ", ") + std::string{member};
+    }
+    return allowed + (meant.empty() ? "" : "; did you mean " + meant);
+}
+
 SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
     SweepMembers members;
     for (const JsonMember* member : parameters::unique_members(document, "", errors.violations)) {
@@ -57,9 +76,7 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
         } else if (name == "seed") {
             read_whole(*member, 0, ~std::uint64_t{0}, members.seed, errors);
         } else if (name != "description") {
-            errors.add(parameters::with_line(name, member->line),
-                       "description, experiment, grid, list, latin_hypercube, replicates, seed, generations",
-                       "an unknown name");
+            errors.add(parameters::with_line(name, member->line), members_instead_of(name), base::unknown_name);
         } else if (!member->value.is_string()) {
             errors.add(name, member->value, "a text");
         }

@@ -1,10 +1,13 @@
 #include "server/log/log.h"
 
+#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <ctime>
+#include <memory>
 
 namespace evod::log {
 namespace {
@@ -70,6 +73,11 @@ std::string json_text(std::string_view text) {
 
 void begin(Level least, Format format) {
     format_in_use = format;
+    const char* const no_color = std::getenv("NO_COLOR"); // https://no-color.org
+    const bool may_color = format == Format::Text && (no_color == nullptr || *no_color == '\0');
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+        "", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(may_color ? spdlog::color_mode::automatic
+                                                                            : spdlog::color_mode::never)));
     spdlog::set_pattern(format == Format::Json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(to_spdlog(least));
     spdlog::flush_on(to_spdlog(least));

@@ -1,4 +1,4 @@
-// Log: prints messages for the operator on standard output, either as sentences or as one JSON object per line.
+// Log: prints messages for the operator on standard error, either as sentences or as one JSON object per line.
 //
 //   log::info({.session = 3, .client = "anna"}, "session {}: {} connected", 3, "anna");
 //

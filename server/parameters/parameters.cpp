@@ -181,14 +181,14 @@ const ParameterDescription* find_parameter(std::string_view name) {
     return found == registry.end() ? nullptr : &*found;
 }
 
-std::vector<std::string_view> similar_parameter_names(std::string_view name) {
+std::vector<std::string_view> similar_names(std::string_view name, std::span<const std::string_view> existing) {
     name = name.substr(0, 64);
     std::vector<std::pair<std::size_t, std::string_view>> near;
-    for (const ParameterDescription& description : parameter_registry()) {
-        const std::size_t distance = edit_distance(name, description.name);
-        const bool part = name.size() >= 3 && description.name.find(name) != std::string_view::npos;
-        if (part || distance <= 1 + description.name.size() / 4) {
-            near.emplace_back(part ? 0 : distance, description.name);
+    for (const std::string_view other : existing) {
+        const std::size_t distance = edit_distance(name, other);
+        const bool part = name.size() >= 3 && other.find(name) != std::string_view::npos;
+        if (part || distance <= 1 + other.size() / 4) {
+            near.emplace_back(part ? 0 : distance, other);
         }
     }
     std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -197,6 +197,14 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name) {
         names.push_back(near[i].second);
     }
     return names;
+}
+
+std::vector<std::string_view> similar_parameter_names(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const ParameterDescription& description : parameter_registry()) {
+        names.push_back(description.name);
+    }
+    return similar_names(name, names);
 }
 
 namespace {
@@ -212,7 +220,7 @@ std::optional<base::Violation> assign_one(const Assignment& assignment, std::str
     for (const std::string_view name : similar_parameter_names(assignment.name)) {
         allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
     }
-    return base::Violation{std::move(field), std::move(allowed), "an unknown name"};
+    return base::Violation{std::move(field), std::move(allowed), base::unknown_name};
 }
 
 } // namespace

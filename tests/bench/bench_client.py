@@ -62,11 +62,11 @@ class Server:
 
     def __init__(self, evod, *arguments):
         began = time.perf_counter()
-        self.process = subprocess.Popen([evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
-        line = next((line for line in self.process.stdout if "listening on " in line), None)
+        self.process = subprocess.Popen([evod, "--port", "0", *arguments], stderr=subprocess.PIPE, text=True)
+        line = next((line for line in self.process.stderr if "listening on " in line), None)
         assert line, "evod ended at once"
         self.port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
-        self.reader = threading.Thread(target=self.process.stdout.read, daemon=True)
+        self.reader = threading.Thread(target=self.process.stderr.read, daemon=True)
         self.reader.start()
         self.control = Client(self.port)
         self.start_s = time.perf_counter() - began

@@ -160,7 +160,8 @@ class Options(Folder):
 
     def test_keep_nothing_excludes_options_of_run_files(self):
         for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):
-            self.assertIn(f"--keep-nothing excludes {option[0]}", evod("--keep-nothing", *option, status=2).stderr)
+            self.assertEqual(evod("--keep-nothing", *option, status=2).stderr,
+                             f"evod: --keep-nothing: not allowed with {option[0]}\nSee evod --help\n")
 
     def test_an_invalid_number_is_reported_with_its_range(self):
         for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
@@ -172,14 +173,25 @@ class Options(Folder):
                                    (["export", "x", "--generation"], 1, 2**64 - 1), (["verify", "x", "--threads"], 1, 1024)):
             for given in ("-1", "1e99", "abc", "1.5", "010", str(2**64), *(["0"] if least > 0 else [])):
                 with self.subTest(words=words, given=given):
-                    self.assertIn(f"{words[-1]}: must be a whole number, {least} to {most}, not {given}",
+                    self.assertIn(f"evod: {words[-1]}: got {given}, allowed a whole number, {least} to {most}\n",
                                   evod(*words, given, status=2).stderr)
         for given in ("0", "-1", "1e99", "abc", "nan"):
-            self.assertIn(f"--speed: must be max, or a number from 0.001 to 10000, not {given}",
+            self.assertIn(f"evod: --speed: got {given}, allowed max, or 0.001 to 10000\n",
                           evod("--speed", given, status=2).stderr)
 
 
 class Output(Folder):
+    def test_a_server_logs_on_standard_error(self):
+        with subprocess.Popen([EVOD, "--port", "0", "--data", self.folder.name], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as server:
+            lines = [server.stderr.readline() for _ in range(2)]
+            server.terminate()
+            printed, logged = waiting.communicate(server)
+        self.assertEqual(server.returncode, 0)
+        self.assertRegex(lines[1], r" info evod \S+ listening on 127\.0\.0\.1:\d+, world \"default\", seed \d+\n$")
+        self.assertIn(" info stopped\n", logged)
+        self.assertEqual(printed, "")
+
     def test_a_full_standard_output_is_an_error(self):
         for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",
                                                                                                    "1", "--generations", "1"):
@@ -190,8 +202,8 @@ class Output(Folder):
 
     def test_an_unknown_command_gets_a_list_of_commands(self):
         said = evod("exprot", status=2).stderr
-        self.assertIn("exprot", said)
-        self.assertIn("Commands are run compare sweep check fork replay verify export token certificate parameters limits", said)
+        self.assertEqual(said, "evod: exprot: unknown command; did you mean export?\nSee evod --help\n")
+        self.assertIn("unknown command; commands are run, compare, sweep, ", evod("xxxxxxxx", status=2).stderr)
 
     def test_an_output_file_error_is_reported_with_its_reason(self):
         self.assertIn(f"--csv: cannot write {self.folder.name}: Is a directory",
@@ -233,7 +245,7 @@ class Population(Folder):
         }.items():
             with self.subTest(rows):
                 said = self.run_with(rows, status=1).stderr
-                self.assertIn("evod run: --population: ", said)
+                self.assertIn("evod: --population: ", said)
                 self.assertIn("plate.csv: ", said)
                 self.assertIn(word, said)
         self.assertIn("line 1: got \"{}\", allowed the heading island,",
@@ -249,7 +261,7 @@ class Check(Folder):
     def test_errors_name_their_line(self):
         for text, word in {
             '{\n  "food_count": 3,\n  "mutation_chance": 2\n}': "mutation_chance (line 3): got 2, allowed 0 to 1",
-            '{\n\n "fod_count": 3}': "fod_count (line 3): got an unknown name, allowed a parameter of the registry; did you mean",
+            '{\n\n "fod_count": 3}': "fod_count (line 3): unknown name; did you mean food_count",
             '{\n "food_count": 3,\n}': "not JSON: line 3",
             '{\n "food_count": -3}': "food_count (line 2): got -3",
             '{\n "seed": 1.5}': "seed (line 2): got 1.5",

@@ -123,7 +123,7 @@ class Commands(WithServer):
         self.assertEqual(self.answer("speed", "max")["world"]["speed"], {"max": True})
         self.evoctl("pause")
         self.evoctl("reset")
-        self.assertIn("FAILED_PRECONDITION", self.evoctl("resume", status=1))
+        self.assertIn("evoctl: nothing to resume: ", self.evoctl("resume", status=1))
         self.evoctl("speed", "0", status=2)
         self.evoctl("speed", "fast", status=2)
 
@@ -138,8 +138,7 @@ class Commands(WithServer):
         self.assertEqual(reported.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
         wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
-        self.assertIn("mutation_chance: got 2, allowed 0 to 1", wrong)
-        self.assertIn("restitution: got -1, allowed 0 to 1", wrong)
+        self.assertEqual(wrong, "evoctl: mutation_chance: got 2, allowed 0 to 1\nevoctl: restitution: got -1, allowed 0 to 1\n")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
         self.evoctl("set", "--dry-run", "survivors=0.25")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
@@ -151,6 +150,71 @@ class Commands(WithServer):
         self.assertLessEqual({"population_size", "mutation_chance", "flee_rule", "migration"}, registry)
         self.assertIn("tournament", self.evoctl("params", "selection"))
 
+    def test_set_says_when_a_value_takes_effect(self):
+        self.assertEqual(self.evoctl("set", "fitness=gene_sum", "survivors=0.25").splitlines()[:2],
+                         ["fitness: gene_sum after the next reset (now life)", "survivors=0.25"])
+        self.evoctl("step", "1")
+        self.assertIn("food_count: 7 from the next generation (now 25)\n", self.evoctl("set", "food_count=7"))
+        self.evoctl("reset")
+        self.assertEqual(self.evoctl("get", "fitness"), "fitness=gene_sum\n")
+
+    def test_errors_name_what_was_typed(self):
+        for words, error in (
+                (["speed", "0"], "SPEED: got 0, allowed 0.001 to 10000"),
+                (["speed", "fast"], "SPEED: got fast, allowed max, or 0.001 to 10000, such as 2 for twice real time"),
+                (["create", "no/slash"], 'NAME: got "no/slash", allowed 1 to 64 of a-z A-Z 0-9 _ -'),
+                (["set", "--at-generation", "0", "survivors=1"], "--at-generation: got 0, allowed at least 2"),
+                (["set", "mutation_chanse=1"], "mutation_chanse: unknown parameter; did you mean mutation_chance?"),
+                (["status", "--iland"], "--iland: unknown option\nSee evoctl status --help")):
+            self.assertEqual(self.evoctl(*words, status=2), f"evoctl: {error}\n")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "wrong.json"
+            path.write_text('{"survivors": 3}')
+            self.assertEqual(self.evoctl("create", "x", "--experiment", str(path), status=2),
+                             "evoctl: --experiment: survivors (line 1): got 3, allowed 0 to 1\n")
+        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: ID: got 5000, allowed 0 to 49 (no such organism)\n")
+
+    def test_run_wait_says_how_long_it_takes(self):
+        def said(*words):
+            return waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True,
+                               check=True).stderr.splitlines()
+        self.evoctl("speed", "1")
+        self.evoctl("set", "generation_s=1.5")
+        self.evoctl("reset")
+        self.assertEqual(said("run", "2", "--wait")[0], "at 1x, a generation of 1.5 s takes 1.5 s: 2 generations take about 3.0 s; "
+                                                        "evoctl speed max is faster")
+        self.evoctl("speed", "100")
+        lines = said("run", "2", "--wait")
+        self.assertEqual(lines[0], "at 100x, a generation of 1.5 s takes 0.0 s: 2 generations take about 0.0 s")
+        self.assertEqual([line.split(":")[0] for line in lines[1:]], ["generation 3", "generation 4"])
+        self.evoctl("speed", "2")
+        shown = self.on_terminal("run", "1", "--wait")
+        self.assertRegex(shown, r"\r\x1b\[K\[█[^\]]*\] \d+ %, \d.* left")
+        self.assertRegex(shown, r"\] 100 %")
+
+    def on_terminal(self, *words, **environment):
+        """What evoctl prints if all its streams are a terminal."""
+        own, other = pty.openpty()
+        self.addCleanup(os.close, own)
+        with subprocess.Popen([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], stdin=other, stdout=other,
+                              stderr=other, env={**os.environ, **environment}) as process:
+            os.close(other)
+            shown = b""
+            with contextlib.suppress(OSError):  # EIO after the last output
+                while part := os.read(own, 10_000):
+                    shown += part
+            waiting.ended(process)
+        return shown.decode()
+
+    def test_colours_are_for_terminals_only(self):
+        self.evoctl("run")
+        self.assertIn("\x1b[32mrunning\x1b[0m", self.on_terminal("status", NO_COLOR=""))
+        self.assertIn("\x1b[31mevoctl:\x1b[0m --world: got nowhere", self.on_terminal("--world", "nowhere", "pause", NO_COLOR=""))
+        for words in (["status"], ["--world", "nowhere", "pause"]):
+            self.assertNotIn("\x1b", self.on_terminal(*words, NO_COLOR="1"))
+            done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True)
+            self.assertNotIn("\x1b", done.stdout + done.stderr)
+
     def test_worlds_are_created_named_and_deleted(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "small.json"
@@ -160,13 +224,13 @@ class Commands(WithServer):
         self.assertEqual(self.evoctl("worlds").split(), ["default", "other", "small"])
         self.assertEqual(self.evoctl("--world", "small", "get", "population_size", "food_count").split(),
                          ["population_size=7", "food_count=9"])
-        self.assertIn("ALREADY_EXISTS", self.evoctl("create", "other", status=1))
+        self.assertIn("NAME: got other, allowed an unused name", self.evoctl("create", "other", status=1))
         self.evoctl("create", "no/slash", status=2)
         self.evoctl("--world", "other", "speed", "max")  # a new world has the pace of real time
         self.evoctl("--world", "other", "run", "1", "--wait")
         self.assertIn("GENERATION", self.evoctl("--world", "other", "history"))
         self.evoctl("delete", "other")
-        self.assertIn("NOT_FOUND", self.evoctl("--world", "other", "pause", status=1))
+        self.assertIn("--world: got other, allowed default, small", self.evoctl("--world", "other", "pause", status=1))
         self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
 
     def test_forks_start_at_a_generation_or_now(self):
@@ -176,9 +240,9 @@ class Commands(WithServer):
         self.evoctl("--world", "default", "fork", "--name", "now")
         self.assertEqual([self.answer("--world", name, "stats")["world"]["generation"] for name in
                           ("then", "later", "now")], [2, 2, 3])
-        self.assertIn("--name is required", self.evoctl("fork", "other", status=2))
-        self.assertIn("NOT_FOUND", self.evoctl("fork", "nowhere", "--name", "x", status=1))
-        self.assertIn("at_generation: got 9, allowed 1 to 3",
+        self.assertIn("--name: got nothing, a value is required", self.evoctl("fork", "other", status=2))
+        self.assertIn("WORLD: got nowhere, allowed ", self.evoctl("fork", "nowhere", "--name", "x", status=1))
+        self.assertIn("--at-generation: got 9, allowed 1 to 3",
                       self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
 
     def test_earlier_generations_are_shown(self):
@@ -199,7 +263,7 @@ class Commands(WithServer):
         self.assertIn("\nthen\n", reported)
         self.assertIn("small as it was: generation 2, tick 120",
                       self.evoctl("--world", "small", "organism", "3", "--at-generation", "2"))
-        self.assertIn("generation: got 9, allowed 1 to 3",
+        self.assertIn("--at-generation: got 9, allowed 1 to 3",
                       self.evoctl("--world", "small", "stats", "--at-generation", "9", status=1))
         self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
 
@@ -263,12 +327,15 @@ class Commands(WithServer):
 
     def test_it_describes_and_completes(self):
         self.assertIn("0.2.0", self.evoctl("describe"))
-        self.assertIn("_evoctl", self.evoctl("complete", "bash"))
-        script = f'source <("{EVOCTL}" complete bash); COMP_WORDS=(evoctl --server {self.address} set mutation_ch);' \
-                 'COMP_CWORD=4; COMP_LINE="${COMP_WORDS[*]}"; COMP_POINT=${#COMP_LINE}; _evoctl; echo "${COMPREPLY[@]}"'
-        path = os.path.dirname(EVOCTL) + ":" + os.environ["PATH"]
-        done = waiting.run(["bash", "-c", script], capture_output=True, text=True, env={**os.environ, "PATH": path})
-        self.assertIn("mutation_chance", done.stdout, done.stderr)
+        for words, offered in ((["set", "mutation_ch"], ["mutation_chance="]), (["set", "selection=r"], ["selection=roulette",
+                                "selection=random"]), (["get", "mutation_ch"], ["mutation_chance"]), (["delete", "d"], ["default"]),
+                               (["--world", "d"], ["default"]), (["create", "x", "--set", "food_cou"], ["food_count="]),
+                               (["speed", "m"], ["max"])):
+            done = self.evoctl_completes("--server", self.address, *words)
+            self.assertEqual([line.split("\t")[0] for line in done.splitlines()], offered)
+
+    def evoctl_completes(self, *words):
+        return waiting.run([EVOCTL, "complete", "--", *words], capture_output=True, text=True, check=True).stdout
 
 
 class WithoutServer(unittest.TestCase):
@@ -304,11 +371,11 @@ class WithoutServer(unittest.TestCase):
                 with self.subTest(words=words, given=given):
                     done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True, text=True)
                     self.assertEqual(done.returncode, 2)
-                    self.assertIn(f"{name}: must be a whole number, {least} to {greatest}, not {given}", done.stderr)
+                    self.assertIn(f"evoctl: {name}: got {given}, allowed a whole number, {least} to {greatest}\n", done.stderr)
         for given in ("0", "-1", "nan", "soon"):
             done = waiting.run([EVOCTL, "--timeout", given, "status"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)
-            self.assertIn(f"--timeout: must be a number, 0.001 to 86400, not {given}", done.stderr)
+            self.assertIn(f"evoctl: --timeout: got {given}, allowed 0.001 to 86400\n", done.stderr)
 
 
 unittest.main()

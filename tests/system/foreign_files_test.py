@@ -88,9 +88,9 @@ class ForeignFiles(unittest.TestCase):
             self.assert_refused(*arguments, words=f"{large}: too large for {file} ({most} at most)")
 
     def test_sql_in_a_run_file_is_refused_and_not_run(self):
-        server = subprocess.Popen([EVOD, *map(str, self.serve("--seed", "7"))], stdout=subprocess.PIPE, text=True)
-        self.addCleanup(server.stdout.close)
-        for line in server.stdout:
+        server = subprocess.Popen([EVOD, *map(str, self.serve("--seed", "7"))], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(server.stderr.close)
+        for line in server.stderr:
             if "listening on" in line:
                 break
         server.terminate()

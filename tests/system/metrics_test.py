@@ -456,12 +456,12 @@ class Http(Case):
 class Top(Case):
     def test_once_is_one_page(self):
         server = self.serve("--speed", "max", "--start")
-        world = r"(?m)^default +[1-9]\d* +\S+ (µs|ms)"  # unless it stalled for these 0.2 s
+        world = r"(?m)^default +[1-9]\d* +█+ +\S+ (µs|ms) +\S+ (µs|ms)"  # unless it stalled for these 0.2 s
         page = plain.until(lambda: (lambda one: one if re.search(world, one) else None)(
             self.evoctl(server, "top", "--once", "--interval", "0.2")), "ticks")
         self.assertRegex(page, rf"^evod \d\S* at 127\.0\.0\.1:{server.port}, up ")
-        for line in (r"memory +\d+ MiB", r"processor +\d+ %: network \d+ %, simulation \d+ %, storage \d+ %", r"clients +1: 1 admin",
-                     r"logins +0 failed", r"requests +\d+/s; 0 of 1024 wait", r"disk +keeps up; "):
+        for line in (r"memory +\d+ MiB", r"processor +\d+ %$", r"  network .* \d+ %  simulation .* \d+ %$", r"  storage .* \d+ %", r"clients +1: 1 admin",
+                     r"logins +0 failed", r"requests +0 of 1024 waiting; \d+/s", r"disk +keeps up; "):
             self.assertRegex(page, f"(?m)^{line}")
         self.assertNotIn("\x1b", page)
 
@@ -545,11 +545,11 @@ class Log(Case):
     def test_the_log_level_filters_messages(self):
         for level, written in (("info", True), ("warn", False), ("error", False)):
             process = subprocess.Popen([EVOD, "--keep-nothing", "--port", "0", "--log-level", level],
-                                       stdout=subprocess.PIPE, text=True)
+                                       stderr=subprocess.PIPE, text=True)
             self.addCleanup(process.kill)
             plain.until(lambda: catches(process.pid, signal.SIGTERM), "it minds signals")
             process.terminate()
-            self.assertEqual("listening on" in waiting.communicate(process)[0], written, level)
+            self.assertEqual("listening on" in waiting.communicate(process)[1], written, level)
 
     def test_every_refusal_is_in_the_log_of_level_debug(self):
         server = self.serve("--log-level", "debug")

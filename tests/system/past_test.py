@@ -357,6 +357,9 @@ class Replay(Case):
         served = self.server("replay", self.run_file, "--generation", "2")
         run = lambda *words: waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, *words],
                                          capture_output=True, text=True)
+        status = run("status").stdout
+        self.assertIn("\nit shows a stored run, which it does not change\n", status)
+        self.assertNotIn("not recorded", status)
         self.assertEqual(run("speed", "max").returncode, 0)
         done = run("run", "1", "--wait")
         self.assertEqual(done.returncode, 0, done.stderr)

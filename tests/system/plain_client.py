@@ -2126,11 +2126,11 @@ class StartAndEnd(unittest.TestCase):
             waiting.quicker_than(10, end)
 
     def test_it_outlives_the_reader_of_its_log(self):
-        process = subprocess.Popen([evod_path, "--port", "0", "--keep-nothing"], stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen([evod_path, "--port", "0", "--keep-nothing"], stderr=subprocess.PIPE, text=True)
         self.addCleanup(waiting.ended, process)
         self.addCleanup(process.terminate)
-        line = process.stdout.readline()
-        process.stdout.close()
+        line = process.stderr.readline()
+        process.stderr.close()
         server = lambda: None  # the parts of a Server that a Client needs
         server.port = int(re.search(r":(\d+), world", line)[1])
         for _ in range(3):  # each is logged

@@ -207,7 +207,7 @@ class Verify(Case):
         }.items():
             self.assertIn(words, evod("verify", path, status=1))
         self.assertIn("--threads", evod("verify", plain, "--threads", 0, status=2))
-        self.assertIn("run is required", evod("verify", status=2))
+        self.assertIn("evod: run: got nothing, a value is required", evod("verify", status=2))
 
     @unittest.skipIf(os.geteuid() != 0, "only root can become a user with read access alone")
     def test_read_access_is_enough_to_verify(self):
@@ -469,7 +469,7 @@ class Export(Case):
         for arguments, words in {
             (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
-            (path, "--what", "events", "--bundle", self.folder + "/b"): ["--what excludes --bundle"],
+            (path, "--what", "events", "--bundle", self.folder + "/b"): ["--what: not allowed with --bundle"],
         }.items():
             said = evod("export", *arguments, status=2)
             for word in words:

@@ -260,7 +260,8 @@ class Refused(Folder):
         for text, words in {
             '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
                 "small.json: invalid sweep\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
-            '{"list": [{}],\n"generation": 3}': "generation (line 2): got an unknown name, allowed description, experiment",
+            '{"list": [{}],\n"generation": 3}': "generation (line 2): unknown name; did you mean generations?",
+            '{"parameters": {"food_count": [1]}, "generations": 3}': "parameters (line 1): unknown name; did you mean grid?",
             '{"list": [{}], "experiment": "nowhere.json"}': "nowhere.json: cannot be read: No such file",
             '{"list": [{}]}': "generations: got nothing, allowed a criterion that ends a run",
             '{"list": [{}]': "small.json: not JSON: line 1",

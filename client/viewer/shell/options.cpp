@@ -2,7 +2,7 @@
 
 #include "client/core/credentials.h"
 #include "client/viewer/drawing/gui.h"
-#include "proto/command_line/command.h"
+#include "proto/command_line/completion.h"
 #include "proto/command_line/number.h"
 
 #include <cerrno>
@@ -52,8 +52,8 @@ std::string parse_size(const std::string& text, Options::Size& size) {
             return {};
         }
     }
-    return "got \"" + text + "\", allowed WIDTHxHEIGHT like 1280x720, each from " + std::to_string(pixels_min) +
-           " to " + std::to_string(pixels_max);
+    return "got " + text + ", allowed WIDTHxHEIGHT like 1280x720, each from " + std::to_string(pixels_min) + " to " +
+           std::to_string(pixels_max);
 }
 
 core::Result<Script> read_script(const std::string& path) {
@@ -159,8 +159,16 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot or a recorded frame")
             .show_default()
             .check(RealNumber{0, 1e6});
+    add_help_commands(app);
+    app.action([] { return 0; }); // main() opens the window
+    if (command_line::complete(app, argc, argv)) {
+        return 0;
+    }
     if (const auto ended = app.parse(argc, argv)) {
         return *ended;
+    }
+    if (app.given_command() != nullptr) {
+        return app.run();
     }
 
     const auto endpoint = core::parse_endpoint(server);
@@ -173,7 +181,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         return app.reject(known.error().what);
     }
     if (timeout.is_given() && screenshot.path.empty() && record.path.empty()) {
-        return app.reject("--timeout: requires --screenshot or --record");
+        return app.reject("--timeout: allowed only with --screenshot or --record");
     }
     if (!size.empty()) {
         if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {

@@ -56,7 +56,7 @@ TEST(Command, RunsTheCommandThatWasGiven) {
 TEST(Command, WithoutActionNeedsASubcommand) {
     Program program;
     EXPECT_EQ(program.call({}), exit_usage);
-    EXPECT_THAT(program.err, HasSubstr("A subcommand is required"));
+    EXPECT_THAT(program.err, HasSubstr("lab: COMMAND: got nothing, allowed run, token\nSee lab --help\n"));
     EXPECT_EQ(program.call({"token"}), exit_usage);
     program.app.action([&] { program.ran = "lab"; });
     EXPECT_EQ(program.call({}), 0);
@@ -67,14 +67,17 @@ TEST(Command, ListsItsSubcommandsAfterAnUnknownOne) {
     Program program;
     program.app.action([] {});
     EXPECT_EQ(program.call({"walk"}), exit_usage);
-    EXPECT_THAT(program.err, HasSubstr("not expected: walk"));
-    EXPECT_THAT(program.err, HasSubstr("Commands are run token\n"));
+    EXPECT_EQ(program.err, "lab: walk: unknown command; commands are run, token\nSee lab --help\n");
+    EXPECT_EQ(program.call({"tokn", "--any", "list"}), exit_usage);
+    EXPECT_THAT(program.err, HasSubstr("lab: tokn: unknown command; did you mean token?\n"));
 }
 
 TEST(Command, PrintsHelpAndVersionWithStatusZero) {
     Program program;
-    EXPECT_EQ(program.call({"--version"}), 0);
-    EXPECT_EQ(program.out, "lab 1.2\n");
+    for (const char* option : {"--version", "-V"}) {
+        EXPECT_EQ(program.call({option}), 0);
+        EXPECT_EQ(program.out, "lab 1.2\n");
+    }
     EXPECT_EQ(program.call({"run", "--help"}), 0);
     EXPECT_THAT(program.out, HasSubstr("Usage: lab run [OPTIONS]"));
     EXPECT_EQ(program.ran, "");
@@ -102,24 +105,64 @@ TEST(Command, TakesOptionsAfterTheSubcommandIfAllowed) {
     EXPECT_EQ(world, "calm");
 }
 
-TEST(Command, NamesItsOptionsAndSubcommands) {
+TEST(Command, DescribesItsOptionsAndSubcommands) {
+    Command app{"lab", "A laboratory.", "lab 1.2"};
+    std::uint16_t port = 7;
+    std::vector<std::string> words;
+    std::string format;
+    app.option_group("Listening");
+    app.add_option("--port", &port, "Port").show_default().environment("LAB_PORT");
+    app.option_group("Output");
+    app.add_option("--format", &format, "Format").choices({"csv", "jsonl"}).required();
+    app.add_option("NAME", &words, "Names");
+    const auto options = app.options();
+    ASSERT_EQ(options.size(), 5u);
+    EXPECT_THAT(options[0].names, ElementsAre("-h", "--help"));
+    EXPECT_THAT(options[1].names, ElementsAre("-V", "--version"));
+    EXPECT_EQ(options[1].value, "");
+    EXPECT_EQ(options[2].value, "NUMBER");
+    EXPECT_EQ(options[2].default_value, "7");
+    EXPECT_EQ(options[2].environment, "LAB_PORT");
+    EXPECT_EQ(options[2].group, "Listening");
+    EXPECT_THAT(options[3].choices, ElementsAre("csv", "jsonl"));
+    EXPECT_TRUE(options[3].is_required);
+    EXPECT_EQ(options[4].positional, "NAME");
+    EXPECT_TRUE(options[4].is_list);
+
     const Program program;
-    EXPECT_THAT(program.app.option_names(), ElementsAre("--help", "--version", "--seed"));
     ASSERT_EQ(program.app.commands().size(), 2u);
-    EXPECT_EQ(program.app.commands().front().name(), "run");
+    EXPECT_EQ(program.app.command("token")->help(), "Tokens.");
+    EXPECT_EQ(program.app.command("walk"), nullptr);
+}
+
+TEST(Command, GroupsTheOptionsInItsHelp) {
+    Command app{"lab", "A laboratory.", "1"};
+    bool fast = false, loud = false;
+    app.add_flag("--fast", &fast, "Speed");
+    app.option_group("Noise");
+    app.add_flag("--loud", &loud, std::string(80, 'x') + " " + std::string(80, 'y'));
+    const std::string help = app.help_text();
+    EXPECT_THAT(help, testing::ContainsRegex("Options:\n(.+\n)+\nNoise:\n  --loud +x+\n +y+\n"));
+}
+
+TEST(Command, ASubcommandHasAFooterOfItsOwn) {
+    Program program;
+    program.app.footer("Only for the laboratory.");
+    program.app.add_command("walk", "Walks.");
+    EXPECT_EQ(program.app.command("walk")->footer(), "");
 }
 
 TEST(Command, RejectsAsParseDoes) {
     const Program program;
     testing::internal::CaptureStderr();
     EXPECT_EQ(program.app.reject("--size: too large"), exit_usage);
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "--size: too large\nRun with --help for more information.\n");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "lab: --size: too large\nSee lab --help\n");
 }
 
 TEST(Option, RejectsWhatItsCheckRejects) {
     Program program;
     EXPECT_EQ(program.call({"--seed", "10", "run"}), exit_usage);
-    EXPECT_THAT(program.err, HasSubstr("--seed: must be a whole number, 1 to 9, not 10"));
+    EXPECT_THAT(program.err, HasSubstr("lab: --seed: got 10, allowed a whole number, 1 to 9\n"));
 }
 
 TEST(Option, IsGivenByTheEnvironmentToo) {

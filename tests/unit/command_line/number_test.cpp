@@ -16,7 +16,7 @@ TEST(WholeNumber, AcceptsNumbersInRange) {
 TEST(WholeNumber, ReportsTheRangeAndTheWord) {
     for (const std::string word :
          {"0", "11", "-1", "1e99", "abc", "", "1.5", "010", "0x3", "+2", " 3", "99999999999999999999"}) {
-        EXPECT_EQ((WholeNumber{1, 10}(word)), "must be a whole number, 1 to 10, not " + word);
+        EXPECT_EQ((WholeNumber{1, 10}(word)), "got " + word + ", allowed a whole number, 1 to 10");
     }
 }
 
@@ -25,7 +25,7 @@ TEST(RealNumber, AcceptsOnlyNumbersInRange) {
         EXPECT_EQ((RealNumber{0.1, 3600}(word)), "") << word;
     }
     for (const std::string word : {"0", "-1", "1e99", "abc", "", "nan", "inf", "1,5"}) {
-        EXPECT_EQ((RealNumber{0.1, 3600}(word)), "must be a number, 0.1 to 3600, not " + word);
+        EXPECT_EQ((RealNumber{0.1, 3600}(word)), "got " + word + ", allowed 0.1 to 3600");
     }
 }
 

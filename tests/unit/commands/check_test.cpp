@@ -39,7 +39,7 @@ TEST_F(Check, NamesFileAndFieldOfAnError) {
     const Ended ended = check(R"({"mutation_chance": 1.5})");
     EXPECT_EQ(ended.status, 1);
     EXPECT_EQ(ended.output, "");
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod check: " + path), HasSubstr("mutation_chance"), HasSubstr("1.5")));
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod: " + path), HasSubstr("mutation_chance"), HasSubstr("1.5")));
 }
 
 TEST_F(Check, NeedsAFile) {

@@ -45,19 +45,22 @@ TEST(DataFolder, IsRequiredWithoutADefault) {
     EXPECT_EQ(data_folder_or_default(""), "");
     std::string folder;
     testing::internal::CaptureStderr();
-    EXPECT_FALSE(find_data_folder("evod token", folder));
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "evod token: " + std::string{no_data_folder} + "\n");
+    EXPECT_FALSE(find_data_folder(folder));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "evod: " + std::string{no_data_folder} + "\n");
     folder = "given";
-    EXPECT_TRUE(find_data_folder("evod token", folder));
+    EXPECT_TRUE(find_data_folder(folder));
     EXPECT_EQ(folder, "given");
 }
 
-TEST(Fail, PrintsTheCommandAndEveryWrongField) {
+TEST(Fail, PrintsTheProgramAndEveryWrongField) {
     testing::internal::CaptureStderr();
-    EXPECT_EQ(fail("evod run", base::Refusal{.message = "invalid", .violations = {{"a", "0 to 1", "2"}}}), exit_error);
+    EXPECT_EQ(fail(base::Refusal{.message = "invalid", .violations = {{"a", "0 to 1", "2"}}}), exit_error);
     const std::string text = testing::internal::GetCapturedStderr();
-    EXPECT_THAT(text, testing::StartsWith("evod run: invalid"));
+    EXPECT_THAT(text, testing::StartsWith("evod: invalid"));
     EXPECT_THAT(text, testing::HasSubstr("a: got 2, allowed 0 to 1"));
+    testing::internal::CaptureStderr();
+    fail(base::Refusal{.message = "invalid", .violations = {{"--set a", "0 to 1", "2"}}});
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "evod: --set a: got 2, allowed 0 to 1\n");
 }
 
 } // namespace

@@ -69,7 +69,7 @@ TEST_F(Compare, TooFewOrTooManyAreRejected) {
 TEST_F(Compare, NamesTheFileThatCannotBeRead) {
     const Ended ended = compare({path, folder.path() + "/none.json"});
     EXPECT_EQ(ended.status, 1);
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod compare: "), HasSubstr("/none.json")));
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod: "), HasSubstr("/none.json")));
 }
 
 } // namespace

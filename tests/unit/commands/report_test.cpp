@@ -19,5 +19,11 @@ TEST(Report, TheIslandHasAColumnOnlyIfThereAreSeveral) {
     EXPECT_NE(table_heading(true).find("island"), std::string::npos);
 }
 
+TEST(RealTime, ShowsSlowRunsWithDecimals) {
+    EXPECT_EQ(real_time_text(0.26), "0.3 × real time");
+    EXPECT_EQ(real_time_text(0.02), "0.020 × real time");
+    EXPECT_EQ(real_time_text(7269.4), "7269 × real time");
+}
+
 } // namespace
 } // namespace evod::commands

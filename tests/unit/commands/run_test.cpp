@@ -66,7 +66,7 @@ TEST_F(Run, InvalidValuesAreNamedByTheirOption) {
     const Ended ended = run({"--set", "mutation_chance=1.5", "--set", "food_count", "--set", "no_such=1"});
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(ended.output, "");
-    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod run: "), HasSubstr("--set mutation_chance: got 1.5"),
+    EXPECT_THAT(ended.errors, AllOf(HasSubstr("evod: "), HasSubstr("--set mutation_chance: got 1.5"),
                                     HasSubstr("--set: got food_count, allowed name=value"), HasSubstr("no_such")));
     EXPECT_EQ(run({"--generations", "4294967296"}).status, command_line::exit_usage);
     EXPECT_EQ(run({}, "0").status, command_line::exit_usage);

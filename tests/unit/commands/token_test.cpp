@@ -55,7 +55,7 @@ TEST_F(Token, RevokedOnesAreGone) {
     EXPECT_TRUE(access::read_tokens(folder.path())->empty());
     const Ended again = token({"revoke", "anna"});
     EXPECT_EQ(again.status, 1);
-    EXPECT_THAT(again.errors, AllOf(HasSubstr("evod token: "), HasSubstr("anna")));
+    EXPECT_THAT(again.errors, AllOf(HasSubstr("evod: "), HasSubstr("anna")));
 }
 
 TEST_F(Token, WrongNamesAndRolesAreRefused) {

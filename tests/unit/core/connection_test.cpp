@@ -78,11 +78,11 @@ TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsFull) {
         session.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
     }
     FakeSession session = server.accept();
-    EXPECT_THAT(connection.status().reason, HasSubstr("RESOURCE_EXHAUSTED: 16 sessions are open"));
+    EXPECT_THAT(connection.status().reason, HasSubstr(": 16 sessions are open"));
     session.read();
     session.say_goodbye(v1::CODE_INVALID_ARGUMENT, "the client name is too long");
     EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
-    EXPECT_THAT(connection.status().reason, HasSubstr("INVALID_ARGUMENT: the client name is too long"));
+    EXPECT_THAT(connection.status().reason, HasSubstr(": the client name is too long"));
 }
 
 TEST(Connection, APeerThatIsNoServerIsReported) {
@@ -283,7 +283,7 @@ TEST(Reconnection, ShowsTheServersLastRefusal) {
         second.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "this client takes nothing");
     }
     FakeSession third = server.accept();
-    EXPECT_THAT(connection.status().reason, HasSubstr("ended the session: RESOURCE_EXHAUSTED: this client takes"));
+    EXPECT_THAT(connection.status().reason, HasSubstr("ended the session: this client takes"));
     third.welcome();
     EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 3; }));
     EXPECT_FALSE(connection.status().refusal);
@@ -350,7 +350,7 @@ TEST(Subscriptions, ARefusalIsShown) {
     const auto answer = connection.wait_subscribed(handle, hang);
     ASSERT_TRUE(answer);
     EXPECT_FALSE(accepted(*answer));
-    EXPECT_EQ(to_text(answer->status()), "NOT_FOUND: there is no world 'x'");
+    EXPECT_EQ(to_text(answer->status()), "there is no world 'x'");
 }
 
 TEST(Subscriptions, CancelledBeforeTheReplyIsUnsubscribed) {

@@ -47,18 +47,18 @@ TEST(Assignments, TakeTheKindFromTheRegistry) {
 }
 
 TEST(Assignments, NameTheErrorAndWhatIsAllowed) {
-    EXPECT_EQ(set("mutation_chanse=1"), "there is no parameter 'mutation_chanse'; did you mean mutation_chance?");
-    EXPECT_EQ(set("mutation_chance"), "'mutation_chance' has no value: write mutation_chance=VALUE, allowed 0 to 1");
-    EXPECT_EQ(set("mutation_chance=high"), "mutation_chance: got 'high', allowed 0 to 1");
-    EXPECT_EQ(set("mutation_chance=nan"), "mutation_chance: got 'nan', allowed 0 to 1");
-    EXPECT_EQ(set("mutation_chance=0.5x"), "mutation_chance: got '0.5x', allowed 0 to 1");
-    EXPECT_EQ(set("mutation_chance="), "mutation_chance: got '', allowed 0 to 1");
-    EXPECT_EQ(set("population_size=1.5"), "population_size: got '1.5', allowed 2 to 4000000, whole");
-    EXPECT_EQ(set("population_size=-1"), "population_size: got '-1', allowed 2 to 4000000, whole");
-    EXPECT_EQ(set("population_size=1e10"), "population_size: got '1e10', allowed 2 to 4000000, whole");
-    EXPECT_EQ(set("respawn=maybe"), "respawn: got 'maybe', allowed true or false");
+    EXPECT_EQ(set("mutation_chanse=1"), "mutation_chanse: unknown parameter; did you mean mutation_chance?");
+    EXPECT_EQ(set("mutation_chance"), "mutation_chance: got no value, allowed mutation_chance=VALUE with 0 to 1");
+    EXPECT_EQ(set("mutation_chance=high"), "mutation_chance: got high, allowed 0 to 1");
+    EXPECT_EQ(set("mutation_chance=nan"), "mutation_chance: got nan, allowed 0 to 1");
+    EXPECT_EQ(set("mutation_chance=0.5x"), "mutation_chance: got 0.5x, allowed 0 to 1");
+    EXPECT_EQ(set("mutation_chance="), "mutation_chance: got nothing, allowed 0 to 1");
+    EXPECT_EQ(set("population_size=1.5"), "population_size: got 1.5, allowed a whole number, 2 to 4000000");
+    EXPECT_EQ(set("population_size=-1"), "population_size: got -1, allowed a whole number, 2 to 4000000");
+    EXPECT_EQ(set("population_size=1e10"), "population_size: got 1e10, allowed a whole number, 2 to 4000000");
+    EXPECT_EQ(set("respawn=maybe"), "respawn: got maybe, allowed true or false");
     EXPECT_EQ(set("selection=turnament"),
-              "selection: got 'turnament', allowed roulette, tournament; did you mean tournament?");
+              "selection: got turnament, allowed roulette, tournament; did you mean tournament?");
 }
 
 TEST(Assignments, ReportEveryMistakeTogether) {

@@ -8,11 +8,6 @@
 namespace evod::ctl {
 namespace {
 
-using testing::ElementsAre;
-
-const std::vector<std::string> names{"mutation_chance", "mutate_survivors", "selection",
-                                     "survivors",       "respawn",          "respawn_s"};
-
 TEST(Sparkline, GoesFromTheLowestToTheHighestBar) {
     EXPECT_EQ(sparkline(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 10), "▁▂▃▄▅▆▇█");
     EXPECT_EQ(sparkline(std::vector<double>{-5, 5}, 10), "▁█");
@@ -26,6 +21,13 @@ TEST(Sparkline, HandlesNoValuesAndEqualValues) {
     EXPECT_EQ(sparkline({}, 10), "");
     EXPECT_EQ(sparkline(std::vector<double>{3, 3}, 10), "▅▅");
     EXPECT_EQ(sparkline(std::vector<double>{3}, 0), "");
+}
+
+TEST(Bar, FillsItsShareInEighths) {
+    EXPECT_EQ(bar(0, 3), "   ");
+    EXPECT_EQ(bar(0.5, 3), "█▌ ");
+    EXPECT_EQ(bar(1.0 / 24, 3), "▏  ");
+    EXPECT_EQ(bar(7, 3), "███");
 }
 
 TEST(Visible, RemovesControlCharacters) {
@@ -79,20 +81,17 @@ TEST(ClipPage, LeavesTheCursorOnTheScreen) {
     EXPECT_EQ(clip_page("", 80, 5), "");
 }
 
-TEST(EditDistance, CountsSingleEdits) {
-    EXPECT_EQ(edit_distance("", ""), 0U);
-    EXPECT_EQ(edit_distance("", "abc"), 3U);
-    EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-    EXPECT_EQ(edit_distance("selcetion", "selection"), 1U) << "neighbours swapped are one mistake";
-}
-
-TEST(Nearest, FindsTheIntendedName) {
-    EXPECT_THAT(nearest("mutation_chanse", names), ElementsAre("mutation_chance"));
-    EXPECT_THAT(nearest("survivor", names), ElementsAre("survivors", "mutate_survivors"));
-    EXPECT_THAT(nearest("respwan", names), ElementsAre("respawn"));
-    EXPECT_THAT(nearest("zebra", names), ElementsAre());
-    EXPECT_EQ(did_you_mean("zebra", names), "");
-    EXPECT_EQ(did_you_mean("survivor", names), "; did you mean survivors or mutate_survivors?");
+TEST(Colors, HaveNoWidthAndAreNotCut) {
+    EXPECT_EQ(in_color("dead", Color::Red), "dead") << "not in use yet";
+    EXPECT_EQ(visible("\x1b[31mdead"), "?[31mdead");
+    use_colors(true);
+    const std::string dead = in_color("dead", Color::Red);
+    EXPECT_EQ(dead, "\x1b[31mdead\x1b[0m");
+    EXPECT_EQ(in_color("", Color::Red), "");
+    EXPECT_EQ(width_of(dead), 4U);
+    EXPECT_EQ(clip_lines(dead, 2), "\x1b[31mde\x1b[0m");
+    EXPECT_EQ(visible(dead + "\x1b[2J"), dead + "?[2J") << "only colours are kept";
+    use_colors(false);
 }
 
 } // namespace

@@ -67,7 +67,7 @@ TEST(Top, RatesAreIncreasesPerSecond) {
     before.add("evod_snapshots_sent_total", 100).add("evod_sent_bytes_total", 1024, "stream");
     after.add("evod_snapshots_sent_total", 220).add("evod_sent_bytes_total", 5120, "stream");
     const std::string text = top(before, after);
-    EXPECT_THAT(text, HasSubstr("snapshots  60/s, dropped 0/s"));
+    EXPECT_THAT(text, HasSubstr("snapshots      60/s, dropped 0/s"));
     EXPECT_THAT(text, HasSubstr("2.0 KiB/s of snapshots, 0 B/s of replies"));
 }
 
@@ -80,7 +80,7 @@ TEST(Top, ARestartedServerHasNoNegativeRates) {
         .add_ticks("default", {1, 1, 0, 0}, 0.002)
         .add("evod_ticks_per_second", 1, "default");
     const std::string text = top(before, after);
-    EXPECT_THAT(text, HasSubstr("requests   0/s"));
+    EXPECT_THAT(text, HasSubstr("waiting; 0/s"));
     EXPECT_THAT(text, HasSubstr("1.0 ms")) << "the mean of its two ticks";
 }
 
@@ -89,7 +89,7 @@ TEST(Top, TickTimesAreThoseBetweenMeasurements) {
     before.add_ticks("default", {1000, 0, 0, 0}, 0.5);
     after.add_ticks("default", {1000, 98, 1, 1}, 0.7).add("evod_ticks_per_second", 50, "default");
     const std::string text = top(before, after);
-    EXPECT_THAT(text, HasSubstr("default       50     2.0 ms  1.5 ms  5.0 ms")) << text;
+    EXPECT_THAT(text, HasSubstr("default       50  ████████████████     2.0 ms  1.5 ms  5.0 ms")) << text;
 }
 
 TEST(Top, TicksBeyondTheLastBoundAreMarked) {
@@ -119,18 +119,30 @@ TEST(Top, FitsTheTerminalAndShowsTheFastestWorlds) {
     EXPECT_THAT(text, HasSubstr("world-63"));
     EXPECT_EQ(text.find("world-10 "), std::string::npos);
     EXPECT_THAT(lines.back(), ::testing::MatchesRegex("and [0-9]+ more"));
-    EXPECT_THAT(text, HasSubstr("disk       failing; 4.8 MiB waiting"));
+    EXPECT_THAT(text, HasSubstr("disk           failing; 4.8 MiB waiting"));
 }
 
 TEST(Top, ListsTheLimitsThatWereReached) {
     Metrics before, after;
     EXPECT_EQ(top(before, after).find("limits"), std::string::npos);
     after.add("evod_limit_reached_total", 0, "requests").add("evod_limit_reached_total", 3, "sessions");
-    EXPECT_THAT(top(before, after), HasSubstr("limits     sessions 3\n"));
+    EXPECT_THAT(top(before, after), HasSubstr("limits reached sessions 3\n"));
+}
+
+TEST(Top, BarsShowSharesOfAProcessorAndOfTheFastest) {
+    Metrics before, after;
+    before.add("evod_thread_cpu_seconds_total", 10, "network");
+    after.add("evod_thread_cpu_seconds_total", 11, "network")
+        .add("evod_ticks_per_second", 100, "fast")
+        .add("evod_ticks_per_second", 25, "slow");
+    const std::string text = top(before, after);
+    EXPECT_THAT(text, HasSubstr("  network      ████████          50 %\n"));
+    EXPECT_THAT(text, HasSubstr("fast       100  ████████████████ "));
+    EXPECT_THAT(text, HasSubstr("slow        25  ████             "));
 }
 
 TEST(Top, AServerWithoutRecordingIsNamed) {
-    EXPECT_THAT(top({}, {}), HasSubstr("disk       runs are not recorded\n"));
+    EXPECT_THAT(top({}, {}), HasSubstr("disk           runs are not recorded\n"));
     EXPECT_THAT(top({}, {}), HasSubstr("no worlds\n"));
 }
 

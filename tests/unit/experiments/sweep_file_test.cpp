@@ -173,11 +173,12 @@ TEST(SweepFile, AnExperimentIsLoadedByItsPath) {
 
 TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
     const std::map<std::string, std::string> wrong{
-        {"{\n\"list\": [{}],\n\"steps\": 3}",
-         "steps (line 3): got an unknown name, allowed description, experiment, grid"},
+        {"{\n\"list\": [{}],\n\"steps\": 3}", "steps (line 3): unknown name, allowed description, experiment, grid"},
         {"{\n\"list\": [{}],\n\"seed\": 1, \"seed\": 1}", "seed (line 3): got given twice, allowed given once"},
         {R"({"generations": 3})", "grid: got none of them, allowed one of grid, list, latin_hypercube"},
         {"{\"list\": [{}],\n\"grid\": {\"food_count\": [1]}}", "grid (line 2): got list and grid, allowed one of grid"},
+        {R"({"parameters": {"food_count": [1]}})", "parameters (line 1): unknown name; did you mean grid?"},
+        {R"({"food_count": [1]})", "food_count (line 1): unknown name; did you mean grid.food_count?"},
         {R"({"list": [{}], "replicates": 0})", "replicates (line 1): got 0, allowed a whole number, 1 to 100000"},
         {R"({"list": [{}], "replicates": 2.5})", "replicates (line 1): got 2.5"},
         {R"({"list": [{}], "seed": -1})", "seed (line 1): got -1, allowed a whole number, 0 to 18446744073709551615"},
@@ -188,9 +189,8 @@ TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
          "experiment.survivors (line 3): got 2, allowed 0 to 1"},
         {R"({"grid": {}})", "grid (line 1): got {}, allowed an object"},
         {R"({"grid": []})", "grid (line 1): got [], allowed an object"},
-        {"{\"grid\": {\n\"mutation_chanse\": [1]}}",
-         "grid.mutation_chanse (line 2): got an unknown name, allowed a parameter of the registry; did you mean "
-         "mutation_chance"},
+        {"{\"grid\": {\n\"mutation_chanse\": [1]}}", "grid.mutation_chanse (line 2): unknown name; did you mean "
+                                                     "mutation_chance"},
         {"{\"grid\": {\"mutation_chance\": [0.5,\n1.5]}}", "grid.mutation_chance[1] (line 2): got 1.5, allowed 0 to 1"},
         {R"({"grid": {"mutation_chance": [null]}})", "mutation_chance[0] (line 1): got null, allowed a number"},
         {R"({"grid": {"mutation_chance": []}})", "grid.mutation_chance (line 1): got [], allowed a list of values"},
@@ -206,18 +206,17 @@ TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
          "above 0 if the scale is log"},
         {R"({"grid": {"food_count": {"from": 1, "to": 2, "steps": 2, "scale": "x"}}})",
          "scale (line 1): got \"x\", allowed"},
-        {R"({"grid": {"food_count": {"from": 1, "to": 2, "step": 2}}})",
-         "food_count.step (line 1): got an unknown name"},
+        {R"({"grid": {"food_count": {"from": 1, "to": 2, "step": 2}}})", "food_count.step (line 1): unknown name"},
         {R"({"list": []})", "list (line 1): got [], allowed a list of at least one object with parameter values"},
         {R"({"list": [1]})", "list (line 1): got [1]"},
-        {"{\"list\": [{},\n{\"food\": 1}]}", "list[1].food (line 2): got an unknown name"},
+        {"{\"list\": [{},\n{\"food\": 1}]}", "list[1].food (line 2): unknown name"},
         {R"({"list": [{"survivors": 7}]})", "list[0].survivors (line 1): got 7, allowed 0 to 1"},
         {R"({"list": [{"survivors": 1, "survivors": 0}]})", "list[0].survivors (line 1): got given twice"},
         {R"({"latin_hypercube": {"samples": 4}})", "latin_hypercube (line 1): got no parameters"},
         {R"({"latin_hypercube": {"samples": 0, "parameters": {}}})", "latin_hypercube.samples (line 1): got 0"},
         {R"({"latin_hypercube": {"samples": 1, "parameters": {}}})", "latin_hypercube.parameters (line 1): got {}"},
         {R"({"latin_hypercube": {"samples": 1, "parameters": {"survivors": {"from": 0, "to": 1, "steps": 3}}}})",
-         "latin_hypercube.parameters.survivors.steps (line 1): got an unknown name, allowed from, to, scale"},
+         "latin_hypercube.parameters.survivors.steps (line 1): unknown name, allowed from, to, scale"},
         {R"({"list": [{"generation_limit": 3}], "generations": 2})", "generations: got 2, allowed no value if"},
     };
     for (const auto& [text, words] : wrong) {

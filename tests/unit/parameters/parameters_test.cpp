@@ -155,12 +155,12 @@ TEST(Assign, NamesEveryViolationWithItsPrefix) {
                                "set_parameters.");
     EXPECT_THAT(
         violations(result),
-        ElementsAre("set_parameters.mutation_chance: got 1.5, allowed 0 to 1",
-                    AllOf(HasSubstr("set_parameters.mutation_chence: got an unknown name"),
-                          HasSubstr("did you mean mutation_chance")),
-                    "set_parameters.food_count: got given twice, allowed given once",
-                    "set_parameters.selection: got lottery, allowed roulette, stochastic_universal, tournament, "
-                    "random, truncation"));
+        ElementsAre(
+            "set_parameters.mutation_chance: got 1.5, allowed 0 to 1",
+            AllOf(HasSubstr("set_parameters.mutation_chence: unknown name"), HasSubstr("did you mean mutation_chance")),
+            "set_parameters.food_count: got given twice, allowed given once",
+            "set_parameters.selection: got lottery, allowed roulette, stochastic_universal, tournament, "
+            "random, truncation"));
 }
 
 TEST(Assign, RefusesMoreAssignmentsThanParameters) {

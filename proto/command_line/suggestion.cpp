@@ -1,0 +1,56 @@
+#include "proto/command_line/suggestion.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace evod::command_line {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    // Optimal string alignment distance: Damerau's distance, with the restriction that each substring is edited at most
+    // once. Stores only three rows of the table.
+    std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+    std::iota(above.begin(), above.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = std::min(row[j], before[j - 2] + 1);
+            }
+        }
+        std::swap(before, above);
+        std::swap(above, row);
+    }
+    return above[b.size()];
+}
+
+std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names) {
+    std::vector<std::pair<std::size_t, std::string>> ranked;
+    for (const std::string& name : names) {
+        const std::size_t distance = edit_distance(word, name);
+        // A word that is part of a name counts as similar: "mutation" to "mutation_chance".
+        const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
+        if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
+            ranked.emplace_back(distance, name);
+        }
+    }
+    std::ranges::sort(ranked);
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, ranked.size()); ++i) {
+        result.push_back(std::move(ranked[i].second));
+    }
+    return result;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
+    const auto candidates = nearest(word, names);
+    std::string text;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        text += (i == 0 ? "; did you mean " : i + 1 == candidates.size() ? " or " : ", ") + candidates[i];
+    }
+    return text.empty() ? text : text + "?";
+}
+
+} // namespace evod::command_line

@@ -1,0 +1,30 @@
+#include "proto/command_line/suggestion.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::command_line {
+namespace {
+
+using testing::ElementsAre;
+
+const std::vector<std::string> names{"mutation_chance", "mutate_survivors", "selection",
+                                     "survivors",       "respawn",          "respawn_s"};
+
+TEST(EditDistance, CountsSingleEdits) {
+    EXPECT_EQ(edit_distance("", ""), 0U);
+    EXPECT_EQ(edit_distance("", "abc"), 3U);
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+    EXPECT_EQ(edit_distance("selcetion", "selection"), 1U) << "neighbours swapped are one mistake";
+}
+
+TEST(Nearest, FindsTheIntendedName) {
+    EXPECT_THAT(nearest("mutation_chanse", names), ElementsAre("mutation_chance"));
+    EXPECT_THAT(nearest("survivor", names), ElementsAre("survivors", "mutate_survivors"));
+    EXPECT_THAT(nearest("respwan", names), ElementsAre("respawn"));
+    EXPECT_THAT(nearest("zebra", names), ElementsAre());
+    EXPECT_EQ(did_you_mean("zebra", names), "");
+    EXPECT_EQ(did_you_mean("survivor", names), "; did you mean survivors or mutate_survivors?");
+}
+
+} // namespace
+} // namespace evod::command_line
