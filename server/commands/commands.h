@@ -31,7 +31,7 @@ void add_certificate_command(command_line::Command& app);
 void add_parameters_command(command_line::Command& app);
 void add_limits_command(command_line::Command& app);
 
-/// Whether stdout contains a log, because a server has started. May be called from any thread.
+/// Whether the program uses stdout for its log, which it does once a server has started. Any thread may call it.
 bool standard_output_is_log();
 
 } // namespace evod::commands
