@@ -49,7 +49,7 @@ class Option {
     Option check(Check check) const;
     /// Allows only these words. The help lists them.
     Option choices(const std::vector<std::string>& choices) const;
-    /// The number of values that a vector accepts.
+    /// Sets the smallest and the largest number of values that a vector accepts.
     Option count(int min, int max) const;
     Option required() const;
     /// Rejects this option unless the other option is given too.

@@ -7,15 +7,15 @@
 
 namespace evod::command_line {
 
-/// Accepts decimal digits without a sign. Rejects a leading zero, because CLI11 would parse an octal number. Rejects
-/// "-1", because CLI11 would parse it as the largest 64-bit number.
+/// Checks a whole number from `min` to `max`. Accepts decimal digits without a sign. Rejects a leading zero, because
+/// CLI11 would parse an octal number. Rejects "-1", because CLI11 would parse it as the largest 64-bit number.
 struct WholeNumber {
     std::uint64_t min = 0, max = std::numeric_limits<std::uint64_t>::max();
 
     std::string operator()(const std::string& word) const;
 };
 
-/// Rejects "nan", which CLI11 accepts as a number in any range.
+/// Checks a number from `min` to `max`. Rejects "nan", which CLI11 accepts in any range.
 struct RealNumber {
     double min, max;
 

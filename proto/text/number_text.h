@@ -11,7 +11,7 @@
 
 namespace evod::text {
 
-/// When a text has an exponent.
+/// States when the text of a number has an exponent.
 enum class Exponent {
     IfShorter, // "1e+05" and "1e-04", but "10000"
     IfLong,    // below 1e-5 and from 1e15
@@ -24,7 +24,7 @@ inline std::string formatted_number(double value, auto... format) {
     return {digits, std::to_chars(digits, digits + sizeof digits, value, format...).ptr};
 }
 
-/// The shortest text that parses back to the same number: "0.1", "-2.5", "nan".
+/// Returns the shortest text that parses back to the same number: "0.1", "-2.5", "nan".
 inline std::string number_text(double value, Exponent exponent = Exponent::IfShorter) {
     if (exponent == Exponent::IfShorter) {
         return formatted_number(value);
@@ -34,12 +34,12 @@ inline std::string number_text(double value, Exponent exponent = Exponent::IfSho
     return formatted_number(value, plain ? std::chars_format::fixed : std::chars_format::scientific);
 }
 
-/// The number rounded to so many significant digits, without trailing zeros, like %g of printf.
+/// Formats a number with at most `digits` significant digits, without trailing zeros, like %g of printf.
 inline std::string rounded(double value, int digits) {
     return formatted_number(value, std::chars_format::general, digits);
 }
 
-/// The number rounded to so many decimals, at most 80: fixed(2.345, 1) is "2.3".
+/// Formats a number with `decimals` decimals, at most 80: fixed(2.345, 1) is "2.3".
 inline std::string fixed(double value, int decimals) {
     return formatted_number(value, std::chars_format::fixed, decimals);
 }

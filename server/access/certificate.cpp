@@ -64,7 +64,7 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
     constexpr long day_s = 24 * 60 * 60;
     good = good && X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
            ASN1_STRING_set(X509_get_serialNumber(certificate.get()), serial, sizeof serial) == 1 &&
-           // Valid from yesterday, because the clock of a client may be slow.
+           // The certificate is valid from yesterday, because the clock of a client may be slow.
            X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr &&
            X509_gmtime_adj(X509_getm_notAfter(certificate.get()), certificate_days * day_s) != nullptr &&
            X509_set_pubkey(certificate.get(), key) == 1;

@@ -30,7 +30,7 @@ class Gate {
     // doubles the time. A known token is always admitted. Tokens cannot be guessed, so known tokens need no rate limit.
     static constexpr std::chrono::milliseconds delay_min{500};
     static constexpr std::chrono::milliseconds delay_max{30'000};
-    // Time without a failure after which earlier failures no longer count.
+    // Earlier failures of an address no longer count after this time without a failure.
     static constexpr std::chrono::minutes forgotten_after{10};
     static constexpr std::size_t addresses_max = 10'000;
 

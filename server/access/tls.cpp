@@ -19,7 +19,7 @@ using base::Result;
 
 namespace {
 
-// A file with all certificate authorities of a typical system has about 200 KiB.
+// Maximum size of a PEM file. All certificate authorities of a typical system take about 200 KiB.
 constexpr std::size_t pem_bytes_max = 4 << 20;
 
 Refusal refusal(std::string message) {

@@ -113,7 +113,7 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
     if (::rename(next.c_str(), path.c_str()) != 0) {
         return cannot("replace", path);
     }
-    // Without this, a revoked token could be valid again after a power failure.
+    // Without this sync, a revoked token could be valid again after a power failure.
     if (::fsync(folder_descriptor) != 0) {
         return cannot("write to", folder);
     }

@@ -32,7 +32,7 @@ std::string data_folder_or_default(const std::string& given) {
     if (!given.empty()) {
         return given;
     }
-    // The specification requires relative paths to be ignored.
+    // The XDG Base Directory Specification requires programs to ignore a relative path.
     if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/') {
         return std::string{state} + "/evod";
     }

@@ -59,7 +59,7 @@ std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const
     return row + "\n";
 }
 
-/// The conclusion about two worlds if neither is a control of the other.
+/// Formats the conclusion about two worlds, neither of which is a control of the other.
 std::string sentence_of(const Arm& world, const Arm& other, const Finding& finding, std::size_t tests, int decimals) {
     const std::string by = signed_text(std::abs(finding.mean), decimals).substr(finding.mean != 0 ? 1 : 0);
     const std::string p = formatted(" (adjusted p = %.2g).", finding.adjusted_p);

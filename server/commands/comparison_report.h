@@ -12,7 +12,7 @@
 
 namespace evod::commands {
 
-/// The number of decimals that shows the differences between the means of a comparison.
+/// Returns the number of decimals with which a table shows mean fitnesses, depending on the largest of them.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
 /// Formats a table with the rise in mean fitness of every arm, that is, of each compared world.

@@ -50,7 +50,8 @@ std::optional<replay::OrganismName> organism_named(const std::string& text) {
     return valid ? std::optional{name} : std::nullopt;
 }
 
-/// The table that the options select; nullopt for a bundle. Rejects options that contradict each other.
+/// Returns the table that the options select; nullopt if they select a bundle. Rejects options that contradict each
+/// other.
 Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
     using replay::RunTable;
     static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
@@ -72,7 +73,7 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
     if (options.generation && options.what != "population") {
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
     }
-    // REPEAT.md in a bundle compares generations.csv with the output of evod run --csv.
+    // A bundle must contain CSV, because its REPEAT.md compares generations.csv with the output of `evod run --csv`.
     if (!options.bundle.empty() && options.format != "csv") {
         return wrong_option("--format", "only csv with --bundle", options.format);
     }

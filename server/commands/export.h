@@ -14,7 +14,7 @@ struct ExportOptions {
     std::string run;    // path of a run file
     std::string bundle; // path of a folder to create instead of a table; empty: write a table
     std::string what;   // the table, as --what spells it; empty for a bundle
-    // "GENERATION:ISLAND:ORGANISM": only the lineage of this organism; empty: all organisms
+    // The organism whose lineage is exported: "GENERATION:ISLAND:ORGANISM"; empty: all organisms.
     std::string of;
     std::optional<std::uint64_t> generation; // only for the population; nullopt: the last generation that has begun
     std::string format = "csv";              // "csv" or "jsonl"

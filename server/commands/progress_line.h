@@ -38,7 +38,7 @@ class ProgressLine {
 /// Formats the estimated remaining time: "90 s left", "37 min left", "2 h 05 min left".
 ///
 /// share         finished share of the work, in (0, 1].
-/// seconds_gone  time that this share took.
+/// seconds_gone  time that this share of the work took.
 std::string time_left(double share, double seconds_gone);
 
 } // namespace evod::commands

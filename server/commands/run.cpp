@@ -72,7 +72,7 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
     }
     experiment = *std::move(changed);
     if (options.ask) {
-        // An answer replaces the schedule of its parameter. An empty answer keeps the schedule.
+        // An answer of the user replaces the schedule of its parameter; an empty answer keeps the schedule.
         const parameters::Parameters proposed = experiment.parameters;
         const auto answers = interview(proposed, std::cin, std::cout);
         if (!answers) {

@@ -17,7 +17,7 @@ class Command;
 
 namespace evod::commands {
 
-/// The variables to which the options write. The initial values are the defaults of the program.
+/// The values of the options. Their initial values are the defaults of the program.
 struct ServeOptions {
     std::string bind_address = "127.0.0.1", http_bind_address = "127.0.0.1";
     std::uint16_t port = codec::default_port;
@@ -47,10 +47,10 @@ void add_storage_options(command_line::Command& command, ServeOptions& options);
 /// Parses "max", or a number of simulated seconds per second. Returns nullopt for any other text.
 std::optional<simulation::Speed> parse_speed(const std::string& text);
 
-/// The configuration of the server for `evod`. Reads the experiment and the population that the options name. Draws the
-/// run id and, if neither the options nor the experiment contain one, the seed at random.
+/// Returns the configuration of the server for `evod`. Reads the experiment and the population that the options name.
+/// Draws the run id and, if neither the options nor the experiment contain one, the seed at random.
 base::Result<network::ServerOptions> server_options(const ServeOptions& options);
-/// The configuration of the server for `evod replay`.
+/// Returns the configuration of the server for `evod replay`.
 network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run);
 
 } // namespace evod::commands

@@ -71,7 +71,7 @@ class Progress {
             char text[96];
             std::snprintf(text, sizeof text, "%zu of %zu runs, %.3g runs/%s", runs_done_, runs_,
                           rate < 1 ? 60 * rate : rate, rate < 1 ? "min" : "s");
-            // An estimate is unreliable in the first two seconds.
+            // The line contains no remaining time in the first two seconds, because an estimate would be unreliable.
             return std::string{text} + (s > 2 && share > 0 ? ", " + time_left(share, s) : "");
         });
     }

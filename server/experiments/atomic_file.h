@@ -28,7 +28,7 @@ class AtomicFile {
     /// The first error; empty if there is none.
     const std::string& error() const { return error_; }
 
-    /// A new temporary name in the folder of `path`. It is different for every call and every process.
+    /// Returns a new temporary path in the folder of `path`. It is different for every call and every process.
     static std::string temporary_name(const std::string& path);
     /// Whether the name was returned by temporary_name().
     static bool is_temporary(std::string_view name);

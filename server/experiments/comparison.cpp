@@ -45,7 +45,7 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
     for_each_trial(
         trials, wanted.jobs,
         [&](std::size_t trial) {
-            // Runs all arms of a replicate before the next replicate, so that all arms make equal progress.
+            // The threads run all arms of a replicate before the next replicate, so that all arms make equal progress.
             const std::size_t arm = trial % arms.size(), replicate = trial / arms.size();
             Course& course = courses[arm][replicate];
             simulation::World world{arms[arm].parameters,
@@ -99,7 +99,7 @@ Judgement judge(const Finding& finding, std::size_t tests) {
     if (finding.adjusted_p < significance) {
         return finding.mean > 0 ? Judgement::Above : Judgement::Below;
     }
-    // The largest factor in Holm's adjustment is the number of tests.
+    // Holm's adjustment multiplies a p-value by at most the number of tests.
     return least_sign_flip_p(finding.differences.size()) * static_cast<double>(tests) >= significance
                ? Judgement::CannotBeShown
                : Judgement::NotShown;

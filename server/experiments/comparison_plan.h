@@ -15,7 +15,7 @@
 namespace evod::experiments {
 
 struct ComparisonRequest {
-    // Paths; empty: the default world; at most one path if controls are compared.
+    // Paths of experiment files; empty: the default world. With `controls`, there is at most one path.
     std::vector<std::string> experiments = {};
     bool controls = false;
     /// Number of generations, >= 2. nullopt: the generation_limit of the first experiment, or default_generations.

@@ -29,7 +29,7 @@ struct Control {
     std::string cannot_differ; // reason why the control equals the world; empty: it can differ
 };
 
-/// world  must be valid.
+/// Returns the control of this kind for a world with valid parameters.
 Control control_of(const parameters::Parameters& world, ControlKind kind);
 
 /// The schedule of the control: the schedule of the world without the parameters that the control sets for all
@@ -46,7 +46,8 @@ parameters::Parameters of_fixed_length(parameters::Parameters world, std::uint32
 /// Removes the termination criteria from the schedule.
 parameters::Schedule of_fixed_length(parameters::Schedule world);
 
-/// The parameters that differ, with the values of `other`: "selection=random elite_count=0". Empty if none differs.
+/// Returns the parameters that differ, with the values of `other`: "selection=random elite_count=0". Empty if none
+/// differs.
 std::string changes_between(const parameters::Parameters& world, const parameters::Parameters& other);
 
 } // namespace evod::experiments

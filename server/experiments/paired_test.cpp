@@ -52,7 +52,7 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
         observed += difference;
         magnitude += std::abs(difference);
     }
-    // Equal sums may differ in their last digits, because rounding depends on the signs.
+    // Two sums that are equal in theory may differ in their last digits, because rounding depends on the signs.
     const double least = std::abs(observed) - 1e-12 * magnitude;
     const std::size_t count = differences.size();
     const auto is_as_far = [&](const auto& is_negative) {

@@ -136,7 +136,7 @@ void draw_samples(const std::vector<Dimension>& dimensions, std::uint32_t sample
     }
 }
 
-/// The members of a Latin hypercube. If they are invalid, reading adds errors and returns nullopt.
+/// The members of the object "latin_hypercube" in a sweep file.
 struct Hypercube {
     std::uint32_t samples = 0;
     const JsonNode* parameters = nullptr;

@@ -33,9 +33,11 @@ struct Range {
     bool log = false;        // true: logarithmic scale; false: linear scale
     bool whole = false;      // whole numbers only
 
-    /// The i-th of `steps` evenly spaced numbers, including both ends. For whole numbers, rounds to the nearest one.
+    /// Returns the i-th of `steps` evenly spaced numbers from `from` to `to`. A whole-number parameter gets the nearest
+    /// whole number.
     parameters::ParameterValue step(std::size_t i, std::size_t steps) const;
-    /// The number at the quantile u, 0 <= u < 1. For whole numbers, maps u to [from, to + 1) and rounds down.
+    /// Returns the number at the quantile u, 0 <= u < 1. For a whole-number parameter, maps u to [from, to + 1) and
+    /// rounds down.
     parameters::ParameterValue quantile(double u) const;
 
   private:
@@ -50,11 +52,11 @@ struct Dimension {
     std::size_t steps = 0;                          // number of values of the range, only in a grid
 };
 
-/// Sets a parameter to a value, which it must allow.
+/// Sets a parameter to a value. The parameter must allow the value.
 void set_parameter(const parameters::ParameterDescription& description, const parameters::ParameterValue& value,
                    parameters::Parameters& parameters);
 
-/// The parameter with the name of the member. If there is none, adds an error and returns nullptr.
+/// Finds the parameter with the name of the member. If there is none, adds an error and returns nullptr.
 const parameters::ParameterDescription* find_swept(const parameters::JsonMember& member, const std::string& field,
                                                    SweepErrors& errors);
 /// Converts a value to the type of the parameter. If the parameter does not allow it, adds an error and returns
@@ -62,7 +64,7 @@ const parameters::ParameterDescription* find_swept(const parameters::JsonMember&
 std::optional<parameters::ParameterValue> read_swept_value(const parameters::ParameterDescription& parameter,
                                                            const std::string& field, const parameters::JsonNode& node,
                                                            SweepErrors& errors);
-/// Whether a range has a member "steps": in a grid it must; in a Latin hypercube it must not.
+/// Whether a range needs a member "steps". A range of a grid needs it; a range of a Latin hypercube must not have it.
 enum class Steps { Needed, None };
 /// Reads the list or the range of one parameter. If it is invalid, adds errors and returns nullopt.
 ///

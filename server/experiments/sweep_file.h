@@ -34,7 +34,7 @@ struct Sweep {
     std::size_t run_count() const { return cells.size() * replicates; }
     /// The parameters of a cell. They are valid and contain a criterion that ends the run.
     parameters::Parameters parameters_of(std::size_t cell) const;
-    /// The schedule of a cell. faults_of() finds no faults in it.
+    /// Returns the schedule of a cell. parse_sweep() has checked that it is valid.
     parameters::Schedule schedule_of(std::size_t cell) const;
 };
 
@@ -43,7 +43,7 @@ using LoadExperiment = std::function<base::Result<parameters::Experiment>(const 
 /// Parses the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", or the
 /// cell whose values contradict each other. Reports at most violations_max violations.
 ///
-/// load  called if the experiment is given by its path.
+/// load  loads the experiment if the file names it by its path.
 base::Result<Sweep> parse_sweep(std::string_view text, const LoadExperiment& load);
 constexpr std::size_t violations_max = 100;
 

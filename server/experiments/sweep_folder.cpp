@@ -35,7 +35,7 @@ struct Fact {
     std::string name, text;
 };
 
-/// All facts that determine the results, and no others.
+/// Returns the entries of sweep.txt: all data that determines the results, and nothing else.
 std::vector<Fact> facts_of(const Sweep& sweep) {
     std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
     std::erase(parameters, '\n');
@@ -58,7 +58,7 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
             {"sweep file", "\n" + text}};
 }
 
-/// Formats a fact as a comment of one or more lines.
+/// Formats an entry of sweep.txt as a comment of one or more lines.
 std::string to_text(const Fact& fact) {
     std::string text = "# " + fact.name + ": ";
     for (const char c : fact.text) {
@@ -75,9 +75,9 @@ std::string provenance_of(const Sweep& sweep) {
     return text;
 }
 
-/// The refusal of a folder with results of another sweep. It names the facts that differ.
+/// Returns the refusal of a folder that contains results of another sweep. It names the entries that differ.
 ///
-/// there  text of the sweep.txt in the folder.
+/// there  text of the file sweep.txt in the folder.
 base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
                                     path + " contains the results of another sweep: name another folder with --out");

@@ -28,7 +28,8 @@ class JobQueue {
     struct Options {
         std::string name; // name of the threads in `top -H`; at most 15 characters
         std::size_t threads_max = 1;
-        // With 10, a job gets about a tenth of a processor beside a busy thread of the simulation.
+        // Niceness of the threads. With 10, a job gets about a tenth of a processor beside a busy thread of the
+        // simulation.
         int niceness = 0;
         bool start_now = false; // start the first thread in the constructor, so that handle() is valid
     };

@@ -86,7 +86,7 @@ class TimeHistogram {
         made.back() = ~std::uint64_t{0};
         return made;
     }();
-    /// index: bit width; value: the bucket of the smallest number with that bit width.
+    /// Element i is the bucket of the smallest number that has i bits.
     static constexpr std::array<std::size_t, 65> first_bucket = [] {
         std::array<std::size_t, 65> made{};
         for (std::size_t width = 1; width < made.size(); ++width) {

@@ -44,7 +44,8 @@ double start_time_s() {
 } // namespace
 
 Process read_process() {
-    // Computed only once: when the clock is adjusted, a second computation would give a slightly different result.
+    // The start time is computed once, because a second computation after a change of the clock would give another
+    // result.
     static const double started = start_time_s();
     Process process{.start_time_s = started, .cpu_s = seconds_on(CLOCK_PROCESS_CPUTIME_ID)};
     std::uint64_t virtual_pages = 0, resident_pages = 0;

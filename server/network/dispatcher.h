@@ -65,7 +65,8 @@ class Dispatcher {
     void set_view(Session& session, const v1::Request& request);
     void replay(Session& session, const v1::Request& request);
     void export_text(Session& session, v1::Request request);
-    /// Begins the subscription or renews the lease. Returns why that is refused; nullopt: the response is complete.
+    /// Begins the subscription or renews the lease that was requested. Returns nullopt if `response` is complete;
+    /// otherwise the refusal.
     std::optional<base::Refusal> apply(const v1::Request& request, const protocol::FoundWorld& world, Session& session,
                                        v1::Response& response);
     std::optional<base::Refusal> subscribe(const v1::SubscribeSnapshots& request, const protocol::FoundWorld& world,
@@ -81,7 +82,7 @@ class Dispatcher {
     /// Called after a command was refused, or was applied and stored. Sends the answer and reports the change to
     /// subscribers.
     void on_done(runtime::CommandDone done);
-    // The other replies complete and send the answer, if the session still exists.
+    // The following functions complete the answer to a request and send it, if the session still exists.
     void on_done(runtime::QueryDone done);
     void on_done(runtime::ReplayDone done);
     void on_done(runtime::RunFound done);

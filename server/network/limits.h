@@ -33,7 +33,8 @@ constexpr std::chrono::seconds stalled_timeout{10};
 constexpr std::chrono::seconds lease_time{5};
 constexpr std::uint32_t requests_per_s_max = 50'000; // a client that waits for each answer never reaches this rate
 constexpr std::uint32_t request_burst_max = 5'000;
-// A long frame counts as several frames, in proportion to the cost of reading and answering it.
+// For the rate limit, each further bytes_per_turn bytes of a frame, and each answer_bytes_per_turn bytes of its answer,
+// count as one more frame.
 constexpr std::size_t bytes_per_turn = 64, answer_bytes_per_turn = 1 << 10;
 // Only CreateWorld, which requires an admin, needs longer frames.
 constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10;
@@ -101,7 +102,7 @@ struct LimitRow {
 /// One row per Limit, in the order of the enum.
 std::span<const LimitRow> limit_table();
 
-/// The table in Markdown, as `evod limits` prints it and docs/OPERATIONS.md contains it.
+/// Returns the table in Markdown, as `evod limits` prints it and docs/OPERATIONS.md contains it.
 std::string limit_list();
 
 /// The limits as the message that the server sends to clients.
@@ -149,7 +150,7 @@ constexpr std::chrono::milliseconds housekeeping_interval{500};
 constexpr std::chrono::seconds trim_every{2};
 constexpr std::uint64_t answered_to_trim_bytes = 1 << 20;
 constexpr std::chrono::seconds farewell_timeout{1}; // time to send the last bytes of a session
-// Pause after accept() failed because no file descriptor was free.
+// The listener waits for this time after accept() has failed because no file descriptor was free.
 constexpr std::chrono::milliseconds accept_pause{100};
 // File descriptors reserved for run files. If the system allows only few, an eighth of them is reserved instead.
 constexpr std::uint64_t descriptors_kept = 32;

@@ -17,7 +17,7 @@ namespace evod::network {
 
 class Listener {
   public:
-    /// The command-line options for address and port, for messages.
+    /// The names of the command-line options for the address and the port. Error messages contain them.
     struct Names {
         const char* address = "--bind";
         const char* port = "--port";

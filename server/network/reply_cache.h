@@ -48,7 +48,8 @@ class ReplyCache {
         Different, // a different request has used this id; the cache drops the waiter
         TooOld,    // the answer is no longer cached; the cache drops the waiter
     };
-    /// Returns the value for the parameter `client_key` of the other functions. It differs between users.
+    /// Returns the key that all other functions take as `client_key`. Equal client keys of different users give
+    /// different keys.
     ///
     /// user  name of the session's token; empty: the session has no token.
     static std::string key_of(const std::string& user, const std::string& client_key);
@@ -102,7 +103,7 @@ class ReplyCache {
     std::unordered_map<std::string, Key> keys_;
     std::list<std::string> used_once_, used_again_; // most recently used key first
     const std::string* last_used_ = nullptr;        // points into one of the two lists
-    // Key: hash of an evicted key; value: its highest request_id.
+    // Maps the hash of each evicted key to the highest request_id of that key.
     std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_;
     std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;

@@ -24,7 +24,7 @@ class SendMemory {
     SendMemory(std::size_t bytes_max, std::function<void()> exceeded)
         : bytes_max_{bytes_max}, exceeded_{std::move(exceeded)} {}
 
-    /// Shared bytes. They are counted as long as this object exists.
+    /// A reference to shared bytes. SendMemory counts the bytes as long as a reference exists.
     class Counted {
       public:
         Counted() = default;

@@ -278,8 +278,8 @@ bool Server::run() {
             .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); },
             .storage =
                 [this](const simulation::Storage& storage) {
-                    // Passed like an answer, because the outbox may drop events. Sessions that connect later read the
-                    // state from host_.storage.
+                    // The event is passed like an answer, because the outbox may drop events. Sessions that connect
+                    // later read the state from host_.storage.
                     outbox_.answer([this, event = protocol::event_of(storage)] {
                         host_.storage = event.storage_changed().storage();
                         streams_.publish(event);

@@ -47,9 +47,9 @@ struct ServerOptions {
     simulation::CreateWorld first_world; // created if no world has this name
     bool first_world_asked = false;      // false: first_world is created only if there is no world at all
     bool first_seed_asked = false;       // true: if the world is already stored, it must have the seed of first_world
-    // Speed that is set before any other command. It applies to first_world if the user asked for it, otherwise to the
-    // only world, or to `default` if there are several worlds. If there are several and none is named `default`, the
-    // server does not start.
+    // The speed that the server sets before any other command. It applies to first_world if the user requested that
+    // world; otherwise to the only world, or to `default` if there are several worlds. If there are several worlds and
+    // none is named `default`, the server does not start.
     std::optional<simulation::Speed> first_speed;
     bool first_run = false; // run the same world without a goal
 };

@@ -87,7 +87,8 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     const access::Visitor& visitor() const { return visitor_; }
-    /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count sessions by it.
+    /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count the sessions with an equal
+    /// prefix.
     const std::string& address_prefix() const { return address_prefix_; }
 
     /// Counts one more unanswered request. Returns false if there are already too many; the caller must then refuse the

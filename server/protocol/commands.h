@@ -34,8 +34,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
 /// command with an unknown field, because without that field the command might have a different effect.
 std::optional<std::string> unknown_field_of(const google::protobuf::Message& message);
 
-/// Returns the invalid fields of a query, subscription, replay or export request, as far as the request alone shows
-/// them.
+/// Checks the fields of a query, subscription, replay or export request without the state of the world. Returns the
+/// invalid ones.
 std::vector<base::Violation> faults_of(const v1::Request& request);
 
 /// Returns the name by which the laboratory looks up a world. If the text is not a valid name, it is made safe for

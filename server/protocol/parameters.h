@@ -28,7 +28,8 @@ v1::PlannedChange to_proto(const parameters::PlannedChange& change);
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);
 
 /// Returns the assignments that have a value. Adds a violation for each assignment without a value; in this case it
-/// also checks the other assignments. Otherwise parameters::assign() checks them later, together with the world.
+/// also checks the other assignments. If all have a value, parameters::assign() checks them later, together with the
+/// state of the world.
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations);

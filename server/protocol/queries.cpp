@@ -63,7 +63,7 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
             *list.add_worlds() = to_proto(*entry);
         }
     }
-    // Sorted by name, because the order of creation is not known after a restart.
+    // The worlds are sorted by name, because the order of their creation is not known after a restart.
     std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
               [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
     return list;

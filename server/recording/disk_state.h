@@ -28,7 +28,7 @@ class DiskState {
 
     void added(std::size_t bytes) { waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed); }
     void written(std::size_t bytes);
-    /// why  empty: writing works.
+    /// why  the reason why nothing can be written; empty: writing works.
     void set_trouble(const std::string& why);
 
   private:

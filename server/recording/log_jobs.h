@@ -24,9 +24,9 @@ class LogJobs {
     bool are_running() const { return running_count_ > 0; }
     /// Passes the results of jobs that have ended to their runs.
     ///
-    /// wait  waits until there is a result.
+    /// wait  true: waits until there is a result.
     void apply_results(std::map<RunNumber, RunLog>& runs, bool wait);
-    /// For reading the processor time of the thread.
+    /// Returns the handle of the thread of the job queue, for reading its CPU time.
     pthread_t handle() { return jobs_.handle(); }
 
   private:

@@ -52,9 +52,9 @@ class RecordQueue {
 
     /// Waits for records, results or stop(), then removes and returns the records that are due.
     ///
-    /// more         does not wait for work, because other work is left.
+    /// more         true: does not wait, because the caller has other work.
     /// retry_after  if set, waits for this time, because a write has failed.
-    /// jobs_run     jobs are running, whose results must be awaited before the thread ends.
+    /// jobs_run     true: jobs are running; the thread must not end before their results have arrived.
     HandedOver take(bool more, std::optional<std::chrono::milliseconds> retry_after, bool jobs_run);
     /// Called when all records that were taken are written.
     void all_written();
@@ -63,7 +63,7 @@ class RecordQueue {
     bool is_empty() const;
 
     void add_result(JobResult result);
-    /// wait  waits until there is a result.
+    /// wait  true: waits until there is a result.
     std::vector<JobResult> take_results(bool wait);
 
     /// The number of waiting checkpoints and running jobs, plus 1 while the storage thread works.
@@ -77,7 +77,8 @@ class RecordQueue {
     std::condition_variable changed_;
     HandedOver handed_over_;
     std::vector<JobResult> results_;
-    // The time of the oldest record in handed_over_; of the oldest record that was taken but not written yet.
+    // The times at which two records were added: the oldest one in handed_over_, and the oldest one that was taken but
+    // is not written yet.
     std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
     RunNumber last_number_ = 0;
     bool urgent_ = false;

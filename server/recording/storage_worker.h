@@ -53,7 +53,7 @@ class StorageWorker {
     /// To be called when these records are on the disk. Calls `done` and frees the memory of the records.
     void report_written(std::vector<WaitingRecord>& records);
     bool fail(const base::Refusal& why);
-    /// Logs for each run how much could not be written. Returns false if that is anything.
+    /// Logs for each run how much could not be written. Returns false if anything could not be written.
     bool report_lost() const;
 
     RecordQueue& queue_;

@@ -140,7 +140,7 @@ void Archive::read_ended_answers(const std::vector<std::string>& paths) {
         }
         const std::uint64_t last = (*file)->journal().last_number();
         const std::uint64_t count = std::min<std::uint64_t>(
-            // The last answer is to the command that ended the run.
+            // The last answer in a file is the answer to the command that ended the run.
             last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1);
         if (auto entries = (*file)->journal().read(last + 1 - count)) {
             run.last = *std::move(entries);

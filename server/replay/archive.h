@@ -34,16 +34,16 @@ class Archive {
     bool holds_worlds() const { return !identities_.empty(); }
     /// The names of the recovered worlds, in alphabetical order.
     std::vector<std::string> world_names() const;
-    /// Moves the recovered worlds out. To be called once.
+    /// Removes the recovered worlds from the archive and returns them. Must be called only once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
-    /// Moves the applied commands and their answers out, ended runs first; within a run, in the order of application.
-    /// To be called once.
+    /// Removes the applied commands and their answers from the archive and returns them: ended runs first; within a
+    /// run, in the order of application. Must be called only once.
     std::vector<run_file::JournalEntry> take_answers() { return std::move(answers_); }
 
-    /// nullptr after close().
+    /// The storage thread; nullptr after close().
     recording::StorageThread* thread() { return thread_.get(); }
     recording::Recorder& recorder() { return *recorder_; }
-    /// Writes everything that waits, if that is possible now. To be called after the last use of the recorder. Returns
+    /// Writes all waiting records, if that is possible now. Must be called after the last use of the recorder. Returns
     /// false if data was lost.
     bool close() {
         const bool all_written = thread_->finish();

@@ -23,7 +23,7 @@ Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std:
             .reason = base::Reason::MomentNotFound};
 }
 
-/// The number of the parents' generation.
+/// Returns the number of the parents' generation.
 Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreeding& wanted) {
     const std::uint64_t first = file.identity().first_generation, last = file.generations().last();
     if (last <= first) {

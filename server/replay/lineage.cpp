@@ -45,7 +45,8 @@ Births births_of(WholeGeneration whole) {
 
 using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // indexed by island, then organism
 
-/// For every place of `parents`, the organism that lived there when `children` were bred; nullopt if unknown.
+/// Returns, for every place of the generation `parents`, the organism that lived there when `children` was bred;
+/// nullopt if unknown.
 std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile& file, const Births& parents,
                                                         const Births& children) {
     std::vector<std::vector<Place>> places(parents.islands.size());

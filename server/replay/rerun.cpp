@@ -193,8 +193,8 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
                             begun.founders,
                             file.identity().schedule};
     if (checkpoint == nullptr) {
-        // The stored beginning already contains the changes between the end of the previous generation and its first
-        // tick.
+        // The stored beginning of a generation already contains the changes between the end of the previous generation
+        // and the first tick.
         const auto first = opening.generation == file.identity().first_generation
                                ? changes.begin()
                                : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);

@@ -34,7 +34,7 @@ base::Result<std::vector<ParameterChange>> parameter_changes(run_file::RunFile& 
 base::Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
                                                              std::span<const run_file::JournalEntry> journal);
 
-/// The parameter changes of a world that are still to be applied.
+/// The parameter changes that a world will get at later ticks.
 class ComingChanges {
   public:
     /// after_entry  the world already contains the journal entries up to and including this one.
@@ -71,12 +71,12 @@ class ComingChanges {
 
 class Rerun {
   public:
-    /// A rerun at the first moment of a generation. If the beginning of this generation is not retained, the run is
-    /// simulated from the last retained beginning before it. Refused if the file is damaged there, follows another
-    /// model, or does not contain the generation.
+    /// Returns a rerun at the first moment of a generation. If the beginning of this generation is not retained, the
+    /// run is simulated from the last retained beginning before it. Refused if the file is damaged there, follows
+    /// another model, or does not contain the generation.
     static base::Result<Rerun> at(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor);
-    /// A rerun at the last stored state at or before a moment: a checkpoint, or the beginning of a generation. Refused
-    /// for the same reasons as at().
+    /// Returns a rerun at the last stored state at or before a moment: a checkpoint, or the beginning of a generation.
+    /// Refused for the same reasons as at().
     ///
     /// tick           ticks since the run began; must be within the generation.
     /// history_count  maximum number of previous generations whose statistics the world gets.
@@ -91,7 +91,7 @@ class Rerun {
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
                                       std::span<const ParameterChange> changes, std::size_t history_count,
                                       base::Executor& executor);
-    /// A rerun at the first moment of a generation, or at one of its checkpoints.
+    /// Returns a rerun at the first moment of a generation, or at one of its checkpoints.
     ///
     /// generation     its beginning must be retained.
     /// checkpoint     a checkpoint of this generation; nullptr: the beginning of the generation or of the file.

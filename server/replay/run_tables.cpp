@@ -112,7 +112,7 @@ std::optional<base::Violation> wrong_place(const OrganismName& name, const std::
     return std::nullopt;
 }
 
-/// Which organisms are requested, by island, then organism.
+/// A flag for each organism of each island: whether the organism is requested.
 using Wanted = std::vector<std::vector<bool>>;
 
 void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {

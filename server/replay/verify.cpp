@@ -287,7 +287,7 @@ class Reader {
         }
         return stretches;
     }
-    /// The first generation after those read last; nullptr if there is none.
+    /// The generation that follows the last stretch that was read; nullptr if there is none.
     const StoredGeneration* following() const { return following_ ? &*following_ : nullptr; }
 
   private:
@@ -385,7 +385,7 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
         return changes.error();
     }
 
-    // Enough stretches to keep all threads busy although some take longer; bounded to limit memory.
+    // verify() reads enough stretches to keep all threads busy although some take longer. A bound limits their memory.
     const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
     constexpr std::size_t organisms_at_once = 1'000'000;
     Reader reader{file};

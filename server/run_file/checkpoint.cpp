@@ -153,7 +153,7 @@ class Packer {
     std::size_t used_ = 0; // bytes used in packed_
 };
 
-/// Reads values from the front. The caller has already checked the size.
+/// Reads the values in `bytes` one after another. The caller has already checked the size.
 class Columns {
   public:
     explicit Columns(std::string_view bytes) : bytes_{bytes} {}

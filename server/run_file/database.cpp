@@ -41,7 +41,7 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     if (failed()) {
         return;
     }
-    // Another program that reads the file may hold a lock for a short time.
+    // SQLite waits up to 2 s for a lock, because another program that reads the file may hold one for a short time.
     sqlite3_busy_timeout(handle, 2000);
     // SQLite must report damage instead of working around it. Nothing in a file may run code.
     sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);

@@ -14,7 +14,7 @@ GenerationBegun beginning_of(const simulation::World& world) {
 
 Inherited inherited_by(const simulation::World& world) {
     Inherited inherited{world.history()};
-    // Leaves out the fork's own first generation, if it is over.
+    // The loop leaves out the fork's own first generation, if that generation is over.
     while (!inherited.history.empty() &&
            inherited.history.back().front().generation >= world.opening().moment.generation) {
         inherited.history.pop_back();

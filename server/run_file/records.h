@@ -73,7 +73,7 @@ GenerationBegun beginning_of(const simulation::World& world);
 struct Inherited {
     simulation::World::History history;
 };
-/// world  must be a fork in its first generation.
+/// Returns the statistics that a fork has copied. `world` must be a fork in its first generation.
 Inherited inherited_by(const simulation::World& world);
 
 /// The outcome of a generation on one island. Every vector is indexed by organism id.
@@ -88,7 +88,7 @@ struct GenerationEnded {
     std::vector<IslandOutcome> outcomes;                      // one per island
     std::vector<simulation::GenerationStatistics> statistics; // one per island
 };
-/// world  must have completed its generation.
+/// Returns the outcome of the world's current generation, which must be complete.
 GenerationEnded end_of(const simulation::World& world);
 /// "alive", "starved", "poisoned"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);

@@ -71,7 +71,8 @@ class RunFile : public RunContents {
     /// Writes a record. If it is an end mark, this function counts the rows of the file and ignores the counts in the
     /// record.
     void write(const Record& record);
-    /// A refusal contains the reason. It is then unknown whether the file contains the records since begin().
+    /// Commits the transaction that begin() has started. After a refusal, it is unknown whether the file contains the
+    /// records since begin().
     base::Result<void> commit();
     /// Writes the next part of a checkpoint in its own transaction. Not allowed between begin() and commit().
     ///

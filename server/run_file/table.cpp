@@ -20,7 +20,7 @@ std::string create_statement(const std::string& table, const std::vector<Column>
         }
         items.push_back("PRIMARY KEY (" + keys + ")");
     }
-    // The line breaks are part of the format too.
+    // The line breaks of the statement are part of the file format, too: SQLite stores its text in the file.
     constexpr std::size_t line_characters_max = 118;
     std::string sql, line = "CREATE TABLE " + table + " (";
     for (std::size_t i = 0; i < items.size(); ++i) {

@@ -49,7 +49,7 @@ struct AccountColumns {
     Account& account;
 };
 
-/// Adds no column. Contains checksums of other rows, which the checksum of this row covers at this position.
+/// Checksums of other rows, which the checksum of this row covers at this position. This member adds no column.
 struct CoveredChecksums {
     std::vector<std::int64_t> values;
     // Fills in `values` when a row is read; called after the columns before this position.

@@ -33,8 +33,8 @@ namespace evod::run_file {
 /// the file.
 using ReadAt = base::FunctionRef<std::size_t(std::uint64_t offset, std::span<std::byte> bytes)>;
 
-/// The offset of the first frame that had been on the disk and is damaged. 0 if the header of the log is damaged;
-/// nullopt if the log is undamaged.
+/// Returns the offset of the first frame that had been on the disk and is damaged; 0 if the header of the log is
+/// damaged; nullopt if the log is undamaged.
 std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index);
 
 enum class LogIndex { Read, Unread };

@@ -130,7 +130,7 @@ void ExportJob::work(const std::stop_token& stop) {
     }
     const std::lock_guard lock{mutex_};
     finished_ = true;
-    // Notify while the lock is held, because the object may be destroyed as soon as it is released.
+    // Notify while the lock is held, because the object may be destroyed as soon as the lock is released.
     changed_.notify_all();
 }
 

@@ -27,7 +27,8 @@ class ExportJob {
     struct Part {
         std::string text;
         bool last = false; // this is the last part of the table
-        // Replay::generations_out_of_reach(), for tables of organisms or of their lineage.
+        // In tables of organisms or lineage: the number of generations that are missing
+        // (replay::generations_out_of_reach()).
         std::uint64_t generations_left_out = 0;
     };
     /// Called on the thread of the job. Must not block.

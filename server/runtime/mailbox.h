@@ -24,7 +24,8 @@ class Mailbox {
 
     /// Adds mail. Returns false if the mailbox is full; `mail` is then unchanged.
     bool try_push(Mail&& mail);
-    /// Adds mail regardless of the capacity. For entries whose number is bounded elsewhere and that must not be lost.
+    /// Adds mail regardless of the capacity. Use it for mail that must not be lost and whose amount is bounded
+    /// elsewhere.
     void push(Mail&& mail);
 
     /// Makes wait() return even if there is no mail.

@@ -20,7 +20,7 @@ namespace evod::runtime {
 
 constexpr std::size_t outbox_events_max = 4096;
 
-/// An event, or the result of a background job. The network thread calls it.
+/// A function that the network thread calls. It delivers an event or the result of a background job.
 using Call = std::function<void()>;
 using Delivery = std::variant<Call, Reply>;
 
@@ -38,7 +38,7 @@ class Outbox {
     struct NewestSnapshot {
         SnapshotPtr snapshot;
         std::uint64_t replaced_count = 0; // number of snapshots of the world that this one replaced in the outbox
-        // This snapshot, or one that it replaced, shows the effect of a command or of a reached goal.
+        // true: this snapshot, or one that it replaced, shows the effect of a command or of a reached goal.
         bool after_change = false;
     };
     struct Taken {

@@ -25,13 +25,13 @@ struct SeekResult {
     simulation::Replay there;
 };
 
-/// The run of a file that the server shows as long as it runs.
+/// A replay of a run file. It exists as long as the server runs.
 struct FileReplay {
     std::string name;
     replay::StoredRun run;
     SeekResult shown;
 
-    /// Opens a file. Shows the first moment of the run, or of the given generation.
+    /// Opens a run file and seeks to the first moment of the run, or of the given generation.
     static base::Result<FileReplay> open(const std::string& path, std::optional<std::uint64_t> generation,
                                          base::Executor& executor);
 };
@@ -54,16 +54,18 @@ class Seeks {
     /// All arguments must outlive this object.
     Seeks(RunReader& reader, base::Executor& executor) : reader_{reader}, executor_{executor} {}
 
-    /// world  the world whose records are awaited.
+    /// world  the seek waits until all records of this world are on the disk.
     void begin(const std::string& world, Request request);
     /// Ends all seeks of a session.
     void cancel_of_session(std::uint64_t session);
     /// Ends all seeks that move a replay, because the replay is closed.
     void cancel_of_replay(const std::string& replay);
 
-    /// Number of the seeks that open a replay; session: only those of this session.
+    /// Returns the number of seeks that open a replay.
+    ///
+    /// session  counts only the seeks of this session; nullopt: all seeks.
     std::size_t opening_count(std::optional<std::uint64_t> session = {}) const;
-    /// Whether a seek simulates.
+    /// Whether a seek is simulating ticks now.
     bool under_way() const;
     /// Advances all seeks in turn by one tick each, until `stop` returns true or all have reached their moments.
     void advance(const std::function<bool()>& stop);

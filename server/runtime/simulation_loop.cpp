@@ -21,7 +21,7 @@ Clock::duration seconds(double s) {
 
 constexpr std::chrono::milliseconds measuring_time{1000};
 
-/// Returns how many ticks to simulate between two readings of the clock.
+/// Returns how many ticks a world at full speed simulates between two readings of the clock.
 ///
 /// tick  the duration of one tick.
 std::uint32_t ticks_a_look(Clock::duration tick) {

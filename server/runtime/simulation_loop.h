@@ -74,7 +74,7 @@ class SimulationLoop {
     std::optional<Clock::time_point> pass();
 
     /// Finishes the seeks that have reached their moments, applies the commands in the mailbox, and queues the queries
-    /// for answer_queries(). Then follows all worlds: nothing else creates or deletes one.
+    /// for answer_queries(). Then updates the list of tracks, because only these steps create or delete worlds.
     void poll_mailbox();
     /// Handles the remaining mail and closes the recorder. Called when the server shuts down.
     void close();
@@ -108,7 +108,7 @@ class SimulationLoop {
     /// waits.
     std::optional<Clock::time_point> answer_queries();
     void answer_query();
-    /// Whether a paced world is due now and would run late if other work came first.
+    /// Whether a seek, a world at full speed or a due paced world would have to wait for other work.
     bool time_is_wanted(Clock::time_point now) const;
     void apply(CommandMail& mail);
     void fork(CommandMail& mail);
@@ -120,7 +120,7 @@ class SimulationLoop {
     };
     std::optional<RunBefore> run_of(const simulation::Command& command) const;
     const simulation::Entry* entry_in(const simulation::Command& command) const;
-    /// Why the journal cannot store any command at present; nullopt: it can.
+    /// Returns why the journal cannot store this command now; nullopt if it can, or if the command need not be stored.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
     void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                 const std::optional<RunBefore>& before);
@@ -136,7 +136,8 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
-    /// spent  time since the last reading of the clock, for ticks and the work after them.
+    /// spent  time since the previous reading of the clock, in which the loop simulated ticks and did the work after
+    ///        them.
     void make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent);
     void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
     void show(const simulation::Entry& entry, Track& track, Clock::time_point now);

@@ -22,7 +22,7 @@ class SimulationThread {
     /// Ends the thread after it has handled the remaining mail.
     void stop();
 
-    /// For reading the CPU time of the thread. Must not be called after stop().
+    /// Returns the handle of the thread, for reading its CPU time. Must not be called after stop().
     pthread_t handle() { return thread_.native_handle(); }
 
   private:

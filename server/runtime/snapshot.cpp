@@ -76,7 +76,7 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     }
 
     return {taken.release(), [spare = spare_](const Snapshot* snapshot) {
-                // The object was created as a non-const object.
+                // The cast is allowed, because take() created the object as non-const.
                 std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)};
                 const std::lock_guard lock{spare->mutex};
                 if (spare->snapshots.size() < spares_max) {

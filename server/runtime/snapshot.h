@@ -61,7 +61,8 @@ struct Snapshot {
     bool slowed = false;
     double item_radius_px = 0;
     std::uint32_t island_count = 0;
-    // Shows the effect of a command or of a reached goal, so it is sent regardless of the rate.
+    // true: the snapshot shows the effect of a command or of a reached goal, so the server sends it regardless of the
+    // rate.
     bool after_change = false;
     std::vector<IslandSnapshot> islands; // the islands with subscriptions, in order of their indices
 };

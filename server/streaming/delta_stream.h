@@ -77,7 +77,7 @@ class StreamedSnapshot {
 
     Tile& full(std::uint32_t tile);
     codec::QuantisedView view(std::uint32_t tile) const;
-    /// Sums of the counts of all tiles with an index below `tile`.
+    /// Returns the sums of the counts of all tiles with an index below `tile`.
     codec::Counts counts_before(std::uint32_t tile) const;
     codec::Counts counts(std::uint32_t tile) const;
     codec::BaselineView baseline(std::uint32_t tile) const;

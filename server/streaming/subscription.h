@@ -23,8 +23,8 @@ struct SnapshotSubscription {
     std::optional<std::uint32_t> island; // index of the island; nullopt: all islands
     std::uint32_t island_count = 1;      // number of subscribed islands when the subscription began
     double rate_hz = 1;
-    // Number of a subscription that began before a snapshot for it existed; later subscriptions have higher numbers. 0:
-    // a snapshot already existed.
+    // 0 if a snapshot for the subscription existed when it began. Otherwise a number that is higher for later
+    // subscriptions.
     std::uint64_t newcomer = 0;
     std::uint64_t dropped_count = 0;
     v1::Codec codec = v1::CODEC_PLAIN;
