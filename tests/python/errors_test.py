@@ -59,9 +59,9 @@ class Errors(unittest.TestCase):
                          "generations must be at least 1, not 0\n  generations: got 0, allowed at least 1")
 
     def test_errors_of_the_program_name_arguments(self):
-        error = failure("--keep-every: must be a whole number, not x\nRun with --help for more information.\n")
+        error = failure("evod: --keep-every: got x, allowed a whole number\nSee evod --help\n")
         self.assertEqual(error.violations, (errors.Violation("keep_every", "a whole number", "x"),))
-        printed = "evod sweep: /tmp/a.json: invalid sweep\n  grid.size (line 3): got a, b, allowed x, y\n"
+        printed = "evod: /tmp/a.json: invalid sweep\n  grid.size (line 3): got a, b, allowed x, y\n"
         error = failure(printed, "/tmp/a.json: ")
         self.assertEqual(str(error), "invalid sweep\n  grid.size: got a, b, allowed x, y")
         error = failure("evod: use --data or --port\n")

@@ -12,8 +12,11 @@ from typing import IO, Callable, Sequence
 from evod.errors import Error, FileNotFound, InvalidArgument, ProgramFailed, Violation
 
 _REFUSED = re.compile(r"^\s+(?P<field>.+?)(?: \(line \d+\))?: got (?P<got>.*?), allowed (?P<allowed>.*)$")
-_REFUSED_OPTION = re.compile(r"^--(?P<field>[a-z-]+): must be (?P<allowed>.*), not (?P<got>.*?)$")
+_REFUSED_OPTION = re.compile(r"^(?:evod: )?--(?P<field>[a-z-]+): got (?P<got>.*?), allowed (?P<allowed>.*)$")
+_UNKNOWN = re.compile(r"^\s+(?P<field>.+?)(?: \(line \d+\))?: unknown name(?:; did you mean (?P<allowed>.*)\?)?$")
+_OPTION = re.compile(r"^--(?P<field>[a-z-]+): must be (?P<allowed>.*), not (?P<got>.*?)$")
 _REFUSED_USE = re.compile(r"^evod [a-z]+: --(?P<field>[a-z-]+): got (?P<got>.*?), allowed (?P<allowed>.*)$")
+_SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 _PROGRESS = re.compile(r"\r *(?:(\d+) of (\d+) runs|(\d+) % of)")
 _CLEARED = re.compile(r"\r[^\r\n]*\x1b\[K")  # a progress line, or its removal
@@ -35,10 +38,12 @@ def failure(output: str, hidden: str = "") -> Error:
     """
     violations, others = [], []
     for line in output.splitlines():
-        if found := _REFUSED.match(line) or _REFUSED_OPTION.match(line) or _REFUSED_USE.match(line):
+        if found := _REFUSED.match(line) or _REFUSED_OPTION.match(line):
             violations.append(Violation(_argument(found["field"]), found["allowed"], found["got"]))
-        elif line.strip() and not line.startswith("Run with --help"):
-            line = re.sub(r"^evod( [a-z]+)?: ", "", line.strip())
+        elif found := _UNKNOWN.match(line):
+            violations.append(Violation(_argument(found["field"]), found["allowed"] or "a known name", "an unknown name"))
+        elif line.strip() and not _SEE_HELP.match(line):
+            line = re.sub(r"^evod: ", "", line.strip())
             line = line.replace(hidden, "") if hidden else line
             others.append(_OPTION.sub(lambda option: _argument(option[1]), line))
     if violations:
