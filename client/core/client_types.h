@@ -1,4 +1,4 @@
-// Client types: what a program and its Connection exchange: address, options, status, errors.
+// Client types: the address, options, status and errors that a program and its Connection exchange.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -48,7 +48,7 @@ std::string to_text(const Endpoint& endpoint);
 
 // ---- replies ---------------------------------------------------------------------------------------------------
 
-/// Receives the reply to a request, or the reason why none arrived.
+/// A function that receives the reply to a request, or the reason why no reply arrived.
 using Handler = std::function<void(Result<evod::v1::Response>)>;
 
 inline bool accepted(const evod::v1::Response& response) {

@@ -30,7 +30,7 @@ std::string random_key() {
     return key;
 }
 
-/// What the program can read at any time.
+/// The received data, which the program can read at any time.
 struct Received {
     ConnectionStatus status = {};
     EventQueue events;
@@ -139,7 +139,7 @@ class Connection::Io {
     Received received_{.events = EventQueue{options_.events_kept}}; // guarded by the mutex
     std::atomic<std::uint32_t> last_handle_ = 0;
 
-    // Used only on the connection's thread.
+    // Only the connection's thread uses the following members.
     ProtocolState protocol_;
     const std::shared_ptr<asio::io_context> context_ = std::make_shared<asio::io_context>(1);
     asio::executor_work_guard<asio::io_context::executor_type> guard_{context_->get_executor()};

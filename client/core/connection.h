@@ -34,7 +34,7 @@ class Connection {
     using Handler = core::Handler;
     static constexpr std::chrono::milliseconds default_timeout{10'000};
     /// The server sends at most this many snapshots of an island without an acknowledgement, which bounds the backlog.
-    /// 8 allow 30 snapshots per second with a round-trip time of 0.25 s.
+    /// A limit of 8 allows 30 snapshots per second with a round-trip time of 0.25 s.
     static constexpr std::uint32_t unacknowledged_snapshots_max = 8;
 
     /// Starts connecting and returns immediately.
@@ -65,8 +65,8 @@ class Connection {
     /// If no codec is set, requests the server's most compact codec and acknowledges each snapshot when it is decoded.
     SubscriptionHandle subscribe(evod::v1::SubscribeSnapshots subscription);
     SubscriptionHandle subscribe(evod::v1::SubscribeEvents subscription);
-    /// Changes the view now and after each reconnection. The subscription must have been created with a view. A server
-    /// without the feature "view" continues to send whole snapshots.
+    /// Sets the view of a subscription. Sets it again after each reconnection. The subscription must have been created
+    /// with a view. A server without the feature "view" continues to send whole snapshots.
     void set_view(SubscriptionHandle handle, evod::v1::View view);
     void unsubscribe(SubscriptionHandle handle);
 
@@ -84,8 +84,8 @@ class Connection {
 
     /// Returns all events since the last call, oldest first.
     std::vector<evod::v1::Event> take_events();
-    /// Waits for the next event and returns it. nullopt: none arrived within `timeout`, or the state is Failed and no
-    /// event is left.
+    /// Waits for the next event and returns it. Returns nullopt if no event arrived within `timeout`, or if the state
+    /// is Failed and no event is left.
     std::optional<evod::v1::Event> wait_event(std::chrono::milliseconds timeout);
 
   private:

@@ -43,7 +43,7 @@ constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_m
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the cells of a line. Removes the quotation marks that some programs write around cells.
-std::vector<std::string_view> cells_of(std::string_view line) {
+std::vector<std::string_view> split_csv_line(std::string_view line) {
     std::vector<std::string_view> cells;
     while (true) {
         const std::size_t comma = line.find(',');
@@ -60,7 +60,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 /// Removes the first line from the text and returns it.
-std::string_view take_line(std::string_view& text) {
+std::string_view remove_first_line(std::string_view& text) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
@@ -131,7 +131,7 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
     if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark, which spreadsheet programs write
         text.remove_prefix(3);
     }
-    const std::vector<std::string_view> heading = cells_of(take_line(text));
+    const std::vector<std::string_view> heading = split_csv_line(remove_first_line(text));
     HistoryCsv read;
     for (const std::string_view name : heading) {
         const std::string gene{name.substr(0, name.size() - std::min(name.size(), gene_parts[0].size()))};
@@ -151,11 +151,11 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
         places.push_back(static_cast<std::size_t>(found - heading.begin()));
     }
     for (std::size_t number = 2; !text.empty(); ++number) {
-        const std::string_view line = take_line(text);
+        const std::string_view line = remove_first_line(text);
         if (line.empty()) {
             continue;
         }
-        const std::vector<std::string_view> cells = cells_of(line);
+        const std::vector<std::string_view> cells = split_csv_line(line);
         if (cells.size() != heading.size()) {
             return misread("line " + std::to_string(number) + " has " + std::to_string(cells.size()) +
                            " cells, allowed: " + std::to_string(heading.size()) + ", as many as the heading");

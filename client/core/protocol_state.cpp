@@ -7,7 +7,7 @@ namespace evod::core {
 
 namespace {
 
-/// Returns the time `wait` after `now`; TimePoint::max() for waits that never end in practice.
+/// Returns `now` + `wait`. Returns TimePoint::max() for waits of more than 100 years, because the sum could overflow.
 TimePoint after(TimePoint now, std::chrono::milliseconds wait) {
     return wait > std::chrono::years{100} ? TimePoint::max() : now + wait;
 }
@@ -146,7 +146,7 @@ void ProtocolState::end_session(Ending ending, TimePoint now) {
     requests_.end_session({.kind = Error::Kind::NoConnection, .what = status_.reason}, another);
     deadline_ = TimePoint::max();
     if (another) {
-        // Jitter, so that the clients of a server do not all reconnect at the same moment.
+        // Waits are random, so that the clients of a server do not all reconnect at the same moment.
         const auto spread = std::uniform_real_distribution{0.5, 1.0}(jitter_);
         deadline_ = now + std::chrono::duration_cast<std::chrono::milliseconds>(backoff_ * spread);
         backoff_ = std::min(2 * backoff_, options_.backoff_max);

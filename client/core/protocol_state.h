@@ -1,5 +1,5 @@
 // ProtocolState: the client's side of the protocol, as a state machine without sockets, threads and clocks. After each
-// call, the owner calls take_output() and does what the Output states.
+// call, the owner calls take_output() and performs the actions that the Output lists.
 //
 // Owner        Connection, which owns the socket and the timer.
 // Threads      none of its own. Only one thread at a time may call it.
@@ -14,7 +14,7 @@
 
 namespace evod::core {
 
-/// The newest events that the program has not taken.
+/// Stores the newest events that the program has not taken yet.
 class EventQueue {
   public:
     explicit EventQueue(std::size_t kept) : kept_{std::max<std::size_t>(kept, 1)} {}
@@ -58,21 +58,23 @@ class ProtocolState {
     // ---- the TCP connection
     void opened(TimePoint now);
     void received(std::span<const std::byte> bytes, TimePoint now);
-    /// The TCP connection was lost or could not be opened. `ending` applies if the server stated no other reason.
+    /// Call when the TCP connection was lost or could not be opened. `ending` applies if the server stated no other
+    /// reason.
     void lost(Ending ending, TimePoint now);
-    /// Ends what has lasted too long; begins the next attempt to connect when its time has come.
+    /// Ends attempts to connect and requests whose time limit has passed. Begins the next attempt to connect when it is
+    /// due.
     void advance(TimePoint now);
     Output take_output();
 
     // ---- the program
     void request(evod::v1::Request request, Handler handler, std::chrono::milliseconds timeout, TimePoint now);
-    /// add(), set_view() and remove() are for the program.
+    /// The program may call only add(), set_view() and remove() of the subscriptions.
     Subscriptions& subscriptions() { return subscriptions_; }
     /// Finishes all requests with the error Closed. The connection cannot be used again.
     void close();
 
   private:
-    /// The state that begins with each attempt to connect.
+    /// State that each attempt to connect resets.
     struct SessionState {
         bool opened = false;
         bool going_away = false;                 // the server has announced its shutdown

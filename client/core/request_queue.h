@@ -1,4 +1,4 @@
-// RequestQueue: a client's requests from the call of the program until their outcome.
+// RequestQueue: stores each request of a client from the program's call until its outcome is known.
 //
 // Idempotent: each request carries an increasing number and the key of the client. A request that is unanswered when
 // the session ends is sent again in the next session with the same number, so the server executes it only once.
@@ -26,7 +26,8 @@ struct Outcome {
 };
 
 /// A request without a reply. When the session ends, requests of the program remain and are sent again in the next
-/// session. A request for a subscription remains if it was not sent. All others have no meaning outside their session.
+/// session. A request for a subscription remains if it was not sent. All others finish, because they have no meaning
+/// outside their session.
 struct Pending {
     Handler handler = {};                                // set for requests of the program
     std::optional<SubscriptionHandle> subscription = {}; // set for requests for a subscription
@@ -43,14 +44,15 @@ class RequestQueue {
     void set_limits(const evod::v1::Limits& limits) { limits_ = limits; }
     /// Numbers a request and appends it. If the request cannot be sent, its outcome is an error.
     void add(evod::v1::Request request, Pending pending);
-    /// Whether a request for this subscription is unanswered.
+    /// Returns whether a request for this subscription is unanswered.
     bool has_request_for(SubscriptionHandle subscription) const;
-    /// Finishes the request that this response answers. Returns its subscription if it is a request for one. Ignores
-    /// responses to unknown requests and to requests that were not sent in this session.
+    /// Finishes the request that this response answers. If that request asked for a subscription, returns the handle of
+    /// the subscription. Ignores responses to unknown requests and to requests that were not sent in this session.
     std::optional<SubscriptionHandle> answer(const evod::v1::Response& response);
-    /// Finishes all requests whose deadline has passed. `why` is appended to the error.
+    /// Finishes all requests whose deadline has passed. Appends `why` to each error.
     void expire(TimePoint now, const std::string& why);
-    /// Finishes the requests that will not be sent again; all of them if there will be no other session.
+    /// Finishes the requests that will not be sent again. If no session follows (`another` is false), finishes all
+    /// requests.
     void end_session(const Error& error, bool another);
 
     /// Returns the frames to send now, in order: as many as the server's limit on unanswered requests allows.

@@ -27,7 +27,7 @@ constexpr std::size_t read_bytes = 256 << 10;
 
 /// Enables TCP keepalive, which detects a peer that disappeared without closing the connection, such as a suspended
 /// laptop.
-void notice_silence(asio::ip::tcp::socket& socket) {
+void enable_keepalive(asio::ip::tcp::socket& socket) {
     error_code ignored; // if the system lacks an option, the socket still works
     socket.set_option(asio::ip::tcp::no_delay{true}, ignored);
     socket.set_option(asio::socket_base::keep_alive{true}, ignored);
@@ -38,7 +38,7 @@ void notice_silence(asio::ip::tcp::socket& socket) {
 }
 
 /// Returns the cause of a TLS error and how to fix it; empty if the cause is unknown.
-std::string tls_reason_of(const error_code& error) {
+std::string explain_tls_error(const error_code& error) {
     if (error == asio::ssl::error::stream_truncated || error == asio::error::eof ||
         error == asio::error::connection_reset) {
         return "it closed the connection: it may not use TLS, which --ca, --tls, --cert and EVOD_CA require";
@@ -109,7 +109,7 @@ std::string names_of(const X509* certificate) {
 /// Returns why a server's certificate is not trusted, and how to fix it.
 ///
 /// certificate  the certificate that was rejected; nullptr: unknown.
-std::string distrust_of(int verdict, const X509* certificate, const Options::Tls& files) {
+std::string explain_distrust(int verdict, const X509* certificate, const Options::Tls& files) {
     const std::string why = X509_verify_cert_error_string(verdict);
     if (certificate == nullptr) {
         return why;
@@ -149,7 +149,7 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
         error == asio::ssl::error::stream_truncated) {
         return "the server at " + to_text(server) + " closed the connection";
     }
-    const std::string tls = tls_reason_of(error);
+    const std::string tls = explain_tls_error(error);
     return "the connection with " + to_text(server) + " failed: " + (tls.empty() ? error.message() : tls);
 }
 
@@ -170,7 +170,7 @@ void Session::start() {
     if (const auto address = asio::ip::make_address(host, not_an_address); !not_an_address) {
         asio::post(*io_, [self = shared_from_this(), address, host, service] {
             const asio::ip::tcp::endpoint endpoint{address, self->options_.server.port};
-            self->looked_up({}, Addresses::create(endpoint, host, service));
+            self->handle_addresses({}, Addresses::create(endpoint, host, service));
         });
         return;
     }
@@ -183,13 +183,13 @@ void Session::start() {
         const auto addresses = resolver.resolve(host, service, asio::ip::resolver_base::numeric_service, error);
         asio::post(*io, [of, error, addresses] {
             if (const auto session = of.lock()) {
-                session->looked_up(error, addresses);
+                session->handle_addresses(error, addresses);
             }
         });
     }}.detach();
 }
 
-void Session::looked_up(const error_code& error, const Addresses& addresses) {
+void Session::handle_addresses(const error_code& error, const Addresses& addresses) {
     if (ended_) {
         return;
     }
@@ -205,7 +205,7 @@ void Session::looked_up(const error_code& error, const Addresses& addresses) {
             self->end({.reason = reason_of(failed, self->options_.server)});
             return;
         }
-        notice_silence(self->socket_);
+        enable_keepalive(self->socket_);
         if (self->options_.tls) {
             self->perform_handshake();
         } else {
@@ -264,8 +264,8 @@ void Session::perform_handshake() {
                 X509_STORE_CTX_set_error(store, X509_V_ERR_HOSTNAME_MISMATCH);
             }
             if (!believed) {
-                distrust_ =
-                    distrust_of(X509_STORE_CTX_get_error(store), X509_STORE_CTX_get_current_cert(store), *options_.tls);
+                distrust_ = explain_distrust(X509_STORE_CTX_get_error(store), X509_STORE_CTX_get_current_cert(store),
+                                             *options_.tls);
             }
             return believed;
         });
@@ -281,7 +281,7 @@ void Session::perform_handshake() {
             self->begin();
             return;
         }
-        const std::string known = tls_reason_of(error);
+        const std::string known = explain_tls_error(error);
         const bool by_tls = error.category() == asio::error::get_ssl_category();
         const std::string why = !self->distrust_.empty() ? "its certificate is not trusted: " + self->distrust_
                                 : known.empty()          ? error.message()
@@ -326,7 +326,7 @@ Ending Session::lost(const error_code& error) const {
     const bool by_tls = error.category() == asio::error::get_ssl_category();
     // With TLS 1.3, only this error reports that the server rejected the client's certificate. Another attempt would
     // fail too.
-    const bool not_taken = !has_received_ && by_tls && !tls_reason_of(error).empty();
+    const bool not_taken = !has_received_ && by_tls && !explain_tls_error(error).empty();
     // The server's message about a rejected client certificate may be lost with the connection.
     const bool without_message = tls_ && !has_received_ && !by_tls;
     return {.reason = reason_of(error, options_.server) +

@@ -1,6 +1,6 @@
 // Session: one TCP connection to a server, with TLS if the options require it, from the look-up of the host name until
-// the connection is closed. It reports what happens to the ProtocolState. After a lost connection, Connection creates a
-// new Session.
+// the connection is closed. It passes received bytes and the loss of the connection to the ProtocolState. After a lost
+// connection, Connection creates a new Session.
 //
 // Owner        Connection, which destroys it when it has ended.
 // Threads      everything runs on the single thread of the io_context, except the look-up of the host name.
@@ -18,19 +18,20 @@ namespace evod::core {
 
 class Session : public std::enable_shared_from_this<Session> {
   public:
-    /// changed  called after each call to `protocol`.
+    /// changed  the session calls this function after each call to `protocol`.
     Session(std::shared_ptr<boost::asio::io_context> io, const Options& options, ProtocolState& protocol,
             std::function<void()> changed);
 
     void start();
     void send(std::string bytes);
-    /// Closes immediately. Afterwards neither `protocol` nor `changed` is called.
+    /// Closes immediately. Afterwards the session calls neither `protocol` nor `changed`.
     void close();
 
   private:
     using Addresses = boost::asio::ip::tcp::resolver::results_type;
-    void looked_up(const boost::system::error_code& error, const Addresses& addresses);
-    /// Loads the certificates and the key for TLS. Returns what cannot be used, and why; empty: all can be used.
+    void handle_addresses(const boost::system::error_code& error, const Addresses& addresses);
+    /// Loads the certificates and the key for TLS. Returns an error message that names the unusable file; empty on
+    /// success.
     std::string load_tls_files();
     void perform_handshake();
     void begin();

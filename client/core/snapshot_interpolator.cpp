@@ -13,7 +13,7 @@ bool follows(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame&
            next.simulated_s() - before.simulated_s() <= SnapshotInterpolator::blended_s_max;
 }
 
-/// Returns for each entity its index in `among`, or no_match. Ids rise in both.
+/// Returns for each entity its index in `among`, or no_match. Both lists are sorted by id.
 std::vector<std::uint32_t> match(const codec::Entities& entities, const codec::Entities& among) {
     std::vector<std::uint32_t> indices(entities.x.size(), Positions::no_match);
     for (std::size_t i = 0, j = 0; i < indices.size(); ++i) {

@@ -20,7 +20,7 @@
 namespace evod::core {
 
 /// The positions at which to draw the entities of one kind. Each position is computed when it is read; nothing is
-/// copied. `entities` alone gives the positions in one snapshot.
+/// copied. If only `entities` is set, the positions are those in one snapshot.
 struct Positions {
     static constexpr std::uint32_t no_match = ~std::uint32_t{0};
     struct Position {
@@ -33,7 +33,7 @@ struct Positions {
     double blend = 1;                          // 0 gives the positions in `previous`, 1 those in `entities`
 
     std::size_t size() const { return entities == nullptr ? 0 : entities->x.size(); }
-    /// The centre of entity i. An entity without a match keeps its position in `entities`.
+    /// Returns the centre of entity i. An entity without a match keeps its position in `entities`.
     Position operator[](std::size_t i) const {
         const std::uint32_t j = previous == nullptr ? no_match : match[i];
         if (j == no_match) {
@@ -43,7 +43,8 @@ struct Positions {
     }
 
   private:
-    /// Interpolates in steps: their difference is exact, and few conversions are needed.
+    /// Interpolates between two positions given in steps. The difference of whole steps is exact, and few conversions
+    /// are needed.
     float between(std::uint32_t from, std::uint32_t to) const {
         const double steps = static_cast<std::int32_t>(from) + static_cast<std::int32_t>(to - from) * blend;
         return static_cast<float>(steps) * (1 / codec::steps_per_px);
@@ -69,9 +70,9 @@ class SnapshotInterpolator {
     /// Drops both snapshots. Call it before showing another world or island.
     void clear();
 
-    /// The snapshot added last; null before the first.
+    /// Returns the snapshot that was added last; null if none was added.
     const std::shared_ptr<const codec::ReceivedSnapshot>& latest() const { return latest_; }
-    /// The snapshot before latest(); null if latest() is not interpolated.
+    /// Returns the snapshot before latest(); null if latest() is not interpolated.
     const std::shared_ptr<const codec::ReceivedSnapshot>& previous() const { return previous_; }
 
     /// Returns the progress of the interpolation at `now`: 0 draws the positions in previous(), 1 those in latest().

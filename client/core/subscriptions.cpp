@@ -99,7 +99,7 @@ std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, Connecti
     }
     if (auto decoded = stream.decoder.decode(std::move(frame))) {
         stream.keyframe_requests = 0;
-        // The same format as in WorldInfo and Event, so that the values can be compared.
+        // Converts the values to the format in WorldInfo and Event, so that they can be compared.
         decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
         snapshots_[known->first][island] = std::make_shared<const codec::ReceivedSnapshot>(*std::move(decoded));

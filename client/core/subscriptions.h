@@ -1,4 +1,4 @@
-// Subscriptions: what a client has subscribed to. Requests every subscription in every session, decodes and
+// Subscriptions: stores the subscriptions of a client. Requests every subscription in every session, decodes and
 // acknowledges snapshots, and requests a keyframe after a damaged one.
 //
 // Threads      none of its own.
@@ -36,7 +36,7 @@ class Subscriptions {
     /// acknowledges the snapshot; empty: none.
     std::string take_snapshot(evod::v1::SnapshotFrame frame, ConnectionStatus& status);
 
-    /// The server's last answer to each subscription in this session.
+    /// Returns the server's last answer to each subscription in this session.
     const Answers& answers() const { return answers_; }
     /// Returns the snapshots that were decoded since the last call.
     Snapshots take_snapshots() { return std::exchange(snapshots_, {}); }

@@ -16,7 +16,7 @@ namespace {
 /// Replaces strings by numbers where the field is a 64-bit integer and the value is below 2^53. Protobuf writes every
 /// 64-bit integer as a string.
 ///
-/// of  descriptor of the message in `json`.
+/// of  the descriptor of the message that `json` contains.
 std::string with_numbers(std::string_view json, const google::protobuf::Descriptor& of) {
     using google::protobuf::FieldDescriptor;
     struct Level {

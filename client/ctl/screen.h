@@ -32,7 +32,7 @@ class Drawing {
 /// Reports on stderr that the connection was lost; throws Stop if the client will not reconnect.
 class ConnectionReporter {
   public:
-    /// drawing  the text on the terminal; it stays there, and the message is printed below it.
+    /// drawing  the text on the terminal; the message is printed below it.
     void report(const core::Connection& connection, Drawing& drawing);
 
   private:

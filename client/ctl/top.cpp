@@ -78,7 +78,7 @@ class Page {
     std::string bytes_per_s(std::string_view name, std::string_view label = {}) const {
         return short_bytes(risen(name, label) / measurements_.between_s) + "/s";
     }
-    /// Returns the share of one processor that was used: 1.5 if one and a half were busy.
+    /// Returns the mean number of processors that were busy between the two measurements, such as 1.5.
     double processors(std::string_view name, std::string_view label = {}) const {
         return risen(name, label) / measurements_.between_s;
     }
@@ -144,8 +144,8 @@ class Page {
                fixed(now("evod_journal_lag_seconds"), 1) + " s";
     }
 
-    /// Returns the limits that clients have reached, with their counters: "requests 12, sessions 3". Empty if none was
-    /// reached, or if the server does not count this.
+    /// Returns the limits that clients have reached, with their counters: "requests 12, sessions 3". Empty if no limit
+    /// was reached, or if the server does not count how often limits are reached.
     std::string limits() const {
         std::string text;
         if (const auto* family = family_in(measurements_.after, "evod_limit_reached_total")) {

@@ -53,7 +53,8 @@ class Top {
         Clock::time_point at;
     };
 
-    /// Returns whether the server answered. A missing answer during a reconnection is not an error.
+    /// Measures the metrics once. Returns whether the server answered. A missing answer during a reconnection is not an
+    /// error.
     bool look() {
         v1::Request request;
         request.mutable_get_metrics();

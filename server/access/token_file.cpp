@@ -95,7 +95,7 @@ std::string today() {
     return text;
 }
 
-/// folder_descriptor  an open descriptor of the folder that contains `path`.
+/// folder_descriptor  an open descriptor of `folder`.
 Result<void> write_tokens(const std::string& folder, int folder_descriptor, const Tokens& tokens) {
     const std::string path = token_file_of(folder), next = path + "-next";
     const std::string text = to_text(tokens);

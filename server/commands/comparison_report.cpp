@@ -60,7 +60,8 @@ std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const
 }
 
 /// Formats the conclusion about two worlds, neither of which is a control of the other.
-std::string sentence_of(const Arm& world, const Arm& other, const Finding& finding, std::size_t tests, int decimals) {
+std::string conclusion_about(const Arm& world, const Arm& other, const Finding& finding, std::size_t tests,
+                             int decimals) {
     const std::string by = signed_text(std::abs(finding.mean), decimals).substr(finding.mean != 0 ? 1 : 0);
     const std::string p = formatted(" (adjusted p = %.2g).", finding.adjusted_p);
     switch (judge(finding, tests)) {
@@ -123,7 +124,7 @@ std::string conclusions_text(const ComparisonPlan& plan, std::span<const std::ve
     std::string text;
     if (plan.controls.empty()) {
         for (std::size_t i = 0; i < findings.size(); ++i) {
-            text += sentence_of(plan.arms[0], plan.arms[i + 1], findings[i], findings.size(), decimals) + "\n";
+            text += conclusion_about(plan.arms[0], plan.arms[i + 1], findings[i], findings.size(), decimals) + "\n";
         }
         return text;
     }

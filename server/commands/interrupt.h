@@ -6,7 +6,7 @@
 
 namespace evod::commands {
 
-/// From now on, SIGINT and SIGTERM set the flag instead of ending the program.
+/// Makes SIGINT and SIGTERM set the flag instead of ending the program.
 void catch_interrupts();
 /// Whether SIGINT or SIGTERM has arrived.
 bool interrupted();

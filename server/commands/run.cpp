@@ -52,7 +52,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// The computation time of a run.
-struct Cost {
+struct ComputationTime {
     double start_s = 0, tick_s = 0, turnover_s = 0;
     std::uint64_t organism_ticks = 0; // sum of the organisms alive at the start of each tick
 };
@@ -88,7 +88,7 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
         experiment.parameters.generation_limit = *options.generations;
         experiment.schedule.remove("generation_limit");
     }
-    if (auto fits = experiments::fit_schedule(experiment); !fits) {
+    if (auto fits = experiments::match_schedule_to_parameters(experiment); !fits) {
         return fits.error();
     }
     if (options.seed) {
@@ -109,7 +109,7 @@ std::string progress_of(const simulation::World& world) {
     return text;
 }
 
-void print_summary(const simulation::World& world, const Cost& cost) {
+void print_summary(const simulation::World& world, const ComputationTime& cost) {
     std::printf("%llu generations, %llu ticks, %.1f simulated s; state %s\n",
                 static_cast<unsigned long long>(world.moment().generation - (world.generation_over() ? 0 : 1)),
                 static_cast<unsigned long long>(world.moment().tick), world.moment().simulated_s,
@@ -166,7 +166,7 @@ int run(const RunOptions& options) {
     }
     catch_interrupts();
 
-    Cost cost;
+    ComputationTime cost;
     const auto start = Clock::now();
     const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
     simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population),

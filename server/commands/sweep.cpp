@@ -142,15 +142,15 @@ Result<void> gather(const SweepFolder& folder) {
     return {};
 }
 
-std::vector<std::size_t> missing_among(const std::vector<std::size_t>& runs, const SweepFolder& folder,
-                                       SweepFolder::Wanted wanted) {
+std::vector<std::size_t> missing_runs(const std::vector<std::size_t>& runs, const SweepFolder& folder,
+                                      SweepFolder::Wanted wanted) {
     std::vector<std::size_t> missing;
     std::ranges::copy_if(runs, std::back_inserter(missing),
                          [&](std::size_t run) { return !folder.end_of(run, wanted); });
     return missing;
 }
 
-Refusal runs_missing(const std::vector<std::size_t>& missing, const Sweep& sweep, const SweepFolder& folder) {
+Refusal missing_runs_refusal(const std::vector<std::size_t>& missing, const Sweep& sweep, const SweepFolder& folder) {
     constexpr std::size_t printed_max = 20;
     std::string names;
     for (std::size_t i = 0; i < std::min(missing.size(), printed_max); ++i) {
@@ -213,7 +213,7 @@ Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep
         }
     }
     const std::vector<std::size_t> wanted = run_numbers(sweep, options.array_index);
-    const std::vector<std::size_t> missing = missing_among(
+    const std::vector<std::size_t> missing = missing_runs(
         wanted, folder, options.run_files ? SweepFolder::Wanted::RowsAndRunFile : SweepFolder::Wanted::Rows);
     const std::string cell = options.array_index ? ", only cell " + std::to_string(*options.array_index) : "";
     const std::size_t found = wanted.size() - missing.size();
@@ -257,9 +257,9 @@ Result<int> run_sweep(const SweepOptions& options) {
         return folder.error();
     }
     if (options.gather) {
-        const auto missing = missing_among(run_numbers(*sweep, {}), *folder, SweepFolder::Wanted::Rows);
+        const auto missing = missing_runs(run_numbers(*sweep, {}), *folder, SweepFolder::Wanted::Rows);
         if (!missing.empty()) {
-            return runs_missing(missing, *sweep, *folder);
+            return missing_runs_refusal(missing, *sweep, *folder);
         }
     } else {
         const auto status = execute_missing_runs(options, *sweep, *folder, out);

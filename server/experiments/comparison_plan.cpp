@@ -43,7 +43,7 @@ Result<Arm> arm_of(const NamedExperiment& named, const std::vector<std::string>&
     }
     experiment->parameters = of_fixed_length(experiment->parameters, generations);
     experiment->schedule = of_fixed_length(experiment->schedule);
-    if (auto fits = fit_schedule(*experiment); !fits) {
+    if (auto fits = match_schedule_to_parameters(*experiment); !fits) {
         return fits.error();
     }
     return Arm{named.name, experiment->parameters, experiment->schedule};

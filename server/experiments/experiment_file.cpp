@@ -71,7 +71,7 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
     return experiment;
 }
 
-base::Result<void> fit_schedule(parameters::Experiment& experiment) {
+base::Result<void> match_schedule_to_parameters(parameters::Experiment& experiment) {
     experiment.schedule.begin_with(experiment.parameters);
     const auto faults = faults_of(experiment.schedule, experiment.parameters);
     if (faults.empty()) {

@@ -23,7 +23,7 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
 
 /// Makes the first values of the schedule equal to the parameters of the experiment, and validates every generation of
 /// the schedule. Violations name the generation.
-base::Result<void> fit_schedule(parameters::Experiment& experiment);
+base::Result<void> match_schedule_to_parameters(parameters::Experiment& experiment);
 
 /// Derives the name of an experiment's world from the name of its file, without folder and extension. It has at most 64
 /// characters. Each character other than a-z A-Z 0-9 _ - becomes "_".

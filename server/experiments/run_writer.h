@@ -24,7 +24,7 @@ class RunWriter {
     /// Deletes the file, unless finish() has renamed it.
     ~RunWriter();
 
-    /// Writes new records of the world. To be called before the first tick and after every tick.
+    /// Writes the new records of the world. Must be called before the first tick and after every tick.
     base::Result<void> follow(const simulation::World& world);
     /// Completes the file and renames it to its final name. Replaces an existing file with that name.
     base::Result<void> finish();
@@ -32,7 +32,7 @@ class RunWriter {
   private:
     const std::string path_, temporary_path_;
     base::Result<std::unique_ptr<run_file::RunFile>> file_;
-    recording::RunNews news_; // the records that have been written
+    recording::NewRecordFinder news_; // the records that have been written
 };
 
 } // namespace evod::experiments

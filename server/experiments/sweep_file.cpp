@@ -17,7 +17,7 @@ using parameters::JsonNode;
 using parameters::ParameterDescription;
 using parameters::Parameters;
 
-bool has_an_end(const Parameters& parameters) {
+bool has_termination_criterion(const Parameters& parameters) {
     return parameters.generation_limit > 0 || parameters.stagnation_limit > 0 || parameters.stop_at_target_fitness ||
            parameters.stop_at_extinction;
 }
@@ -31,8 +31,8 @@ struct SweepMembers {
 };
 
 template <class Number>
-void read_whole(const JsonMember& member, std::uint64_t least, std::uint64_t greatest, std::optional<Number>& number,
-                SweepErrors& errors) {
+void read_whole_number(const JsonMember& member, std::uint64_t least, std::uint64_t greatest,
+                       std::optional<Number>& number, SweepErrors& errors) {
     const auto given = member.value.whole_number();
     if (given && *given >= least && *given <= greatest) {
         number = static_cast<Number>(*given);
@@ -70,11 +70,11 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
         } else if (name == "grid" || name == "list" || name == "latin_hypercube") {
             members.designs.push_back(member);
         } else if (name == "replicates") {
-            read_whole(*member, 1, Sweep::runs_max, members.replicates, errors);
+            read_whole_number(*member, 1, Sweep::runs_max, members.replicates, errors);
         } else if (name == "generations") {
-            read_whole(*member, 1, base::count_max, members.generations, errors);
+            read_whole_number(*member, 1, base::count_max, members.generations, errors);
         } else if (name == "seed") {
-            read_whole(*member, 0, ~std::uint64_t{0}, members.seed, errors);
+            read_whole_number(*member, 0, ~std::uint64_t{0}, members.seed, errors);
         } else if (name != "description") {
             errors.add(parameters::with_line(name, member->line), members_instead_of(name), base::unknown_name);
         } else if (!member->value.is_string()) {
@@ -93,7 +93,7 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
     return members;
 }
 
-/// prefix  precedes the names of fields in errors.
+/// Adds the experiment to the sweep, or its errors with `prefix` before each field name.
 void take_experiment(const base::Result<parameters::Experiment>& experiment, const std::string& prefix, Sweep& sweep,
                      SweepErrors& errors) {
     if (experiment) {
@@ -138,7 +138,7 @@ std::string cell_prefix(const Sweep& sweep, std::size_t cell) {
 void check_ends(const Sweep& sweep, SweepErrors& errors) {
     std::vector<std::size_t> endless;
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
-        if (!has_an_end(sweep.parameters_of(cell))) {
+        if (!has_termination_criterion(sweep.parameters_of(cell))) {
             endless.push_back(cell);
         }
     }

@@ -31,12 +31,12 @@ constexpr std::array<std::pair<Outcome, std::string_view>, 4> outcome_names{
      {Outcome::Stagnation, "stagnation_limit"},
      {Outcome::GenerationLimit, "generation_limit"}}};
 
-struct Fact {
+struct ProvenanceEntry {
     std::string name, text;
 };
 
 /// Returns the entries of sweep.txt: all data that determines the results, and nothing else.
-std::vector<Fact> facts_of(const Sweep& sweep) {
+std::vector<ProvenanceEntry> provenance_entries(const Sweep& sweep) {
     std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
     std::erase(parameters, '\n');
     std::string text;
@@ -59,9 +59,9 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
 }
 
 /// Formats an entry of sweep.txt as a comment of one or more lines.
-std::string to_text(const Fact& fact) {
-    std::string text = "# " + fact.name + ": ";
-    for (const char c : fact.text) {
+std::string to_text(const ProvenanceEntry& entry) {
+    std::string text = "# " + entry.name + ": ";
+    for (const char c : entry.text) {
         text += c == '\n' ? "\n#   " : std::string(1, c);
     }
     return text + "\n";
@@ -69,8 +69,8 @@ std::string to_text(const Fact& fact) {
 
 std::string provenance_of(const Sweep& sweep) {
     std::string text = "# evod sweep: a row per run, generation and island, made from:\n";
-    for (const Fact& fact : facts_of(sweep)) {
-        text += to_text(fact);
+    for (const ProvenanceEntry& entry : provenance_entries(sweep)) {
+        text += to_text(entry);
     }
     return text;
 }
@@ -78,19 +78,19 @@ std::string provenance_of(const Sweep& sweep) {
 /// Returns the refusal of a folder that contains results of another sweep. It names the entries that differ.
 ///
 /// there  text of the file sweep.txt in the folder.
-base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
+base::Refusal other_sweep_refusal(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
                                     path + " contains the results of another sweep: name another folder with --out");
-    for (const Fact& fact : facts_of(sweep)) {
-        if (there.find("\n" + to_text(fact)) != std::string::npos) {
+    for (const ProvenanceEntry& entry : provenance_entries(sweep)) {
+        if (there.find("\n" + to_text(entry)) != std::string::npos) {
             continue;
         }
-        const std::string name = "\n# " + fact.name + ": ";
+        const std::string name = "\n# " + entry.name + ": ";
         const std::size_t begin = there.find(name);
         std::string got = begin == std::string::npos ? "nothing" : there.substr(begin + name.size());
         got = got.substr(0, got.find("\n# ")); // continuation lines are indented further
-        const bool long_text = fact.text.find('\n') != std::string::npos;
-        refused.violations.push_back({fact.name, long_text ? "no change since the sweep began" : fact.text,
+        const bool long_text = entry.text.find('\n') != std::string::npos;
+        refused.violations.push_back({entry.name, long_text ? "no change since the sweep began" : entry.text,
                                       long_text ? "a changed text" : got.substr(0, got.find('\n'))});
     }
     if (refused.violations.empty()) {
@@ -136,7 +136,7 @@ std::optional<std::string> last_line(const std::string& part) {
     return before == std::string::npos ? text : text.substr(before + 1);
 }
 
-std::optional<RunEnd> end_from(std::string_view line) {
+std::optional<RunEnd> parse_run_end(std::string_view line) {
     if (!line.starts_with(end_mark)) {
         return std::nullopt;
     }
@@ -216,7 +216,7 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
         return there.error();
     }
     if (*there != provenance) {
-        return other_sweep(path, *there, sweep);
+        return other_sweep_refusal(path, *there, sweep);
     }
     if (auto made = create_folder(path + "/parts"); !made) {
         return made.error();
@@ -239,7 +239,7 @@ std::optional<RunEnd> SweepFolder::end_of(std::size_t run, Wanted wanted) const 
         return std::nullopt;
     }
     const auto line = last_line(part_of(run));
-    return line ? end_from(*line) : std::nullopt;
+    return line ? parse_run_end(*line) : std::nullopt;
 }
 
 Result<void> SweepFolder::add_part(std::size_t run, AtomicFile& table, Gathered& gathered) const {
@@ -252,7 +252,7 @@ Result<void> SweepFolder::add_part(std::size_t run, AtomicFile& table, Gathered&
     if (!line) {
         return damaged();
     }
-    const auto end = end_from(*line);
+    const auto end = parse_run_end(*line);
     if (!end) {
         return damaged();
     }

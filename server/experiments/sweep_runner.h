@@ -28,10 +28,10 @@ struct SweepRunnerOptions {
     bool run_files = false;
     std::function<simulation::RunId()> draw_run_id = {};  // for run files
     std::function<bool()> stopped = [] { return false; }; // whether to stop; called in every tick
-    /// Called at the end of each generation, with its expected work.
+    /// The runner calls this function at the end of each generation, with the expected work of the generation.
     std::function<void(double work)> on_generation = [](double) {};
-    /// Called at the end of a run, with the expected work that was not needed because it ended before its
-    /// generation_limit.
+    /// The runner calls this function at the end of a run. `work` is the expected work that was saved because the run
+    /// ended before its generation_limit.
     std::function<void(double work)> on_run = [](double) {};
 };
 

@@ -28,8 +28,8 @@ class Sentences {
     Judgement judgement(ControlKind kind) const { return judge(*of(kind).finding, tests_); }
 
     std::string answer(double rise, const Interval& interval) const;
-    std::string of_mutation(double rise) const;
-    std::string of_poison(double rise) const;
+    std::string mutation_sentence(double rise) const;
+    std::string poison_sentence(double rise) const;
 
   private:
     /// Formats a difference: "+121.3 against random selection (adjusted p = 7.6e-06)".
@@ -74,7 +74,7 @@ std::string Sentences::answer(double rise, const Interval& interval) const {
     return question + how + differences + ".";
 }
 
-std::string Sentences::of_mutation(double rise) const {
+std::string Sentences::mutation_sentence(double rise) const {
     const ControlResult& result = of(ControlKind::MutationOff);
     if (!result.finding) {
         return "Mutation: " + result.control.cannot_differ +
@@ -94,7 +94,7 @@ std::string Sentences::of_mutation(double rise) const {
     return "Mutation: " + without + "an effect of new variety is not shown.";
 }
 
-std::string Sentences::of_poison(double rise) const {
+std::string Sentences::poison_sentence(double rise) const {
     const ControlResult& result = of(ControlKind::HarmlessPoison);
     if (!result.finding) {
         return "Poison: " + result.control.cannot_differ + ".";
@@ -126,7 +126,7 @@ std::vector<std::string> verdict(double rise, const Interval& rise_interval, con
                                  int decimals) {
     EVOD_ASSERT(results.size() == std::size(all_controls));
     const Sentences sentences{results, decimals};
-    return {sentences.answer(rise, rise_interval), sentences.of_mutation(rise), sentences.of_poison(rise)};
+    return {sentences.answer(rise, rise_interval), sentences.mutation_sentence(rise), sentences.poison_sentence(rise)};
 }
 
 } // namespace evod::experiments

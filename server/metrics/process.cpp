@@ -13,7 +13,7 @@
 namespace evod::metrics {
 namespace {
 
-double seconds_on(clockid_t clock) {
+double clock_seconds(clockid_t clock) {
     timespec time{};
     return ::clock_gettime(clock, &time) == 0
                ? static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9
@@ -37,7 +37,7 @@ double start_time_s() {
     if (!(fields >> clock_ticks)) {
         return 0;
     }
-    return seconds_on(CLOCK_REALTIME) - seconds_on(CLOCK_BOOTTIME) +
+    return clock_seconds(CLOCK_REALTIME) - clock_seconds(CLOCK_BOOTTIME) +
            clock_ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
@@ -47,7 +47,7 @@ Process read_process() {
     // The start time is computed once, because a second computation after a change of the clock would give another
     // result.
     static const double started = start_time_s();
-    Process process{.start_time_s = started, .cpu_s = seconds_on(CLOCK_PROCESS_CPUTIME_ID)};
+    Process process{.start_time_s = started, .cpu_s = clock_seconds(CLOCK_PROCESS_CPUTIME_ID)};
     std::uint64_t virtual_pages = 0, resident_pages = 0;
     if (std::ifstream{"/proc/self/statm"} >> virtual_pages >> resident_pages) {
         const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
@@ -71,7 +71,7 @@ std::optional<double> cpu_s_of(pthread_t thread) {
     if (::pthread_getcpuclockid(thread, &clock) != 0) {
         return std::nullopt;
     }
-    return seconds_on(clock);
+    return clock_seconds(clock);
 }
 
 } // namespace evod::metrics

@@ -15,7 +15,7 @@ struct Process {
     std::uint64_t open_files = 0, open_files_max = 0;
 };
 
-/// Values that the system does not report are 0.
+/// Reads the current values. Values that the system does not report are 0.
 Process read_process();
 
 /// CPU time of a thread that has not been joined; nullopt if the system does not report it.

@@ -36,7 +36,7 @@ base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const run
 }
 
 /// Whether the answer omits rows because of a limit.
-bool is_cut(const v1::GetBreeding& request, const v1::Breeding& answer) {
+bool is_shortened(const v1::GetBreeding& request, const v1::Breeding& answer) {
     const auto more = [](std::uint64_t first, int rows, std::uint32_t count) {
         return first + static_cast<std::uint64_t>(rows) < count;
     };
@@ -77,7 +77,7 @@ void BreedingQueries::begin(Asked asked) {
         outbox_.answer([this, work, asked, response = response_to(asked, stop)]() mutable {
             if (const auto asking = asked.asking.lock()) {
                 asking->expect(-answer_bytes);
-                if (is_cut(asked.request, response.breeding())) {
+                if (is_shortened(asked.request, response.breeding())) {
                     limit_counters_.met(Limit::BreedingRows);
                 }
                 asking->answer(std::move(response));

@@ -61,7 +61,7 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
     return to;
 }
 
-/// request  its kind is REQUEST_KIND_REPLAY.
+/// Converts a request of the kind REQUEST_KIND_REPLAY into mail for the simulation thread.
 runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t session) {
     runtime::ReplayMail mail{.request = {},
                              .session = session,
@@ -78,7 +78,7 @@ runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t sessio
     return mail;
 }
 
-/// request  must be valid.
+/// Converts a valid request into the table that an export writes.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
     to.only_users = role < access::Role::Admin;
@@ -95,7 +95,7 @@ replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
 }
 
 /// Increments the counter of each limit that an invalid command exceeds.
-void count_limits_met(const v1::Request& request, LimitCounters& counters) {
+void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) {
     if (request.client_key().size() > protocol::client_key_bytes_max) {
         counters.met(Limit::ClientKeyBytes);
     }
@@ -106,7 +106,7 @@ void count_limits_met(const v1::Request& request, LimitCounters& counters) {
 }
 
 /// Increments the counter of each limit that shortened an answer.
-void count_cuts(const protocol::QueryResult& result, LimitCounters& counters) {
+void count_shortened_answers(const protocol::QueryResult& result, LimitCounters& counters) {
     if (const auto* part = std::get_if<protocol::HistoryPart>(&result)) {
         if (part->begins_late) {
             counters.met(Limit::HistoryGenerationsKept);
@@ -121,7 +121,7 @@ void count_cuts(const protocol::QueryResult& result, LimitCounters& counters) {
     }
 }
 
-base::Refusal server_goes_away() {
+base::Refusal shutting_down_refusal() {
     return refusal(base::RefusalCode::Unavailable,
                    "the server is shutting down: send the request again after the restart",
                    base::Reason::ServerGoingAway);
@@ -165,7 +165,7 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         session.send_unasked(protocol::refusing(request.request_id(), refused));
     };
     if (going_away_) {
-        return refuse_it(server_goes_away());
+        return refuse_it(shutting_down_refusal());
     }
     const v1::RequestRules* rules = protocol::rules_of(request);
     if (rules == nullptr) {
@@ -212,7 +212,7 @@ void Dispatcher::serve_held_back(Session& session) {
 
 void Dispatcher::serve(Session& session, v1::Request request) {
     if (going_away_) {
-        return session.answer(protocol::refusing(request.request_id(), server_goes_away()));
+        return session.answer(protocol::refusing(request.request_id(), shutting_down_refusal()));
     }
     switch (protocol::kind_of(request)) {
     case v1::REQUEST_KIND_COMMAND:
@@ -258,7 +258,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     }
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
-        count_limits_met(request, limit_counters_);
+        count_exceeded_limits(request, limit_counters_);
         return session.answer(refused(command.error()));
     }
 
@@ -402,8 +402,8 @@ void Dispatcher::on_done(runtime::QueryDone done) {
     const v1::Request& request = *done.mail.request;
     session->query_under_way = false;
     session->expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
-    count_cuts(done.result, limit_counters_);
-    protocol::put_rows(done.result, done.response);
+    count_shortened_answers(done.result, limit_counters_);
+    protocol::add_rows(done.result, done.response);
     if (const auto* world = std::get_if<protocol::FoundWorld>(&done.result)) {
         if (const auto refused = apply(request, *world, *session, done.response)) {
             *done.response.mutable_status() = protocol::to_proto(*refused);
@@ -583,7 +583,7 @@ void Dispatcher::export_text(Session& session, v1::Request request) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
     if (request.has_continue_export()) {
-        return exports_.go_on(session, id, request.continue_export());
+        return exports_.send_next_part(session, id, request.continue_export());
     }
     find_run(session, std::move(request));
 }

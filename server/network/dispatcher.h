@@ -39,7 +39,7 @@ class Dispatcher {
     /// lease  for ReleaseLease: the number of the lease.
     void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
     /// Starts a lease that was granted before the server started. When it expires, the world continues.
-    void lend_again(const std::string& world) { leases_.begin(world, 0, {}); }
+    void restart_lease(const std::string& world) { leases_.begin(world, 0, {}); }
 
     /// Adds to the reply cache the answers that were given before this server started.
     void restore(const std::vector<run_file::JournalEntry>& answers);

@@ -40,7 +40,7 @@ void Exports::begin(Session& session, std::uint64_t request_id, const replay::St
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
 }
 
-void Exports::go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request) {
+void Exports::send_next_part(Session& session, std::uint64_t request_id, const v1::ContinueExport& request) {
     const auto found = exports_.find(session.number());
     if (found == exports_.end() || found->second.id != request.export_id()) {
         return session.answer(
@@ -67,7 +67,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
             if (!part && part.error().code == RefusalCode::FailedPrecondition) {
                 limit_counters_.met(Limit::ExportPatience);
             }
-            on_part(number, id, !part || part->last);
+            on_export_part(number, id, !part || part->last);
             const auto asking = weak.lock();
             if (!asking) {
                 return;
@@ -87,7 +87,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     });
 }
 
-void Exports::on_part(std::uint64_t session, std::uint64_t id, bool last) {
+void Exports::on_export_part(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
     if (found == exports_.end() || found->second.id != id) {
         return; // the session has started another export in the meantime

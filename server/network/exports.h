@@ -24,7 +24,7 @@ class Exports {
     void begin(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                const replay::WantedTable& wanted);
     /// Answers the request with the next part.
-    void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
+    void send_next_part(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
     /// Must be called when a session has ended.
     void forget(const Session& session);
 
@@ -36,8 +36,10 @@ class Exports {
     };
 
     void ask(Session& session, std::uint64_t request_id, Export& from);
-    /// Called on the network thread when the job has produced a part or a refusal. last  true: the export has ended.
-    void on_part(std::uint64_t session, std::uint64_t id, bool last);
+    /// The network thread calls this function when the job has produced a part or a refusal.
+    ///
+    /// last  true: the export has ended.
+    void on_export_part(std::uint64_t session, std::uint64_t id, bool last);
     void cancel(std::map<std::uint64_t, Export>::iterator of);
 
     runtime::Outbox& outbox_;

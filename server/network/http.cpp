@@ -69,7 +69,7 @@ http::response<http::string_body> response_of(Http::Page page, unsigned version,
 
 /// Reads and discards input for a limited time before the connection is closed. If unread bytes remained, closing would
 /// discard the answer before the client receives it.
-asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
+asio::awaitable<void> discard_input(boost::beast::tcp_stream& stream) {
     boost::system::error_code ignored; // the peer may have closed the connection
     stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
     stream.expires_after(http_farewell_timeout);
@@ -160,7 +160,7 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
             break;
         }
         if (!goes_on) {
-            co_await say_goodbye(stream);
+            co_await discard_input(stream);
         }
     }
     if (error == boost::beast::error::timeout) {

@@ -45,7 +45,7 @@ class Http {
     Http(boost::asio::io_context& context, Listener listener, Pages pages, LimitCounters& counters)
         : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)}, counters_{counters} {}
 
-    /// full  true: there are too many connections, so the client only receives a 503.
+    /// full  true: there are too many connections, so the client receives only a 503.
     boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
     boost::asio::awaitable<Page> page(std::string target);
 

@@ -36,7 +36,7 @@ constexpr std::uint32_t request_burst_max = 5'000;
 // For the rate limit, each further bytes_per_turn bytes of a frame, and each answer_bytes_per_turn bytes of its answer,
 // count as one more frame.
 constexpr std::size_t bytes_per_turn = 64, answer_bytes_per_turn = 1 << 10;
-// Only CreateWorld, which requires an admin, needs longer frames.
+// Maximum body size for roles below admin. Only CreateWorld, which requires the role admin, needs longer frames.
 constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;

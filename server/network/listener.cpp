@@ -79,7 +79,7 @@ rlim_t descriptors_max() {
 
 /// Whether so few descriptors are free that the rest is reserved for run files. The system always assigns the lowest
 /// free number, so a high number means that few descriptors are free.
-bool is_among_the_last(int descriptor) {
+bool is_reserved_descriptor(int descriptor) {
     const rlim_t most = descriptors_max();
     return static_cast<rlim_t>(descriptor) + std::min(descriptors_kept, most / 8) >= most;
 }
@@ -91,7 +91,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
     bool reported = false;
     while (acceptor_.is_open()) {
         auto [error, socket] = co_await acceptor_.async_accept(no_throw);
-        if (!error && is_among_the_last(socket.native_handle())) {
+        if (!error && is_reserved_descriptor(socket.native_handle())) {
             boost::system::error_code ignored; // the connection may be closed already
             socket.close(ignored);
             error = asio::error::no_descriptors;

@@ -50,7 +50,7 @@ ReplyCache::Verdict ReplyCache::begin(const std::string& client_key, std::uint64
     command.waiters.push_back(std::move(waiter));
     ++key.pending_count;
     trim(key);
-    trim_keys();
+    evict_keys();
     return Verdict::New;
 }
 
@@ -71,7 +71,7 @@ void ReplyCache::finish(const std::string& client_key, std::uint64_t request_id,
         waiter(answer);
     }
     trim(key);
-    trim_keys();
+    evict_keys();
 }
 
 void ReplyCache::restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
@@ -131,13 +131,13 @@ void ReplyCache::trim(Key& key) {
     }
 }
 
-void ReplyCache::trim_keys() {
-    trim_keys(used_once_, *last_used_);
-    trim_keys(used_again_, *last_used_);
+void ReplyCache::evict_keys() {
+    evict_keys(used_once_, *last_used_);
+    evict_keys(used_again_, *last_used_);
 }
 
-void ReplyCache::trim_keys(std::list<std::string>& used, const std::string& spared) {
-    for (auto oldest = used.end(); too_much() && oldest != used.begin();) {
+void ReplyCache::evict_keys(std::list<std::string>& used, const std::string& spared) {
+    for (auto oldest = used.end(); exceeds_bounds() && oldest != used.begin();) {
         const auto key = keys_.find(*--oldest);
         if (&*oldest == &spared || key->second.pending_count > 0) {
             continue;

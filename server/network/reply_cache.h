@@ -91,11 +91,11 @@ class ReplyCache {
     };
     Key& touch(const std::string& client_key, std::uint64_t request_id);
     void trim(Key& key);
-    void trim_keys();
+    void evict_keys();
     /// Evicts the least recently used keys of a list until the cache is within its limits. Does not evict `spared`,
     /// which was just used.
-    void trim_keys(std::list<std::string>& used, const std::string& spared);
-    bool too_much() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
+    void evict_keys(std::list<std::string>& used, const std::string& spared);
+    bool exceeds_bounds() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
     void remember_evicted(const std::string& client_key, const Key& key);
 
     const Bounds bounds_;

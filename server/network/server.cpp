@@ -181,7 +181,7 @@ bool Server::creates_first_world() const {
     if (!archive_) {
         return true;
     }
-    return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->holds_worlds();
+    return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->has_worlds();
 }
 
 base::Result<std::string> Server::world_to_begin() const {
@@ -265,7 +265,7 @@ bool Server::run() {
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries()) {
             if (entry->control.leased) {
-                dispatcher_.lend_again(entry->name);
+                dispatcher_.restart_lease(entry->name);
             }
         }
     }
@@ -312,7 +312,7 @@ void Server::wait_for_signal() {
             reread_certificate();
         } else if (!going_away_) {
             log::info("{}: shutting down", name);
-            go_away();
+            begin_shutdown();
         } else {
             log::warn("{} again: ending at once; after a restart the worlds continue from the state on the disk", name);
             signals_.remove(signal); // restores the default action: the next signal ends the process
@@ -336,7 +336,7 @@ void Server::reread_certificate() {
 }
 
 void Server::stop() {
-    asio::post(context_, [this] { go_away(); });
+    asio::post(context_, [this] { begin_shutdown(); });
 }
 
 void Server::start_housekeeping() {
@@ -485,7 +485,7 @@ void Server::send_snapshots() {
     }
 }
 
-void Server::go_away() {
+void Server::begin_shutdown() {
     if (std::exchange(going_away_, true)) {
         return;
     }

@@ -86,7 +86,7 @@ class Server {
     base::Result<void> open_http();
     /// Whether run() must create first_world.
     bool creates_first_world() const;
-    /// Name of the world to which first_speed and first_run apply.
+    /// Returns the name of the world to which first_speed and first_run apply.
     base::Result<std::string> world_to_begin() const;
     void begin_first_world();
     /// Starts the periodic checks: revoked tokens, stalled clients, free memory.
@@ -103,7 +103,7 @@ class Server {
     void wait_for_signal();
     /// Reads the files of the certificate again. If that fails, the server keeps the old certificate.
     void reread_certificate();
-    void go_away();
+    void begin_shutdown();
     v1::Metrics metrics();
     /// Returns status 200 if the simulation responds and runs can be written, otherwise 503 with the reason.
     asio::awaitable<Http::Page> health();

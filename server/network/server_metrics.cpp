@@ -43,7 +43,7 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     }
 }
 
-void add_queues(v1::Metrics& to, const runtime::Mailbox::Fill& mailbox, const runtime::Outbox::Fill& outbox) {
+void add_queues(v1::Metrics& to, const runtime::Mailbox::FillLevel& mailbox, const runtime::Outbox::FillLevel& outbox) {
     add_gauge(to, "evod_mailbox_requests", "Requests waiting for the simulation").add(number(mailbox.waiting));
     add_gauge(to, "evod_mailbox_requests_max", "Capacity of the mailbox; further requests are refused")
         .add(number(mailbox.capacity));

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t batch_frames_max = 64;
 constexpr std::size_t snapshots_at_once = 32; // snapshots that one session sends before other sessions are served
-// A frame that has many parts, or that is short, is copied into one buffer before it is passed to the kernel.
+// send_frame() copies a frame into one buffer if it has many parts or is short.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
 static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a header and a tail, too");
 

@@ -196,7 +196,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     std::deque<Queued> queue_;
     std::vector<Queued> sending_; // not empty: a write is in progress or about to start
-    struct Rest {
+    struct UnsentPart {
         std::array<std::byte, codec::header_bytes> header;
         std::string tail;
         std::vector<asio::const_buffer> buffers; // point to `header`, `tail` and the bytes in sending_

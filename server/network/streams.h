@@ -43,8 +43,8 @@ class Streams {
     /// Must be called when a world was deleted. Its snapshots and events are no longer sent.
     void forget_world(const std::string& world);
 
-    /// Returns the function to which the simulation thread passes its events. The function puts the events into the
-    /// outbox if any session is subscribed to events.
+    /// Returns a function for the simulation thread. It puts events into the outbox if any session is subscribed to
+    /// events.
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
     /// Stores the snapshots for send_some(), and counts dropped events.
     void deliver(runtime::Outbox::Taken taken);

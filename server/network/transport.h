@@ -25,7 +25,7 @@ class Transport {
   public:
     using Transferred = std::tuple<boost::system::error_code, std::size_t>;
 
-    /// tls  must outlive the transport; nullptr: no TLS.
+    /// tls  the settings of TLS, which must outlive the transport; nullptr: no TLS.
     Transport(tcp::socket socket, asio::ssl::context* tls);
 
     /// Must be called first. Performs the TLS handshake. Returns not_tls() if a client sends plain bytes to a TLS
@@ -41,7 +41,8 @@ class Transport {
     /// Writes all buffers.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 
-    /// How much was sent. Two values differ if the peer has received data between them.
+    /// States how much data was sent. While data waits to be sent, two equal values mean that the peer received nothing
+    /// in between.
     struct Progress {
         std::uint64_t given = 0;     // number of bytes passed to the system
         std::uint64_t not_taken = 0; // number of these bytes that the peer's system has not acknowledged

@@ -158,7 +158,7 @@ class ScheduleReader {
     Schedule schedule_;
 };
 
-/// Reads the members of an experiment.
+/// Reads the members (name and value) of the JSON object that describes an experiment.
 class ExperimentReader {
   public:
     explicit ExperimentReader(const JsonNode& document) : document_{document} {}

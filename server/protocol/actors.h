@@ -12,7 +12,7 @@ namespace evod::protocol {
 
 constexpr std::string_view by_the_server = "evod";
 
-/// by  the cause as text: "user: client address", "client address" or "evod".
+/// Parses the text of a cause: "user: client address", "client address" or "evod".
 v1::Actor actor_of(std::string_view by);
 v1::Actor actor_of_kind(v1::ActorKind kind);
 

@@ -12,7 +12,7 @@ constexpr std::uint32_t breeding_rows_max = 1000;
 
 evolution::WantedRows wanted_rows(const v1::GetBreeding& request);
 
-/// parameters  the parameters that were active when the generation bred.
+/// Converts the record of a breeding. `parameters` are those that were active when the generation bred.
 v1::Breeding to_proto(const evolution::BreedingRecord& record, const parameters::Parameters& parameters);
 
 } // namespace evod::protocol

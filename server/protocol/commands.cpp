@@ -26,7 +26,7 @@ constexpr const char* least_1 = "at least 1";
 
 /// Whether a request contains more assignments than parameters exist. It must then repeat a name, which is invalid.
 /// Without this early check, a very long request could block the simulation.
-bool too_many(int assignments, std::string field, Violations& violations) {
+bool has_too_many_assignments(int assignments, std::string field, Violations& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
         return false;
@@ -45,7 +45,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
                                     .parameters = {},
                                     .seed = request.has_seed() ? base::Seed{request.seed()} : draws.seed,
                                     .run_id = draws.run_id};
-    if (!too_many(request.parameters_size(), "create_world.parameters", violations)) {
+    if (!has_too_many_assignments(request.parameters_size(), "create_world.parameters", violations)) {
         Violations found;
         parameters::Experiment experiment = experiment_of(request, found);
         command.parameters = experiment.parameters;
@@ -65,19 +65,19 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
 }
 
 /// Requires that a destructive command names its world, because an empty name may be a mistake of the client.
-void need_world(const std::string& world, const char* field, Violations& violations) {
+void require_world(const std::string& world, const char* field, Violations& violations) {
     if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});
     }
 }
 
 simulation::Command command_of(const v1::DeleteWorld& request, const Draws&, Violations& violations) {
-    need_world(request.world(), "delete_world.world", violations);
+    require_world(request.world(), "delete_world.world", violations);
     return simulation::DeleteWorld{lookup_name(request.world())};
 }
 
 simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws, Violations& violations) {
-    need_world(request.world(), "reset_world.world", violations);
+    require_world(request.world(), "reset_world.world", violations);
     simulation::ResetWorld command{.world = lookup_name(request.world()), .seed = {}, .run_id = draws.run_id};
     if (request.has_seed()) {
         command.seed = base::Seed{request.seed()};
@@ -142,7 +142,7 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
                                       .assignments = {},
                                       .dry_run = request.dry_run(),
                                       .expected_revision = {}};
-    if (!too_many(request.parameters_size(), "set_parameters.parameters", violations)) {
+    if (!has_too_many_assignments(request.parameters_size(), "set_parameters.parameters", violations)) {
         command.assignments = to_assignments(request.parameters(), "set_parameters.", violations);
     }
     if (request.has_expected_revision()) {

@@ -14,7 +14,7 @@ using base::Overloaded;
 
 namespace {
 
-/// planned  PlannedChange::id; 0: the change is part of the schedule.
+/// Returns the client that planned a change, or the schedule if `planned`, a PlannedChange::id, is 0.
 v1::Actor planner(std::uint64_t planned, const std::string& by) {
     return planned == 0 ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(by);
 }

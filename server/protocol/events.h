@@ -10,7 +10,7 @@
 
 namespace evod::protocol {
 
-/// laboratory  the laboratory in its state right after the event.
+/// Converts an event. `laboratory` must be in its state right after the event.
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory);
 
 /// Returns the event that reports an applied command to subscribers; nullopt for a dry run.

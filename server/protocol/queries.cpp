@@ -16,8 +16,8 @@
 namespace evod::protocol {
 namespace {
 
-base::Refusal no_such(const char* what, std::string field, std::uint64_t count, std::uint64_t got,
-                      base::Reason reason) {
+base::Refusal not_found_refusal(const char* what, std::string field, std::uint64_t count, std::uint64_t got,
+                                base::Reason reason) {
     return {.code = base::RefusalCode::NotFound,
             .message = std::string{"no such "} + what,
             .violations = {{std::move(field), count == 0 ? "none" : "0 to " + std::to_string(count - 1),
@@ -26,21 +26,21 @@ base::Refusal no_such(const char* what, std::string field, std::uint64_t count, 
 }
 
 /// The world and the island of a query.
-struct Found {
+struct FoundIsland {
     const simulation::World& world;
     const simulation::Island& island;
 };
-base::Result<Found> find_island(const simulation::Laboratory& laboratory, const std::string& world,
-                                std::uint32_t island, const char* field) {
+base::Result<FoundIsland> find_island(const simulation::Laboratory& laboratory, const std::string& world,
+                                      std::uint32_t island, const char* field) {
     const auto entry = laboratory.find(lookup_name(world));
     if (!entry) {
         return entry.error();
     }
     const auto islands = (*entry)->world.islands();
     if (island >= islands.size()) {
-        return no_such("island", field, islands.size(), island, base::Reason::IslandNotFound);
+        return not_found_refusal("island", field, islands.size(), island, base::Reason::IslandNotFound);
     }
-    return Found{(*entry)->world, islands[island]};
+    return FoundIsland{(*entry)->world, islands[island]};
 }
 
 /// Appends one little-endian number of 4 bytes for each row.
@@ -112,7 +112,8 @@ base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& labora
     }
     const auto born = static_cast<std::uint64_t>(found->island.born().genes.cols());
     if (query.organism() >= born) {
-        return no_such("organism", "get_organism.organism", born, query.organism(), base::Reason::OrganismNotFound);
+        return not_found_refusal("organism", "get_organism.organism", born, query.organism(),
+                                 base::Reason::OrganismNotFound);
     }
     return organism_info(found->world, found->island, query.organism());
 }
@@ -124,8 +125,8 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
     }
     const simulation::World& world = (*entry)->world;
     if (query.has_island() && query.island() >= world.islands().size()) {
-        return no_such("island", "get_history.island", world.islands().size(), query.island(),
-                       base::Reason::IslandNotFound);
+        return not_found_refusal("island", "get_history.island", world.islands().size(), query.island(),
+                                 base::Reason::IslandNotFound);
     }
 
     HistoryPart answer;
@@ -177,7 +178,8 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
     const auto count = static_cast<std::size_t>(born.genes.cols());
     const std::size_t first = query.first_organism();
     if (first >= count) {
-        return no_such("organism", "get_population.first_organism", count, first, base::Reason::OrganismNotFound);
+        return not_found_refusal("organism", "get_population.first_organism", count, first,
+                                 base::Reason::OrganismNotFound);
     }
     const base::Range ids{first, std::min(count, first + population_rows_max)};
     PopulationRows answer{.generation = world.moment().generation,
@@ -264,8 +266,8 @@ base::Result<FoundWorld> find_world(const simulation::Laboratory& laboratory, co
     const auto island_count = static_cast<std::uint32_t>((*entry)->world.islands().size());
     const v1::SubscribeSnapshots& snapshots = request.subscribe_snapshots();
     if (snapshots.has_island() && snapshots.island() >= island_count) {
-        return no_such("island", "subscribe_snapshots.island", island_count, snapshots.island(),
-                       base::Reason::IslandNotFound);
+        return not_found_refusal("island", "subscribe_snapshots.island", island_count, snapshots.island(),
+                                 base::Reason::IslandNotFound);
     }
     return FoundWorld{(*entry)->name, island_count};
 }
@@ -324,7 +326,7 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
     return {};
 }
 
-void put_rows(const QueryResult& result, v1::Response& response) {
+void add_rows(const QueryResult& result, v1::Response& response) {
     if (const auto* part = std::get_if<HistoryPart>(&result)) {
         *response.mutable_history() = to_proto(*part);
     } else if (const auto* columns = std::get_if<PopulationRows>(&result)) {

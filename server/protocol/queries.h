@@ -1,6 +1,6 @@
 // Queries: answers queries by reading the laboratory between two ticks.
 //
-// Threads      answer_query(), get_…() and find_world() run on the simulation thread; put_rows() and to_proto() run on
+// Threads      answer_query(), get_…() and find_world() run on the simulation thread; add_rows() and to_proto() run on
 //              the network thread.
 #pragma once
 
@@ -71,7 +71,7 @@ using QueryResult = std::variant<std::monostate, HistoryPart, PopulationRows, Fo
 QueryResult answer_query(const v1::Request& request, const simulation::Laboratory& laboratory, bool users_only,
                          v1::Response& response);
 /// If the result contains rows, converts them and adds them to the response.
-void put_rows(const QueryResult& result, v1::Response& response);
+void add_rows(const QueryResult& result, v1::Response& response);
 /// Maximum size in bytes of the rows that answer_query() copies for this request.
 std::size_t row_bytes_max(const v1::Request& request);
 

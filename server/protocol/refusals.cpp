@@ -61,7 +61,7 @@ namespace {
 
 /// If the first character of `text` controls a terminal, ends a line or changes the direction of text, returns its
 /// length in bytes; otherwise 0.
-std::size_t steering_bytes(std::string_view text) {
+std::size_t unsafe_character_bytes(std::string_view text) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
     const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
     if (byte(0) < 0x20 || byte(0) == 0x7f) {
@@ -91,7 +91,7 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
     }
     std::string quoted;
     while (!text.empty()) {
-        const std::size_t steering = steering_bytes(text);
+        const std::size_t steering = unsafe_character_bytes(text);
         quoted += steering > 0 ? '?' : text[0];
         text.remove_prefix(std::max<std::size_t>(steering, 1));
     }

@@ -15,7 +15,7 @@ v1::WorldInfo to_proto(const simulation::Entry& entry);
 v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics);
 v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::uint32_t island);
 
-/// id  must be below the number of organisms born on the island.
+/// Returns the data of one organism. `id` must be below the number of organisms born on the island.
 v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id);
 
 } // namespace evod::protocol

@@ -35,7 +35,7 @@ std::vector<Record> RunRecorder::news(const simulation::World& world) {
     return records;
 }
 
-void RunRecorder::hand_over(const simulation::World& world) {
+void RunRecorder::pass_new_records(const simulation::World& world) {
     if (auto records = news(world); !records.empty()) {
         thread_.write(number_, {std::move(records), {}});
     }
@@ -156,8 +156,8 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     add(entry.name, std::move(run));
 }
 
-void Recorder::begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
-                           std::optional<CommandRecord> command) {
+void Recorder::begin_after_reset(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+                                 std::optional<CommandRecord> command) {
     const auto old = runs_.find(entry.name);
     EVOD_ASSERT(old != runs_.end());
     RunRecorder run{thread_};

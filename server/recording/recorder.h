@@ -29,11 +29,12 @@ struct CommandRecord {
 run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world);
 
 /// Finds new records in a world after a tick: the beginning and end of a generation, and the state hash.
-class RunNews {
+class NewRecordFinder {
   public:
-    RunNews() = default;
-    /// For a run that continues. Its file already contains the records up to this tick and these generations.
-    RunNews(std::uint64_t tick, std::uint64_t generations_begun, std::uint64_t generations_ended)
+    NewRecordFinder() = default;
+    /// Constructs the object for a run that continues. The file already contains the records up to this tick and these
+    /// generations.
+    NewRecordFinder(std::uint64_t tick, std::uint64_t generations_begun, std::uint64_t generations_ended)
         : tick_{tick}, begun_{generations_begun}, ended_{generations_ended} {}
 
     /// Calls write(record) for each new record. To be called before the first tick and after every tick.
@@ -53,7 +54,7 @@ class RunNews {
             ended_ = moment.generation;
         }
     }
-    /// To be called if other code has recorded everything about this tick.
+    /// Must be called if other code has recorded everything about this tick.
     void seen(std::uint64_t tick) { tick_ = std::max(tick_, tick); }
 
     std::uint64_t tick() const { return tick_; } // the last recorded tick
@@ -71,7 +72,7 @@ class RunRecorder {
     /// The time between two checkpoints is at least this number times the time that both threads spent on the last one.
     static constexpr int checkpoint_cost_factor = 50;
 
-    /// For a run that continues. `so_far` describes the records in its file.
+    /// Constructs the recorder of a run that continues. `so_far` describes the records in its file.
     RunRecorder(StorageThread& thread, RunNumber number, const run_file::EndMark& so_far,
                 std::uint64_t generations_ended)
         : thread_{thread}
@@ -84,7 +85,7 @@ class RunRecorder {
         const simulation::Moment& moment = world.moment();
         if (moment.generation != news_.generations_begun() || moment.tick % run_file::ticks_per_hash == 0 ||
             world.generation_over()) {
-            hand_over(world);
+            pass_new_records(world);
         }
     }
     void journal(CommandRecord command);
@@ -101,7 +102,7 @@ class RunRecorder {
   private:
     friend class Recorder;
     explicit RunRecorder(StorageThread& thread) : thread_{thread} {}
-    void hand_over(const simulation::World& world);
+    void pass_new_records(const simulation::World& world);
     std::vector<Record> news(const simulation::World& world);
     run_file::JournalEntry entry(CommandRecord& command);
     /// The records with which the file of a run begins.
@@ -113,7 +114,7 @@ class RunRecorder {
 
     StorageThread& thread_;
     RunNumber number_ = 0;
-    RunNews news_; // up to the records that have been passed to the storage thread
+    NewRecordFinder news_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
     // Time spent on simulation since the last stored beginning of a generation or checkpoint.
@@ -155,14 +156,14 @@ class Recorder {
                     base::Executor& executor);
     /// Like begin(), for a world that was reset. Its previous run ended after `tick`, and the file of that run gets the
     /// name of an ended run.
-    void begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
-                     std::optional<CommandRecord> command = {});
+    void begin_after_reset(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+                           std::optional<CommandRecord> command = {});
     /// Continues to record the run in an existing file.
     RunRecorder& resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,
                         const run_file::EndMark& so_far, std::uint64_t generations_ended);
     /// Ends the recording of a world that this command deleted. Its file gets an end mark and the name of an ended run.
     void end(const std::string& world, const simulation::RunId& run_id, CommandRecord command);
-    /// To be called when the server stops: every file gets an end mark.
+    /// Writes an end mark to every file. Must be called when the server stops.
     void close_all(const simulation::Laboratory& laboratory);
 
   private:

@@ -16,8 +16,8 @@ namespace {
 using base::Refusal;
 using base::Result;
 
-/// other_file  whether another file has the name now.
-Refusal name_lost(const std::string& path, bool other_file) {
+/// Returns the refusal for a file that was moved or deleted. `other_file` states whether another file has its name now.
+Refusal moved_file_refusal(const std::string& path, bool other_file) {
     return {.code = base::RefusalCode::NotFound,
             .message =
                 path + (other_file ? " is not the file that the server writes" : " has been moved or deleted") +
@@ -43,13 +43,13 @@ std::optional<Refusal> FileNameWatch::check(const std::string& path, std::chrono
     const bool exists = ::stat(path.c_str(), &status) == 0;
     if (!known_) {
         if (!exists) {
-            return name_lost(path, false);
+            return moved_file_refusal(path, false);
         }
         known_ = Known{.device = status.st_dev, .number = status.st_ino};
     }
     known_->checked = now;
     known_->lost = !exists || status.st_dev != known_->device || status.st_ino != known_->number;
-    return known_->lost ? std::optional{name_lost(path, exists)} : std::nullopt;
+    return known_->lost ? std::optional{moved_file_refusal(path, exists)} : std::nullopt;
 }
 
 Refusal RunLog::fail(Refusal why) {
@@ -97,7 +97,7 @@ Result<bool> RunLog::open() {
     }
     std::error_code error;
     if (!opened && !to_create && !std::filesystem::exists(name_now, error)) {
-        return fail(name_lost(name_now, false));
+        return fail(moved_file_refusal(name_now, false));
     }
     if (!opened) {
         return fail(opened.error());
@@ -161,7 +161,7 @@ Result<void> RunLog::shrink() {
     return {};
 }
 
-Result<void> RunLog::take_name() {
+Result<void> RunLog::rename_to_final_name() {
     file.reset();
     std::error_code error;
     if (std::filesystem::exists(path, error)) {
@@ -174,7 +174,7 @@ Result<void> RunLog::take_name() {
     return {};
 }
 
-Result<void> RunLog::rename_ended() {
+Result<void> RunLog::rename_ended_file() {
     if (!closing->renamed.empty()) {
         if (const auto renamed = run_file::rename_run_file(path, closing->renamed); !renamed) {
             return fail(renamed.error());

@@ -88,12 +88,12 @@ struct RunLog {
     ///
     /// returns  the duration of the commit.
     base::Result<std::chrono::nanoseconds> commit(const std::vector<WaitingRecord>& records);
-    /// To be called after a commit. Reduces the retention of a file that has become too large.
+    /// Reduces the retention of a file that has become too large. Must be called after a commit.
     base::Result<void> shrink();
     /// Gives a new file its final name. The file that it replaces must already have another name.
-    base::Result<void> take_name();
+    base::Result<void> rename_to_final_name();
     /// Renames a closed file to closing->renamed, unless that is empty.
-    base::Result<void> rename_ended();
+    base::Result<void> rename_ended_file();
     /// Does one small step of background work: deletes rows, or writes a part of a checkpoint. A completed checkpoint
     /// is added to `written`.
     ///
@@ -102,7 +102,7 @@ struct RunLog {
 
     /// Whether the log should be copied now. If so, the caller must start the copy.
     bool log_copy_due();
-    /// To be called when a copy has ended. If the log has meanwhile grown to four times its limit, copies the rest.
+    /// Must be called when a copy has ended. If the log has meanwhile grown to four times its limit, copies the rest.
     void log_copied();
 
   private:

@@ -22,7 +22,7 @@ bool StorageWorker::work() {
         for (auto& [number, run] : runs_) {
             jobs_.compress_next(run);
         }
-        more = write_out();
+        more = write_records();
         if (first_try && skipped < skipped_max && queue_.is_urgent()) {
             ++skipped;
             more = true;
@@ -43,7 +43,7 @@ bool StorageWorker::work() {
         // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
         if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failed_ && advanced)) {
-            return !failed_ || report_lost();
+            return !failed_ || log_lost_records();
         }
     }
 }
@@ -64,12 +64,12 @@ bool StorageWorker::take(bool more) {
     return taken.stopping;
 }
 
-bool StorageWorker::write_out() {
+bool StorageWorker::write_records() {
     std::vector<RunLog*> others;
     for (auto& [number, run] : runs_) {
         if (run.closing ||
             std::ranges::any_of(run.waiting, [](const WaitingRecord& record) { return record.done != nullptr; })) {
-            (void)write_out(run);
+            (void)write_records(run);
         } else if (!run.waiting.empty() || run.creation) {
             others.push_back(&run);
         }
@@ -82,12 +82,12 @@ bool StorageWorker::write_out() {
             return true;
         }
         last_written_ = run->number;
-        (void)write_out(*run);
+        (void)write_records(*run);
     }
     return false;
 }
 
-bool StorageWorker::write_out(RunLog& run) {
+bool StorageWorker::write_records(RunLog& run) {
     const auto is_uncompressed = [](const WaitingRecord& record) {
         return record.record && std::holds_alternative<run_file::Checkpoint>(*record.record);
     };
@@ -103,7 +103,7 @@ bool StorageWorker::write_out(RunLog& run) {
                            std::make_move_iterator(run.waiting.end()));
         run.waiting.clear();
     }
-    if (run.creation && run.creation->committed && !take_name(run)) {
+    if (run.creation && run.creation->committed && !rename_to_final_name(run)) {
         return false;
     }
     report_written(run.written);
@@ -129,7 +129,7 @@ bool StorageWorker::is_its_turn(const RunLog& run) {
         const bool is_replaced = run.creation && run.creation->replaces == number;
         const auto is_out_of_the_way = [&, &log = earlier] { return is_replaced ? !log.creation : log.is_finished(); };
         if (!is_out_of_the_way()) {
-            (void)write_out(earlier);
+            (void)write_records(earlier);
             if (!is_out_of_the_way()) {
                 return false;
             }
@@ -151,16 +151,16 @@ bool StorageWorker::commit(RunLog& run, const std::vector<WaitingRecord>& record
     return true;
 }
 
-bool StorageWorker::take_name(RunLog& run) {
+bool StorageWorker::rename_to_final_name(RunLog& run) {
     const auto replaced = run.creation->replaces ? runs_.find(*run.creation->replaces) : runs_.end();
     if (replaced != runs_.end()) {
         RunLog& old = replaced->second;
         old.closing->replaced = false;
-        if (!write_out(old) || !old.is_finished()) {
+        if (!write_records(old) || !old.is_finished()) {
             return false;
         }
     }
-    if (const auto named = run.take_name(); !named) {
+    if (const auto named = run.rename_to_final_name(); !named) {
         return fail(named.error());
     }
     advanced_ = true;
@@ -192,7 +192,7 @@ bool StorageWorker::end(RunLog& run) {
         closing.marked = true;
         run.file.reset();
     }
-    if (const auto renamed = run.rename_ended(); !renamed) {
+    if (const auto renamed = run.rename_ended_file(); !renamed) {
         return fail(renamed.error());
     }
     closing.finished = true;
@@ -252,7 +252,7 @@ bool StorageWorker::fail(const base::Refusal& why) {
     return false;
 }
 
-bool StorageWorker::report_lost() const {
+bool StorageWorker::log_lost_records() const {
     bool lost_any = false;
     for (const auto& [number, run] : runs_) {
         std::size_t bytes = 0, commands = 0, generations = 0;

@@ -35,26 +35,26 @@ class StorageWorker {
     /// Writes the records of all runs, until a command arrives.
     ///
     /// returns  whether a command has arrived.
-    bool write_out();
+    bool write_records();
     /// Writes the records of one run. Returns false after an error, or if the run must wait for another one.
-    bool write_out(RunLog& run);
+    bool write_records(RunLog& run);
     /// Whether a run may use the name NAME.evod-next. Runs with the same path use this name one after another, in the
     /// order of their creation. A run may begin when all earlier runs have ended. If it replaces the last of them, it
     /// may begin when the file of that run has its final name. Writes the earlier runs first. Returns false if one
     /// of them still uses the name.
     bool is_its_turn(const RunLog& run);
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
-    bool take_name(RunLog& run);
+    bool rename_to_final_name(RunLog& run);
     bool end(RunLog& run);
     /// Does one background step for one run; the runs take turns. Returns whether there was any work.
     bool background_step();
     bool background_step(RunLog& run);
 
-    /// To be called when these records are on the disk. Calls `done` and frees the memory of the records.
+    /// Calls the `done` of each record and frees the memory of the records. They must be on the disk.
     void report_written(std::vector<WaitingRecord>& records);
     bool fail(const base::Refusal& why);
     /// Logs for each run how much could not be written. Returns false if anything could not be written.
-    bool report_lost() const;
+    bool log_lost_records() const;
 
     RecordQueue& queue_;
     DiskState& disk_;

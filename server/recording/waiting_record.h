@@ -15,7 +15,7 @@ namespace evod::recording {
 
 using Record = run_file::RunFile::Record;
 
-/// Called on the storage thread once the record is on the disk.
+/// A function that the storage thread calls once the record is on the disk.
 using Done = std::function<void()>;
 
 /// The progress of a checkpoint. The storage thread and the recorder share it.

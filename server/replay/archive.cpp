@@ -121,19 +121,19 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
 }
 
 void Archive::read_ended_answers(const std::vector<std::string>& paths) {
-    struct Ended {
+    struct EndedRun {
         std::filesystem::file_time_type when;
         std::string path;
         std::vector<run_file::JournalEntry> last = {};
     };
-    std::vector<Ended> runs;
+    std::vector<EndedRun> runs;
     for (const std::string& path : paths) {
         std::error_code error;
         runs.push_back({std::filesystem::last_write_time(path, error), path});
     }
-    std::ranges::sort(runs, std::greater{}, [](const Ended& run) { return std::tie(run.when, run.path); });
+    std::ranges::sort(runs, std::greater{}, [](const EndedRun& run) { return std::tie(run.when, run.path); });
     std::size_t bytes = 0;
-    for (Ended& run : runs) {
+    for (EndedRun& run : runs) {
         const auto file = run_file::RunFile::open_read_only(run.path);
         if (!file) {
             continue; // no world depends on this file; a later opening reports the reason

@@ -31,7 +31,7 @@ class Archive {
     run_file::Durability durability() const { return durability_; }
     /// The identity of the run of a recovered world; nullptr if there is no recovered world with this name.
     const run_file::RunIdentity* identity_of(const std::string& world) const;
-    bool holds_worlds() const { return !identities_.empty(); }
+    bool has_worlds() const { return !identities_.empty(); }
     /// The names of the recovered worlds, in alphabetical order.
     std::vector<std::string> world_names() const;
     /// Removes the recovered worlds from the archive and returns them. Must be called only once.

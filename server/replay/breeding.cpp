@@ -15,7 +15,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
+Refusal not_found_refusal(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
     const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
     return {.code = RefusalCode::NotFound,
             .message = std::string{"no such "} + field + " has bred in this run: allowed: " + there_are,
@@ -34,7 +34,7 @@ Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreedin
     }
     const std::uint64_t generation = wanted.generation.value_or(std::clamp(wanted.seen_from, first + 1, last) - 1);
     if (generation < first || generation >= last) {
-        return no_such("generation", first, last - 1, generation);
+        return not_found_refusal("generation", first, last - 1, generation);
     }
     return generation;
 }
@@ -93,7 +93,7 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
     };
     const std::size_t islands = parents->begun.born.size();
     if (wanted.island >= islands) {
-        return no_such("island", 0, islands - 1, wanted.island);
+        return not_found_refusal("island", 0, islands - 1, wanted.island);
     }
     if (!parents->ended || children->begun.born.size() != islands) {
         return damaged(" has bred, but its outcome or the next generation is missing");

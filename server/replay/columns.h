@@ -13,7 +13,7 @@ namespace evod::replay {
 std::vector<std::string> statistics_columns();
 void write_row(Table& table, const simulation::GenerationStatistics& statistics);
 
-/// The columns of a table with a population that another world can begin with.
+/// Returns the columns of the table `population`, with which another world can begin.
 std::vector<std::string> population_columns();
 
 } // namespace evod::replay

@@ -20,7 +20,7 @@ struct WholeGeneration {
 };
 
 /// Whether a generation that has begun can be read: it is retained, or this program can simulate it again.
-inline bool is_in_reach(run_file::RunFile& file, std::uint64_t generation) {
+inline bool can_be_read(run_file::RunFile& file, std::uint64_t generation) {
     return !file.other_model() || file.retention().at_or_before(generation) == generation;
 }
 

@@ -66,9 +66,9 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
         evolution::apply_shuffle(
             children.parameters, fitness.size(), [&](std::size_t i) -> std::span<double> { return fitness[i]; }, seed,
             parents.generation, executor);
-        const std::vector<std::span<const double>> bred_by(fitness.begin(), fitness.end());
+        const std::vector<std::span<const double>> fitness_of_island(fitness.begin(), fitness.end());
         for (const evolution::Migrant& migrant :
-             choose_migrants(bred_by, children.parameters, seed, parents.generation)) {
+             choose_migrants(fitness_of_island, children.parameters, seed, parents.generation)) {
             places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
         }
     }
@@ -161,7 +161,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
     std::optional<Births> births;
     ParentPlaces parents;
     const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
-        if (!is_in_reach(file, generation)) {
+        if (!can_be_read(file, generation)) {
             const auto opening = file.generations().opening_of(generation);
             if (!opening) {
                 return opening.error();
@@ -217,7 +217,7 @@ Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t ge
     BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;
-    if (generation < file.generations().last() && is_in_reach(file, generation + 1)) {
+    if (generation < file.generations().last() && can_be_read(file, generation + 1)) {
         auto read = reader.read(generation + 1);
         if (!read) {
             return read.error();
@@ -238,7 +238,7 @@ Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t ge
     while (true) {
         std::optional<Births> before;
         ParentPlaces parents;
-        if (generation > file.identity().first_generation && is_in_reach(file, generation - 1)) {
+        if (generation > file.identity().first_generation && can_be_read(file, generation - 1)) {
             auto read = reader.read(generation - 1);
             if (!read) {
                 return read.error();

@@ -222,7 +222,7 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
 
 Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::World world,
                                   std::span<const ParameterChange> changes, std::uint64_t after_entry) {
-    if (auto planned = ComingChanges::plan_again(file.path(), changes, after_entry, world); !planned) {
+    if (auto planned = ComingChanges::restore_planned_changes(file.path(), changes, after_entry, world); !planned) {
         return planned.error();
     }
     ComingChanges coming{after_entry};
@@ -236,8 +236,8 @@ Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::Wor
     return rerun;
 }
 
-Result<void> ComingChanges::plan_again(const std::string& path, std::span<const ParameterChange> changes,
-                                       std::uint64_t after_entry, simulation::World& world) {
+Result<void> ComingChanges::restore_planned_changes(const std::string& path, std::span<const ParameterChange> changes,
+                                                    std::uint64_t after_entry, simulation::World& world) {
     for (const ParameterChange& change : changes) {
         if (change.entry > after_entry) {
             break;
@@ -294,7 +294,7 @@ bool ComingChanges::apply(const ParameterChange& change, simulation::World& worl
     return requested.has_value();
 }
 
-void ComingChanges::make_due(simulation::World& world, std::uint64_t last) {
+void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
     const auto is_due = [&](const ParameterChange& change) {
         return change.tick <= world.moment().tick && change.entry <= last;
     };

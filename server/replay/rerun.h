@@ -43,8 +43,8 @@ class ComingChanges {
     /// Restores the planned changes of a world that are not yet due. Refused if the journal contradicts itself.
     ///
     /// world  contains the journal entries up to and including `after_entry`, but no planned changes.
-    static base::Result<void> plan_again(const std::string& path, std::span<const ParameterChange> changes,
-                                         std::uint64_t after_entry, simulation::World& world);
+    static base::Result<void> restore_planned_changes(const std::string& path, std::span<const ParameterChange> changes,
+                                                      std::uint64_t after_entry, simulation::World& world);
 
     /// Adds the changes that are new. Refused if a change has values that are invalid in every world.
     ///
@@ -52,7 +52,7 @@ class ComingChanges {
     base::Result<void> extend(const std::string& path, std::span<const ParameterChange> changes);
     /// Applies the changes up to the present tick of the world and up to journal entry `last`. After a fault, applies
     /// none.
-    void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
+    void apply_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
     /// Number of the last journal entry that was added.
     std::uint64_t last_entry() const { return last_entry_; }
     /// Set if a change cannot have been accepted with the parameters of its moment; the file is then damaged.
@@ -122,7 +122,7 @@ class Rerun {
     /// over.
     void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
     /// Applies the remaining changes after the last tick, up to journal entry `last`.
-    void apply_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.make_due(world_, last); }
+    void apply_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.apply_due(world_, last); }
     /// Simulates up to and including this tick, or up to the end of the run.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 

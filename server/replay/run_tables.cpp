@@ -78,7 +78,7 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::si
     table.end_row();
 }
 
-Refusal no_such(base::Violation violation) {
+Refusal not_found_refusal(base::Violation violation) {
     return {.code = base::RefusalCode::NotFound,
             .message = "the run file has no such organism",
             .violations = {std::move(violation)},
@@ -87,7 +87,7 @@ Refusal no_such(base::Violation violation) {
 
 /// The reason why a generation that has begun cannot be read; nullopt if it can be read.
 std::optional<Refusal> out_of_reach(run_file::RunFile& file, const char* field, std::uint64_t generation) {
-    if (is_in_reach(file, generation)) {
+    if (can_be_read(file, generation)) {
         return std::nullopt;
     }
     Refusal refused = *file.other_model();
@@ -193,7 +193,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     Table table{out, format, std::move(columns)};
     GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
-        if (!is_in_reach(run.file, generation)) {
+        if (!can_be_read(run.file, generation)) {
             return {};
         }
         const auto whole = reader.read(generation);
@@ -231,8 +231,9 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
     }
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.generations().last();
     if (of->generation < first || of->generation > last) {
-        return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
-                        std::to_string(of->generation)});
+        return not_found_refusal({"of.generation",
+                                  "a generation from " + std::to_string(first) + " to " + std::to_string(last),
+                                  std::to_string(of->generation)});
     }
     if (auto refused = out_of_reach(run.file, "of.generation", of->generation)) {
         return *refused;
@@ -259,7 +260,7 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
                                                     return !wanted.empty() && out.good();
                                                 });
     if (wrong) {
-        return no_such(*wrong);
+        return not_found_refusal(*wrong);
     }
     return done;
 }
@@ -336,7 +337,7 @@ std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
             if (!opening || !*opening) {
                 break; // the file is damaged; reading the generation reports it
             }
-            count += !is_in_reach(file, generation);
+            count += !can_be_read(file, generation);
         }
     }
     return count;

@@ -30,11 +30,11 @@ struct OrganismName {
 struct WantedTable {
     RunTable table = RunTable::Generations;
     Table::Format format = Table::Format::Csv;
-    // Only for the population; nullopt: the last generation that has begun.
+    // Population table only: the generation to write; nullopt: the last generation that has begun.
     std::optional<std::uint64_t> generation = {};
-    // Only for the lineage: this organism and its ancestors, newest first; nullopt: all organisms.
+    // Lineage table only: write this organism and its ancestors, newest first; nullopt: all organisms.
     std::optional<OrganismName> of = {};
-    // Only for the events: write the user who sent a command, but not the program and the address.
+    // Events table only: true writes the user who sent a command, but not the program and the address.
     bool only_users = false;
 };
 

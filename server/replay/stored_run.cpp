@@ -25,7 +25,7 @@ std::string range_text(std::uint64_t first, std::uint64_t last) {
     return std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
 }
 
-Refusal no_such(const char* field, const std::string& there_are, std::uint64_t got) {
+Refusal not_found_refusal(const char* field, const std::string& there_are, std::uint64_t got) {
     return {.code = RefusalCode::NotFound,
             .message = std::string{"the run has no such "} + field + ": allowed: " + there_are,
             .violations = {{field, there_are, std::to_string(got)}},
@@ -37,13 +37,13 @@ Result<SeekTarget> find(run_file::RunFile& file, const WantedMoment& wanted, con
     if (!wanted.generation) {
         const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
         if (tick < there.first_tick || tick > there.last_tick) {
-            return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
+            return not_found_refusal("tick", range_text(there.first_tick, there.last_tick), tick);
         }
         return SeekTarget{file.generations().at_tick(tick), tick};
     }
     const std::uint64_t generation = *wanted.generation;
     if (generation < there.first_generation || generation > there.last_generation) {
-        return no_such("generation", generations, generation);
+        return not_found_refusal("generation", generations, generation);
     }
     const auto opening = file.generations().opening_of(generation);
     if (!opening) {
@@ -62,7 +62,8 @@ Result<SeekTarget> find(run_file::RunFile& file, const WantedMoment& wanted, con
     const std::uint64_t begins = std::max(first, there.first_tick) - first;
     const std::uint64_t tick = wanted.tick.value_or(begins);
     if (tick < begins || tick > last - first) {
-        return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
+        return not_found_refusal(
+            "tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
     }
     return SeekTarget{generation, first + tick};
 }

@@ -19,7 +19,7 @@ class Table {
     /// Writes the heading of a CSV table.
     Table(std::ostream& out, Format format, std::vector<std::string> columns);
 
-    // For each row: call one of these functions for each column, in order, then end_row().
+    // To write a row, call one of these functions for each column, in order, then end_row().
 
     /// Writes the shortest text that reads back as the same number.
     template <class T>

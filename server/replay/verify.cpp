@@ -101,8 +101,8 @@ class StretchCheck {
         }
         return !mismatch;
     }
-    bool same_births(const StoredMoment& moment, const StoredGeneration& stored,
-                     const run_file::GenerationBegun& simulated) {
+    bool check_births(const StoredMoment& moment, const StoredGeneration& stored,
+                      const run_file::GenerationBegun& simulated) {
         return same(moment, compare(stored.born, simulated.born)) &&
                (stored.founders.empty() || same(moment, compare(stored.founders, simulated.founders)));
     }
@@ -124,9 +124,10 @@ class StretchCheck {
         if (!identity.forked_from) {
             const World world{identity.parameters, identity.seed, identity.first_population, identity.schedule};
             const run_file::GenerationBegun begun = run_file::beginning_of(world);
-            (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
+            (void)(same(agrees_, compare(first.opening, begun.opening)) && check_births(agrees_, first, begun));
         } else {
-            // Only the requested parameters of a fork can be derived from its file; its beginning cannot.
+            // The file of a fork does not contain its origin, so only the requested parameters of the beginning can be
+            // checked.
             const run_file::StoredCheckpoint* within = beginning();
             const parameters::ParameterSet& set = within ? within->parameters : first.opening.parameters;
             (void)same(agrees_, compare_requested(set.requested, identity.parameters));
@@ -240,7 +241,7 @@ class StretchCheck {
         rerun.turn_over(executor_);
         const run_file::GenerationBegun again = run_file::beginning_of(world);
         if (same(moment, compare(next.opening, again.opening)) && !next.born.empty()) {
-            (void)same_births(moment, next, again);
+            (void)check_births(moment, next, again);
         }
     }
 

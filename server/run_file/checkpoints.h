@@ -32,7 +32,7 @@ class Checkpoints {
         , retention_{retention}
         , part_bytes_{part_bytes} {}
 
-    /// The checkpoints after tick `after`, up to and including tick `until`, in order of ticks.
+    /// Reads the checkpoints after tick `after`, up to and including tick `until`, in order of ticks.
     base::Result<std::vector<StoredCheckpoint>> read(std::uint64_t after, std::uint64_t until);
     /// The last checkpoint at or before tick `until`; nullopt if there is none.
     base::Result<std::optional<StoredCheckpoint>> last(std::uint64_t until);
@@ -50,10 +50,10 @@ class Checkpoints {
     ///
     /// returns  whether this was the last part.
     bool write_part(const StoredCheckpoint& checkpoint);
-    /// To be called after the transaction with a part has been committed.
+    /// Must be called after the transaction with a part has been committed.
     void part_written(bool was_last);
 
-    /// To be called after other code has deleted rows of `checkpoint`.
+    /// Must be called after other code has deleted rows of `checkpoint`.
     void expect_orphans() { may_have_orphans_ = true; }
     bool may_have_orphans() const { return may_have_orphans_; }
     /// Whether the file contains orphans. Parts of a checkpoint that is being written do not count.

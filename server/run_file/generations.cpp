@@ -75,7 +75,7 @@ Result<std::optional<simulation::Opening>> Generations::opening_of(std::uint64_t
     return std::optional{simulation::Opening{.moment = row.moment, .parameters = *set, .progress = row.progress}};
 }
 
-Result<std::vector<evolution::NextGeneration>> Generations::born_in(const simulation::Opening& opening) {
+Result<std::vector<evolution::NextGeneration>> Generations::read_populations(const simulation::Opening& opening) {
     std::vector<evolution::NextGeneration> islands;
     TableReader<PopulationTable> rows{database_.database, of_generation, value_of(opening.moment.generation)};
     const auto bad = [&] {
@@ -153,7 +153,7 @@ Result<std::optional<GenerationBegun>> Generations::beginning_of(std::uint64_t g
     if (!*opening || !retention_.is_retained(generation)) {
         return std::optional<GenerationBegun>{};
     }
-    auto born = born_in(**opening);
+    auto born = read_populations(**opening);
     if (!born) {
         return born.error();
     }

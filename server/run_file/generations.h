@@ -27,7 +27,7 @@ class Generations {
     std::uint64_t last() { return database_.natural("SELECT max(generation) FROM generation"); }
     /// The newest generation that has ended; 0 if none has ended.
     std::uint64_t last_ended() { return database_.natural("SELECT max(generation) FROM statistics"); }
-    /// The generation of the run after this tick; the first generation if the run had not begun.
+    /// Returns the generation that the run had reached after this tick; the first generation if the run had not begun.
     std::uint64_t at_tick(std::uint64_t tick);
 
     /// The opening of a generation; nullopt if the generation has not begun.
@@ -50,7 +50,7 @@ class Generations {
     struct Writers;
     using Accounts = std::vector<std::optional<evolution::SelectionAccount>>;
 
-    base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
+    base::Result<std::vector<evolution::NextGeneration>> read_populations(const simulation::Opening& opening);
     base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
     /// The selection accounts of a generation, one per island. A fork also has them for the generations that it
     /// inherited.

@@ -41,12 +41,12 @@ std::uint64_t Retention::at_or_before(std::uint64_t generation) {
     if (is_retained(generation)) {
         return generation;
     }
-    const auto step_back = [&](std::uint64_t keep_every) {
+    const auto round_down = [&](std::uint64_t keep_every) {
         generation -= (generation - identity_.first_generation) % keep_every;
     };
-    step_back(keep_every_);
+    round_down(keep_every_);
     if (generation <= rule_.until_generation) {
-        step_back(rule_.keep_every);
+        round_down(rule_.keep_every);
     }
     return generation;
 }

@@ -30,9 +30,9 @@ class Retention {
     /// A new file retains every keep_every-th generation. The value never changes during the life of a file.
     std::uint64_t keep_every() const { return keep_every_; }
     bool is_retained(std::uint64_t generation);
-    /// The last retained generation up to `generation`. Returns `generation` if the run has not begun it.
+    /// Returns the last retained generation up to `generation`; `generation` itself if the run has not begun it.
     std::uint64_t at_or_before(std::uint64_t generation);
-    /// The first retained generation from `generation` on. The run must have begun `generation`.
+    /// Returns the first retained generation from `generation` on. The run must have begun `generation`.
     std::uint64_t at_or_after(std::uint64_t generation);
     /// Whether the state hash after this tick is retained. The tick must be a multiple of ticks_per_hash.
     bool is_hash_retained(std::uint64_t tick) const;
@@ -45,7 +45,7 @@ class Retention {
     ///
     /// returns  false if nothing is left to halve.
     base::Result<bool> halve();
-    /// To be called after a file has been opened, because an earlier purge may be incomplete.
+    /// Begins a purge again, because an earlier one may be incomplete. Must be called after a file has been opened.
     void resume_purge();
     bool is_purging() const { return purge_.has_value(); }
     /// Deletes one batch in its own transaction. Deletes nothing when the purge is complete.

@@ -45,7 +45,7 @@ class RowWriter {
     /// columns  names of the columns, without `checksum`.
     RowWriter(Database& database, const std::string& table, const std::vector<std::string>& columns);
 
-    // For each row: call one of these functions for each column, in order, then finish().
+    // To write a row, call one of these functions for each column, in order, then finish().
     RowWriter& integer(std::int64_t value);
     RowWriter& integer(std::optional<std::int64_t> value);
     RowWriter& real(double value);
@@ -54,7 +54,7 @@ class RowWriter {
     RowWriter& bytes(std::span<const std::byte> value);
     /// Includes the checksum of another row in the checksum of this row.
     RowWriter& covers(std::int64_t checksum);
-    /// returns  the checksum of the row.
+    /// Writes the row and returns its checksum.
     std::int64_t finish();
 
   private:
@@ -73,7 +73,7 @@ class RowReader {
     /// Moves to the next row. Returns false if there is none, or if the database has failed.
     bool next();
 
-    // For each row: call one of these functions for each column, in order, then sound().
+    // To read a row, call one of these functions for each column, in order, then sound().
     std::int64_t integer();
     std::optional<std::int64_t> optional_integer();
     double real();

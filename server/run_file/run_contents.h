@@ -32,7 +32,7 @@ class RunContents {
     Checkpoints& checkpoints() { return checkpoints_; }
     Retention& retention() { return retention_; }
     const Retention& retention() const { return retention_; }
-    /// The retained state hashes after tick `after`, up to and including tick `until`, in order of ticks.
+    /// Reads the retained state hashes after tick `after`, up to and including tick `until`, in order of ticks.
     base::Result<std::vector<HashRecord>> hashes(std::uint64_t after, std::uint64_t until);
     /// The end mark; nullopt while a server has the file open, or after a server was killed.
     base::Result<std::optional<EndMark>> end_mark();

@@ -59,7 +59,7 @@ class RunFile : public RunContents {
 
     // RunContents declares the functions for reading.
 
-    /// From now on, reads only the current contents of the file, even if a server writes to it.
+    /// Makes this object read only the current contents of the file, even if a server writes to it later.
     base::Result<void> pin_snapshot();
     /// Copies the pinned snapshot to a new file.
     base::Result<void> copy_to(const std::string& path);

@@ -31,7 +31,7 @@ class StreamDemand {
     bool changed() const { return changed_.load(std::memory_order_acquire); }
     WorldDemands take();
 
-    /// Whether any session is subscribed to events.
+    /// Sets whether any session is subscribed to events.
     void want_events(bool wanted) { events_wanted_.store(wanted, std::memory_order_relaxed); }
     bool events_wanted() const { return events_wanted_.load(std::memory_order_relaxed); }
 

@@ -31,7 +31,7 @@ class ExportJob {
         // (replay::generations_out_of_reach()).
         std::uint64_t generations_left_out = 0;
     };
-    /// Called on the thread of the job. Must not block.
+    /// A function that receives a part. The thread of the job calls it, so it must not block.
     using Reply = std::function<void(base::Result<Part>)>;
 
     /// jobs  must outlive the job and have a free thread, because each export occupies a thread while it waits.

@@ -42,7 +42,7 @@ std::vector<Mail> Mailbox::drain(std::vector<Mail> emptied) {
     return emptied;
 }
 
-Mailbox::Fill Mailbox::fill() const {
+Mailbox::FillLevel Mailbox::fill() const {
     const std::lock_guard lock{mutex_};
     return {.waiting = waiting_.size(), .capacity = capacity_};
 }

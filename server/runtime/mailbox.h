@@ -37,10 +37,10 @@ class Mailbox {
     /// Removes and returns all entries, oldest first. The result reuses the memory of `emptied`.
     std::vector<Mail> drain(std::vector<Mail> emptied = {});
 
-    struct Fill {
+    struct FillLevel {
         std::size_t waiting = 0, capacity = 0;
     };
-    Fill fill() const;
+    FillLevel fill() const;
 
     /// Waits until there is mail, wake() is called, or the time `until` is reached; nullopt: no time limit.
     void wait(std::optional<Clock::time_point> until);

@@ -62,7 +62,7 @@ Outbox::Taken Outbox::take() {
     return std::exchange(waiting_, {});
 }
 
-Outbox::Fill Outbox::fill() const {
+Outbox::FillLevel Outbox::fill() const {
     const std::lock_guard lock{mutex_};
     return {.deliveries = waiting_.deliveries.size(), .events = events_waiting_, .events_max = events_max_};
 }

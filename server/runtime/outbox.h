@@ -48,10 +48,10 @@ class Outbox {
     };
     Taken take();
 
-    struct Fill {
+    struct FillLevel {
         std::size_t deliveries = 0, events = 0, events_max = 0; // `deliveries` includes the events
     };
-    Fill fill() const;
+    FillLevel fill() const;
 
   private:
     void add(Delivery delivery);

@@ -27,7 +27,7 @@ class QueryBudget {
     void spend(Clock::duration time) { saved_ -= time; }
 
     /// The earliest time at which the next query may start. allows() must be called first.
-    Clock::time_point next_at() const {
+    Clock::time_point next_query_at() const {
         return earned_until_ + std::max(Clock::duration{1} - saved_, Clock::duration::zero()) * share;
     }
 

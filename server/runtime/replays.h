@@ -42,18 +42,21 @@ class Replays {
     Seeks& seeks() { return seeks_; }
     const Seeks& seeks() const { return seeks_; }
     ShownReplays& shown() { return shown_; }
-    /// Called when nothing can be written to the disk. Requests that wait for the disk continue with the present file.
+    /// Makes requests that wait for the disk continue with the present file. Called when nothing can be written to the
+    /// disk.
     void stop_waiting() { reader_.stop_waiting(); }
 
   private:
     void open(const OpenReplay& request, const ReplayMail& mail);
     void seek(const Seek& request, const ReplayMail& mail);
     base::Result<std::string> close(const CloseReplay& request);
-    /// world  the name of the replay, once it shows the requested moment.
+    /// Answers a request with the replay that now shows the requested moment, or with a refusal.
+    ///
+    /// world  the name of the replay, or the refusal.
     void answer(const ReplayMail& mail, const base::Result<std::string>& world);
-    /// The stored run of a world; refused if there is none.
+    /// Returns the stored run of a world; refused if there is none.
     base::Result<replay::StoredRun> run_of(const std::string& world) const;
-    /// The present moment of the world, if it is live and has this run.
+    /// Returns the present moment of the world if it is live and has this run; otherwise zeros.
     replay::RecordedUntil recorded_until(const std::string& world, const simulation::RunId& run_id) const;
 
     simulation::Laboratory& laboratory_;

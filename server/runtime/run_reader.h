@@ -22,7 +22,7 @@ class RunReader {
     /// Calls `then` on the simulation thread once all records of the world are on the disk. Calls it with false at once
     /// if nothing can be written, or if the world has no file.
     void once_written(const std::string& world, std::function<void(bool all_is_written)> then);
-    /// Called when nothing can be written to the disk. Calls every waiting `then` with false.
+    /// Calls every waiting `then` with false. Must be called when nothing can be written to the disk.
     void stop_waiting();
     /// Runs `read` on the job queue, then runs the function that `read` returned on the simulation thread.
     void read(std::function<std::function<void()>()> read);

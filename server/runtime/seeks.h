@@ -54,7 +54,7 @@ class Seeks {
     /// All arguments must outlive this object.
     Seeks(RunReader& reader, base::Executor& executor) : reader_{reader}, executor_{executor} {}
 
-    /// world  the seek waits until all records of this world are on the disk.
+    /// Begins a seek once all records of the world are on the disk.
     void begin(const std::string& world, Request request);
     /// Ends all seeks of a session.
     void cancel_of_session(std::uint64_t session);

@@ -61,7 +61,7 @@ std::vector<std::string> ShownReplays::names(std::optional<std::uint64_t> owner)
 
 void ShownReplays::follow(simulation::Entry& entry) {
     if (const auto shown = replays_.find(entry.name); shown != replays_.end()) {
-        shown->second.changes.make_due(entry.world);
+        shown->second.changes.apply_due(entry.world);
     }
 }
 
@@ -100,7 +100,7 @@ void ShownReplays::read_new_records(const std::string& name, Shown& shown) {
 }
 
 void ShownReplays::extend(simulation::Entry& entry, Shown& shown, const replay::NewRecords& records) {
-    // If a seek has moved the replay since the records were requested, they may start after the end of its known
+    // A seek may have moved the replay since it requested these records. They may then leave a gap after its known
     // records.
     if (records.there.last_tick <= entry.replay->last_tick || records.after_entry > shown.entries_read) {
         return;
@@ -109,7 +109,7 @@ void ShownReplays::extend(simulation::Entry& entry, Shown& shown, const replay::
         return;
     }
     shown.entries_read = std::max(shown.entries_read, records.last_entry);
-    shown.changes.make_due(entry.world);
+    shown.changes.apply_due(entry.world);
     const std::string replay_of = entry.replay->replay_of;
     entry.replay = records.there;
     entry.replay->replay_of = replay_of;

@@ -44,7 +44,7 @@ class ShownReplays {
     /// returns  the time of the next call; nullopt: no call is needed.
     std::optional<Clock::time_point> refresh(Clock::time_point now);
     /// Returns the replays that a seek has moved since the last call.
-    std::vector<std::string> take_moved() { return std::exchange(moved_, {}); }
+    std::vector<std::string> take_moved_replays() { return std::exchange(moved_, {}); }
 
   private:
     struct Shown {

@@ -24,14 +24,14 @@ constexpr std::chrono::milliseconds measuring_time{1000};
 /// Returns how many ticks a world at full speed simulates between two readings of the clock.
 ///
 /// tick  the duration of one tick.
-std::uint32_t ticks_a_look(Clock::duration tick) {
+std::uint32_t ticks_per_clock_reading(Clock::duration tick) {
     constexpr std::int64_t most = 100;
     return static_cast<std::uint32_t>(
-        tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_looks / tick, 1, most) : 1);
+        tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_clock_readings / tick, 1, most) : 1);
 }
 
 /// Whether the command creates a world and changes nothing if that fails.
-bool builds_a_world(const simulation::Command& command) {
+bool creates_a_world(const simulation::Command& command) {
     return std::holds_alternative<simulation::CreateWorld>(command) ||
            std::holds_alternative<simulation::ResetWorld>(command) ||
            std::holds_alternative<simulation::ForkWorld>(command);
@@ -162,7 +162,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 }
 
 void SimulationLoop::announce_moved_replays() {
-    for (const std::string& name : replays_.shown().take_moved()) {
+    for (const std::string& name : replays_.shown().take_moved_replays()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
         if (!entry || track == tracks_.end()) {
@@ -209,9 +209,9 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
         if (now >= end) {
             return now;
         }
-        const bool time_is_free = !time_is_wanted(now);
+        const bool time_is_free = !is_work_due(now);
         if (!query_budget_.allows(now) && !time_is_free) {
-            return woken ? now : query_budget_.next_at();
+            return woken ? now : query_budget_.next_query_at();
         }
         answer_query();
         const auto began = std::exchange(now, clock_.now());
@@ -235,7 +235,7 @@ void SimulationLoop::answer_query() {
     outputs_.reply(std::move(done));
 }
 
-bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
+bool SimulationLoop::is_work_due(Clock::time_point now) const {
     return replays_.seeks().under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
                if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
@@ -264,7 +264,7 @@ void SimulationLoop::apply(CommandMail& mail) {
     answer(mail, apply(mail.command), before);
 }
 
-const simulation::Entry* SimulationLoop::entry_in(const simulation::Command& command) const {
+const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Command& command) const {
     return std::visit(
         [this](const auto& c) -> const simulation::Entry* {
             if constexpr (requires { c.world; }) {
@@ -278,7 +278,7 @@ const simulation::Entry* SimulationLoop::entry_in(const simulation::Command& com
 }
 
 std::optional<SimulationLoop::RunBefore> SimulationLoop::run_of(const simulation::Command& command) const {
-    const simulation::Entry* entry = entry_in(command);
+    const simulation::Entry* entry = entry_of_command(command);
     return entry ? std::optional{RunBefore{entry->run_id, entry->world.moment().tick}} : std::nullopt;
 }
 
@@ -286,7 +286,7 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     if (!recorder_ || !changes_something(command)) {
         return std::nullopt;
     }
-    const simulation::Entry* entry = entry_in(command);
+    const simulation::Entry* entry = entry_of_command(command);
     const bool only_a_look =
         entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // replays are not journaled
     if (only_a_look) {
@@ -306,7 +306,7 @@ base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Comman
     if (auto refused = refusal_of(command)) {
         return *refused;
     }
-    if (builds_a_world(command)) {
+    if (creates_a_world(command)) {
         return base::within_memory([&] { return laboratory_.apply(command); });
     }
     return laboratory_.apply(command);
@@ -315,7 +315,7 @@ base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Comman
 void SimulationLoop::fork(CommandMail& mail) {
     const auto& command = std::get<simulation::ForkWorld>(mail.command);
     const auto before = run_of(command);
-    const simulation::Entry* origin = entry_in(command);
+    const simulation::Entry* origin = entry_of_command(command);
     auto refused = refusal_of(command);
     const auto fork_at_opening = [&](bool with_what_was_asked_since) {
         return base::within_memory([&] {
@@ -401,7 +401,7 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     case RunEffect::BeginsAsFork:
         return recorder_->begin_fork(**entry, before->run_id, std::move(record), executor_);
     case RunEffect::BeginsAgain:
-        return recorder_->begin_again(**entry, before->run_id, before->tick, std::move(record));
+        return recorder_->begin_after_reset(**entry, before->run_id, before->tick, std::move(record));
     case RunEffect::Ends:
         return recorder_->end(applied.world, before->run_id, std::move(record));
     case RunEffect::Continues:
@@ -535,7 +535,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             ++taken;
             stopped = !entry.wants_tick();
             publish_events();
-        } while (!paced && taken < track.ticks_a_look && !stopped && !mailbox_.pending());
+        } while (!paced && taken < track.ticks_per_clock_reading && !stopped && !mailbox_.pending());
         track.ticks += taken;
         if (stopped) {
             track.changed = true; // the world has reached a goal
@@ -554,7 +554,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         if (track.counted) {
             track.counted->tick_time.add(spent / taken, taken);
         }
-        track.ticks_a_look = ticks_a_look(spent / taken);
+        track.ticks_per_clock_reading = ticks_per_clock_reading(spent / taken);
         make_due_checkpoint(entry, track, spent);
         if (stopped || now >= end || (paced && track.due > now)) {
             return;

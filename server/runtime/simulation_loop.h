@@ -54,7 +54,7 @@ class SimulationLoop {
     static constexpr std::chrono::milliseconds catch_up_max{50};
     /// A world at full speed simulates ticks for about this time between two readings of the clock, because in a small
     /// world one tick takes only as long as one reading.
-    static constexpr std::chrono::microseconds between_looks{20};
+    static constexpr std::chrono::microseconds between_clock_readings{20};
     /// A paced world counts as slowed if it falls behind its speed by more than this fraction of the elapsed time.
     static constexpr double slowed_from = 0.02;
     /// A short wait for a working disk is normal. A longer wait is reported.
@@ -94,8 +94,8 @@ class SimulationLoop {
         // Measurements since the time `measured_since`.
         Clock::time_point measured_since;
         std::uint64_t ticks = 0;
-        Clock::duration lost{};         // time by which the world fell behind its speed
-        std::uint32_t ticks_a_look = 1; // ticks between two readings of the clock, at full speed
+        Clock::duration lost{};                    // time by which the world fell behind its speed
+        std::uint32_t ticks_per_clock_reading = 1; // ticks between two readings of the clock, at full speed
         // State for viewers.
         const WorldDemand* watch = nullptr;
         std::uint64_t newcomers_served = 0;
@@ -109,7 +109,7 @@ class SimulationLoop {
     std::optional<Clock::time_point> answer_queries();
     void answer_query();
     /// Whether a seek, a world at full speed or a due paced world would have to wait for other work.
-    bool time_is_wanted(Clock::time_point now) const;
+    bool is_work_due(Clock::time_point now) const;
     void apply(CommandMail& mail);
     void fork(CommandMail& mail);
     base::Result<simulation::Applied> apply(const simulation::Command& command);
@@ -119,7 +119,7 @@ class SimulationLoop {
         std::uint64_t tick;
     };
     std::optional<RunBefore> run_of(const simulation::Command& command) const;
-    const simulation::Entry* entry_in(const simulation::Command& command) const;
+    const simulation::Entry* entry_of_command(const simulation::Command& command) const;
     /// Returns why the journal cannot store this command now; nullopt if it can, or if the command need not be stored.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
     void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
@@ -136,8 +136,9 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
-    /// spent  time since the previous reading of the clock, in which the loop simulated ticks and did the work after
-    ///        them.
+    /// Creates a checkpoint if one is due.
+    ///
+    /// spent  time that the last ticks and the work after them took.
     void make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent);
     void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
     void show(const simulation::Entry& entry, Track& track, Clock::time_point now);

@@ -74,7 +74,7 @@ class SnapshotPool {
   public:
     SnapshotPool() : spare_{std::make_shared<Spare>()} {}
 
-    /// islands  indices of the islands to copy. Each index must be below the world's island count.
+    /// Copies these islands of a world into a snapshot. Each index must be below the world's island count.
     SnapshotPtr take(const simulation::Entry& entry, const std::vector<std::uint32_t>& islands, bool after_change);
 
   private:

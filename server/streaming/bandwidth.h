@@ -36,8 +36,8 @@ class Bandwidth {
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
-        // If `detail` is nullopt, the time to call choose() again. If it is lower than wanted, the time to call
-        // refine().
+        // When to call choose() again, if `detail` is nullopt; or when to call refine(), if `detail` is lower than
+        // wanted.
         Clock::time_point again;
     };
     /// Chooses the level of detail of a snapshot and spends its cost.

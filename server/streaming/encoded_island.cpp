@@ -37,8 +37,8 @@ std::size_t field_bytes(int number, std::size_t bytes) {
 /// message     a SnapshotFrame or a SnapshotTile.
 /// compressed  buffer for the compressed body.
 template <class Message>
-std::string_view sent_body(Message& message, std::string_view body, const codec::Seams& seams,
-                           v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {
+std::string_view body_to_send(Message& message, std::string_view body, const codec::Seams& seams,
+                              v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {
     if (compression != v1::COMPRESSION_ZSTD) {
         return body;
     }
@@ -56,7 +56,7 @@ SharedBytes shared(std::string bytes) {
 
 } // namespace
 
-v1::SnapshotFrame frame_about(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
+v1::SnapshotFrame frame_without_entities(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
     v1::SnapshotFrame frame;
     frame.set_world(snapshot.world);
     frame.set_run_id(to_bytes(snapshot.run_id));
@@ -118,7 +118,7 @@ SharedBytes EncodedIsland::whole(std::uint64_t base_sequence, std::string_view b
     }
     frame.set_checksum(codec::checksum_of(frame, body));
     std::string compressed;
-    const std::string_view sent = sent_body(frame, body, seams, compression, *compressor_, compressed);
+    const std::string_view sent = body_to_send(frame, body, seams, compression, *compressor_, compressed);
     std::string bytes;
     bytes.reserve(frame.ByteSizeLong() + field_bytes(v1::SnapshotFrame::kBodyFieldNumber, sent.size()));
     frame.AppendToString(&bytes);
@@ -142,7 +142,7 @@ SharedBytes EncodedIsland::encode_tile(v1::SnapshotTile tile, std::string_view b
     tile.set_sequence(about_.sequence());
     tile.set_checksum(codec::checksum_of(tiles().layout().tile_px, about_.position_bytes(), tile, body));
     std::string compressed;
-    const std::string_view sent = sent_body(tile, body, seams, compression, *compressor_, compressed);
+    const std::string_view sent = body_to_send(tile, body, seams, compression, *compressor_, compressed);
     const std::size_t bytes = tile.ByteSizeLong() + field_bytes(v1::SnapshotTile::kBodyFieldNumber, sent.size());
     std::string field;
     field.reserve(field_bytes(v1::SnapshotFrame::kTilesFieldNumber, bytes));

@@ -25,7 +25,7 @@ namespace evod::streaming {
 using codec::SharedBytes;
 
 /// The fields of a SnapshotFrame that describe the world and the island. Entities, codec and sequence are not set.
-v1::SnapshotFrame frame_about(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
+v1::SnapshotFrame frame_without_entities(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
 
 class EncodedIsland {
   public:

@@ -23,18 +23,18 @@ void to_steps(Column& positions, std::uint32_t position_bytes) {
 /// Resizes the columns to `count` + 1 rows. The loops below also write each skipped entity to the next free row, which
 /// the next entity overwrites. The additional row receives entities that are skipped at the end.
 template <class... Columns>
-void make_room(std::size_t count, Columns&... columns) {
+void resize_columns(std::size_t count, Columns&... columns) {
     (columns.resize(count + 1), ...);
 }
 
 template <class... Columns>
-void keep_first(std::size_t count, Columns&... columns) {
+void truncate_columns(std::size_t count, Columns&... columns) {
     (columns.resize(count), ...);
 }
 
 codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t position_bytes) {
     codec::Entities to;
-    make_room(items.present_count, to.id, to.x, to.y);
+    resize_columns(items.present_count, to.id, to.x, to.y);
     std::size_t kept = 0;
     // The loop has no branch, because the processor could not predict which items are absent.
     for (std::size_t i = 0; i < items.all.size(); ++i) {
@@ -44,7 +44,7 @@ codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posi
         to.y[kept] = static_cast<std::uint32_t>(item.y);
         kept += item.due_tick == 0;
     }
-    keep_first(kept, to.id, to.x, to.y);
+    truncate_columns(kept, to.id, to.x, to.y);
     to_steps(to.x, position_bytes);
     to_steps(to.y, position_bytes);
     return to;
@@ -73,14 +73,14 @@ codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin,
 codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
     codec::Entities to;
     Column indices;
-    make_room(organisms.alive_count, to.id, indices);
+    resize_columns(organisms.alive_count, to.id, indices);
     std::size_t kept = 0;
     for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // no branch, as in the loop over items
         to.id[kept] = static_cast<std::uint32_t>(id);
         indices[kept] = organisms.place_of[id];
         kept += organisms.place_of[id] != simulation::Island::no_body;
     }
-    keep_first(kept, to.id, indices, to.x, to.y, to.width, to.height);
+    truncate_columns(kept, to.id, indices, to.x, to.y, to.width, to.height);
     const auto fetch = [&](const auto& from, const auto& converted, Column& column) {
         std::ranges::transform(indices, column.begin(), [&](std::uint32_t index) { return converted(from[index]); });
     };

@@ -36,7 +36,7 @@ void SnapshotQueue::offer(std::uint32_t subscription_id, std::uint32_t island, S
     of.shown.reset();
     of.waiting = std::move(snapshot);
     if (!waited || was_shown) {
-        give_turn(subscription_id, island, of);
+        move_to_end(subscription_id, island, of);
     }
 }
 
@@ -56,7 +56,7 @@ void SnapshotQueue::send_again(std::uint32_t subscription_id, std::uint32_t isla
     of.not_before = {};
     of.shown.reset();
     if (of.waiting) {
-        give_turn(subscription_id, island, of);
+        move_to_end(subscription_id, island, of);
     } else {
         offer(subscription_id, island, std::move(newest));
     }
@@ -77,12 +77,12 @@ void SnapshotQueue::acknowledge(const v1::AcknowledgeSnapshot& acknowledged) {
         unacknowledged.pop_front();
     }
     if (island->second.waiting && island->second.turn == 0) {
-        give_turn(acknowledged.subscription_id(), acknowledged.island(), island->second);
+        move_to_end(acknowledged.subscription_id(), acknowledged.island(), island->second);
     }
     sender_.send_snapshots_later();
 }
 
-void SnapshotQueue::give_turn(std::uint32_t subscription_id, std::uint32_t index, Island& island) {
+void SnapshotQueue::move_to_end(std::uint32_t subscription_id, std::uint32_t index, Island& island) {
     island.turn = ++last_turn_;
     turns_.push_back({subscription_id, index, island.turn});
 }
@@ -120,7 +120,7 @@ const OutgoingFrame* SnapshotQueue::next() {
             continue;
         }
         if (island.waiting) {
-            give_turn(turn.subscription_id, turn.island, island);
+            move_to_end(turn.subscription_id, turn.island, island);
         }
         return &outgoing_;
     }

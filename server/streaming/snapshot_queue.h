@@ -88,7 +88,7 @@ class SnapshotQueue {
   private:
     using Island = SnapshotSubscription::Island;
     /// Moves the waiting snapshot of an island to the end of the queue.
-    void give_turn(std::uint32_t subscription_id, std::uint32_t index, Island& island);
+    void move_to_end(std::uint32_t subscription_id, std::uint32_t index, Island& island);
     /// Encodes a snapshot into outgoing_. Returns false if the bandwidth limit does not allow it yet.
     bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, Island& island);
     /// Drops the snapshot in outgoing_ because it is larger than the client accepts.

@@ -9,7 +9,8 @@
 namespace evod::streaming {
 namespace {
 
-/// Number of steps before other clients are served. With small islands, these steps take 1 to 5 ms together.
+/// Number of steps of one distribute() call, after which the thread serves other clients. With small islands they take
+/// 1 to 5 ms together.
 constexpr std::size_t steps_at_once = 128;
 
 runtime::Clock::duration between_snapshots(double rate_hz) {
@@ -248,7 +249,7 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
                 continue;
             }
             if (!encoded) {
-                v1::SnapshotFrame about = frame_about(snapshot, island);
+                v1::SnapshotFrame about = frame_without_entities(snapshot, island);
                 about.set_sequence(++sequence_);
                 encoded = std::make_shared<EncodedIsland>(std::move(about), quantise(island), compressor_);
             }

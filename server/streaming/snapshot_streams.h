@@ -78,7 +78,7 @@ class SnapshotStreams {
         runtime::Clock::time_point began = {};
         std::size_t next_island = 0;     // index in the snapshot
         std::set<GroupName> groups = {}; // groups that receive this snapshot
-        // A newer snapshot of the same world, which is distributed next.
+        // The newest snapshot of the same world. It is distributed after `snapshot`.
         std::optional<runtime::Outbox::NewestSnapshot> next = {};
     };
     struct Viewer {

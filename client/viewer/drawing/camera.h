@@ -2,7 +2,7 @@
 //
 // There are two coordinate systems, both with +x to the right and +y down. World coordinates are in px, the model's
 // unit of length. Screen coordinates are in pixels of the window. The viewport is the part of the window in which the
-// island is drawn. No text strip covers it.
+// island is drawn; the strips with texts are outside the viewport.
 //
 // Owner        a pane of the stage.
 // Threads      none; used on the drawing thread.

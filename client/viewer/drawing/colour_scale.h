@@ -17,8 +17,8 @@ struct ColourScale {
     palette::Ramp ramp = palette::Ramp::Viridis;
     double low = 0, high = 1;
 
-    /// The position of a value between `low` (0) and `high` (1), not clamped. Returns 0.5 for every value if low >=
-    /// high.
+    /// Returns the position of a value between `low` (0) and `high` (1), not clamped. Returns 0.5 for every value if
+    /// low >= high.
     double share(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
     Colour operator()(double value) const { return palette::at(ramp, share(value)); }
 };

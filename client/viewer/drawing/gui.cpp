@@ -18,7 +18,7 @@ namespace {
 constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
 
 ImFont* load_font(const char* name, float pixels) {
-    // Latin-1, and the other characters that evoview displays: ω, …, →, ↗ and −.
+    // The ranges contain Latin-1 and the other characters that evoview displays: ω, …, →, ↗ and −.
     static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026, 0x2190,
                                          0x2193, 0x2197, 0x2197, 0x2212, 0x2212, 0};
     const std::string path = std::string{font_folder} + name;
@@ -32,7 +32,7 @@ ImFont* load_font(const char* name, float pixels) {
     return font;
 }
 
-/// The index of a mouse button in Dear ImGui; -1 for buttons that Dear ImGui does not support.
+/// Returns the index of a mouse button in Dear ImGui; -1 for buttons that Dear ImGui does not support.
 int button_index(sf::Mouse::Button button) {
     return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
 }

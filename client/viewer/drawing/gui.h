@@ -21,7 +21,7 @@ struct ImFont;
 
 namespace evod::viewer {
 
-/// Which events the widgets currently use: keyboard events, mouse events or both.
+/// The kinds of events that the widgets currently use: keyboard events, mouse events or both.
 struct Captured {
     bool keyboard = false, mouse = false;
 };
@@ -41,7 +41,7 @@ class Gui {
     Captured captured() const;
     /// Closes the topmost menu, list or dialog. Call it between two frames. Returns false if none is open.
     bool close_popup();
-    /// Whether Dear ImGui has received every queued event.
+    /// Returns whether Dear ImGui has received every queued event.
     bool settled() const { return waiting_.empty(); }
 
     void begin(unsigned width_pixels, unsigned height_pixels, double seconds);

@@ -57,7 +57,7 @@ enum class Ramp { Viridis, Cividis };
 constexpr std::array<Ramp, 2> ramps{Ramp::Viridis, Ramp::Cividis};
 std::string_view name_of(Ramp ramp);
 
-/// The colour at `share` of the ramp, clamped to 0 to 1; `unknown` if `share` is not a number.
+/// Returns the colour at `share` of the ramp, clamped to 0 to 1; `unknown` if `share` is not a number.
 ///
 /// Source   every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van der Walt and N. Smith,
 ///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
@@ -76,14 +76,14 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
-// What an organism has chosen to do.
+// Colours for the choice of an organism.
 constexpr Colour wanders{90, 90, 96};
 constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
 
 constexpr Colour plot_background{252, 252, 253};
 constexpr Colour plot_grid{226, 226, 230};
-// Lines and bars of plots.
+// Colours of the lines and bars of plots.
 constexpr Colour series_orange = kinds[0];
 constexpr Colour series_sky = kinds[1];
 constexpr Colour series_green = kinds[2];
@@ -95,7 +95,7 @@ constexpr Colour series_grey{110, 110, 116};
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];
 
-// Colours of the glass box.
+// Colours of the glass box, the panel that shows how a generation was bred.
 constexpr Colour first_parent = kinds[4];
 constexpr Colour second_parent = kinds[0];
 constexpr Colour glass_current{206, 16, 110};
@@ -104,8 +104,8 @@ constexpr Colour glass_elite{20, 20, 24};
 constexpr Colour glass_survivor{104, 104, 112};
 constexpr Colour glass_child{184, 184, 192};
 
-/// Black or white, whichever has more contrast with `paper`. If `paper` is translucent, it is assumed to lie on a light
-/// background.
+/// Returns black or white, whichever has more contrast with `paper`. If `paper` is translucent, it is assumed to lie on
+/// a light background.
 Colour text_on(Colour paper);
 
 } // namespace palette

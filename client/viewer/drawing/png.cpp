@@ -12,7 +12,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The red, green and blue bytes of all pixels, row by row.
+/// Returns the red, green and blue bytes of all pixels, row by row.
 std::string rgb_of(const sf::Image& image) {
     const std::size_t pixels = std::size_t{image.getSize().x} * image.getSize().y;
     std::string rgb(3 * pixels, '\0');

@@ -10,8 +10,8 @@
 
 namespace evod::viewer {
 
-/// Encodes 8 bits each of red, green and blue; the alpha channel is not stored. Throws std::runtime_error with the
-/// reason that libpng gives, for example for an image without pixels.
+/// Encodes the red, green and blue channels of an image with 8 bits each, without the alpha channel. Throws
+/// std::runtime_error with the reason that libpng gives, for example for an image without pixels.
 std::string png_of(const sf::Image& image);
 
 /// Writes a file and replaces an existing one. Throws std::runtime_error with the path and the reason.

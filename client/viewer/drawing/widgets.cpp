@@ -14,7 +14,7 @@ void WidgetPositions::begin_frame() {
 
 /// Calls `act` for both names of a widget: "Panel/name" and "name".
 template <class Do>
-void WidgetPositions::each_name(std::string_view name, Do act) {
+void WidgetPositions::for_each_name(std::string_view name, Do act) {
     if (!panel_.empty()) {
         act(panel_ + "/" + std::string{name});
     }
@@ -22,20 +22,20 @@ void WidgetPositions::each_name(std::string_view name, Do act) {
 }
 
 void WidgetPositions::add(std::string_view name, Point centre) {
-    each_name(name, [&](std::string full) {
+    for_each_name(name, [&](std::string full) {
         building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {}});
     });
 }
 
 void WidgetPositions::add_drop_down(std::string_view name, Point centre) {
-    each_name(name, [&](std::string full) {
+    for_each_name(name, [&](std::string full) {
         building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {{}}});
     });
 }
 
 void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, Point centre) {
     add(std::string{drop_down} + ": " + std::string{choice}, centre);
-    each_name(drop_down, [&](const std::string& full) {
+    for_each_name(drop_down, [&](const std::string& full) {
         if (const auto spot = building_.find(full); spot != building_.end() && spot->second.choices) {
             spot->second.choices->emplace_back(choice);
         }
@@ -77,7 +77,7 @@ void write_lines(std::string_view text, float width_max) {
     ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
 }
 
-/// The register of widgets; null if no part of this rectangle is visible.
+/// Returns the register of widgets; null if no part of this rectangle is visible.
 WidgetPositions* positions_of(ImVec2 least, ImVec2 most) {
     return ImGui::IsRectVisible(least, most) ? static_cast<WidgetPositions*>(ImGui::GetIO().UserData) : nullptr;
 }

@@ -31,14 +31,15 @@ class WidgetPositions {
     /// Registers a visible choice of an open drop-down.
     void add_choice(std::string_view drop_down, std::string_view choice, Point centre);
 
-    /// name  the label "Apply", or "Parameters/Apply" with the panel
+    /// Returns the centre of the widget with this name, such as "Apply" or "Parameters/Apply". Returns nullopt if the
+    /// last complete frame did not contain the widget.
     std::optional<Point> find(const std::string& name) const;
-    /// Returns the visible choices of the drop-down with this name: an empty list while it is closed; null if there is
-    /// no such drop-down.
+    /// Returns the visible choices of the drop-down with this name: an empty list while the drop-down is closed; null
+    /// if there is no such drop-down.
     const std::vector<std::string>* choices(const std::string& name) const;
 
-    /// Whether the mouse has rested on the widget with this corner long enough to show its note. Must be called in
-    /// every frame in which the mouse is on the widget. After a click, returns false until the mouse has left the
+    /// Returns whether the mouse has rested on the widget with this corner long enough to show its note. Must be called
+    /// in every frame in which the mouse is on the widget. After a click, returns false until the mouse has left the
     /// widget, so that the note does not cover the effect of the click.
     bool mouse_rests(Point corner, double now_s, bool clicked);
 
@@ -48,7 +49,7 @@ class WidgetPositions {
         std::optional<std::vector<std::string>> choices; // nullopt: the widget is not a drop-down
     };
     template <class Do>
-    void each_name(std::string_view name, Do act);
+    void for_each_name(std::string_view name, Do act);
 
     std::string panel_;
     std::map<std::string, Widget> shown_, building_;
@@ -62,26 +63,27 @@ namespace widgets {
 /// Registers the widget that was drawn last under this name. Does nothing if the widget is clipped.
 void mark(std::string_view name);
 
-/// ImGui::Button(), registered by mark().
+/// Draws an ImGui::Button() and registers it with mark().
 bool button(const char* label);
 
-/// ImGui::Checkbox(), registered by mark().
+/// Draws an ImGui::Checkbox() and registers it with mark().
 bool checkbox(const char* label, bool& on);
 
-/// ImGui::BeginCombo(), registered as a drop-down. Call choice() for each entry before ImGui::EndCombo().
+/// Calls ImGui::BeginCombo() and registers the widget as a drop-down. Call choice() for each entry before
+/// ImGui::EndCombo().
 ///
 /// name  the name to register, if it differs from the label
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name = {});
-/// ImGui::Selectable(), registered as a choice of the drop-down with this name.
+/// Draws an ImGui::Selectable() and registers it as a choice of the drop-down with this name.
 bool choice(std::string_view drop_down, const std::string& name, bool chosen);
 
-/// Whether a mouse button is pressed in this frame on the current window or on one of its widgets.
+/// Returns whether a mouse button is pressed in this frame on the current window or on one of its widgets.
 bool window_pressed();
 
 /// Writes small text in `colour`, wrapped at the edge of the panel.
 void small_text(std::string_view text, Colour colour = palette::text_quiet);
 
-/// Whether the mouse has rested on the last widget long enough to show its note.
+/// Returns whether the mouse has rested on the last widget long enough to show its note.
 bool wants_note();
 /// Shows a note at the mouse, in lines of a readable length.
 void note(std::string_view text);

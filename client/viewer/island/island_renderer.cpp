@@ -55,7 +55,7 @@ ShapeStyle trail_style(double age_share) {
     return style;
 }
 
-/// The index of the gene with this name; nullopt if the world has no such gene.
+/// Returns the index of the gene with this name; nullopt if the world has no such gene.
 std::optional<std::size_t> gene_named(std::string_view name, const IslandView& island_view) {
     const auto& names = island_view.gene_names();
     const auto place = std::ranges::find(names, name);

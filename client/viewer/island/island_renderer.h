@@ -29,12 +29,12 @@ namespace evod::viewer {
 /// Rounds the health up for display, so that a living organism never shows 0.
 unsigned shown_health(float health);
 
-/// Whether the health numbers are readable: organisms must be large enough, and few enough that the numbers do not
-/// overlap.
+/// Returns whether the health numbers are readable: organisms must be large enough, and few enough that the numbers do
+/// not overlap.
 bool labels_are_readable(const Camera& camera, std::size_t visible_count);
 
-/// The organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If several
-/// organisms are hit, returns the one whose centre is nearest.
+/// Returns the organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If
+/// several organisms are hit, returns the one whose centre is nearest.
 ///
 /// returns  an index in `organisms`; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);
@@ -51,7 +51,7 @@ class IslandRenderer {
     void draw(const core::SnapshotInterpolator& view, double blend, const Camera& camera, unsigned width_pixels,
               unsigned height_pixels, const IslandView& island_view, const Highlighted& highlighted);
 
-    /// The colour scale of the densities in the last draw(); nullopt if draw() drew no densities.
+    /// Returns the colour scale of the densities in the last draw(); nullopt if draw() drew no densities.
     const std::optional<ColourScale>& density_scale() const { return density_scale_; }
     double density_cell_px() const { return density_cell_px_; }
 

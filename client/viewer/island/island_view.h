@@ -36,7 +36,7 @@ class StreamedRegion {
     using Clock = core::SnapshotInterpolator::Clock;
     static constexpr std::chrono::milliseconds interval{200};
 
-    /// The view to request now; nullopt if the view returned last is still suitable.
+    /// Returns the view to request now; nullopt if the view returned last is still suitable.
     std::optional<evod::v1::View> update(const Camera& camera, evod::v1::Detail detail, Clock::time_point now);
     void forget() { *this = StreamedRegion{}; }
 
@@ -67,21 +67,21 @@ class IslandView {
     /// Starts following the selected organism, or stops following it.
     void toggle_following(ViewedWorld& world);
 
-    // Data received from the server.
+    // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
-    /// The population of the newest snapshot's island and generation; null until it has been received.
+    /// Returns the population of the newest snapshot's island and generation; null until it has been received.
     const Population* population() const {
         const Population* complete = population_poll_.complete();
         return complete != nullptr && complete->generation() == generation_ ? complete : nullptr;
     }
-    /// Why the population is unknown, as a sentence. Empty if it is known or has been requested.
+    /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const { return population_poll_.problem(); }
     const FamilyColours& family_colours() const { return family_colours_; }
     const Trails& trails() const { return trails_; }
-    /// The history of the organism that was selected last, even after its generation has ended. Null if no organism has
-    /// been selected.
+    /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
+    /// organism has been selected.
     const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
-    /// Whether densities are shown because organisms are too small.
+    /// Returns whether densities are shown because organisms are too small.
     bool shows_density(const Camera& camera) const {
         return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera);
     }

@@ -28,10 +28,10 @@ struct Legend {
     bool empty() const { return !ramp && entries.empty(); }
 };
 
-/// The gene's name with its unit: "food_radius, px".
+/// Returns the gene's name with its unit: "food_radius, px".
 std::string gene_title(const std::string& name);
 
-/// The legend for a drawn snapshot; empty if organisms are not coloured by a property.
+/// Returns the legend for a drawn snapshot; empty if organisms are not coloured by a property.
 ///
 /// density  the colour scale of the densities; nullopt if no densities are drawn
 Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& snapshot,

@@ -9,8 +9,8 @@ namespace evod::viewer {
 
 namespace {
 
-/// A colour scale as a table of 256 colours. A look-up is faster than computing the colour, and 8-bit colours are no
-/// finer.
+/// Stores a colour scale as a table of 256 colours. A look-up is faster than computing the colour, and the table is
+/// fine enough for 8-bit colours.
 class Table {
   public:
     explicit Table(const ColourScale& scale) : scale_{scale} {
@@ -29,7 +29,7 @@ class Table {
     std::array<Colour, last + 1> colours_;
 };
 
-/// Whether a circle may overlap a rectangle. Also returns true for some circles that just miss a corner.
+/// Returns whether a circle may overlap a rectangle. Also returns true for some circles that just miss a corner.
 bool may_touch(const Rectangle& rectangle, float x, float y, float radius) {
     return x + radius >= rectangle.left && x - radius <= rectangle.left + rectangle.width &&
            y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
@@ -182,7 +182,7 @@ void add_paths(const codec::Entities& from, const codec::Entities& to, std::span
 
 namespace {
 
-DensityGrid grid_of(const Rectangle& part, double cell_px) {
+DensityGrid empty_grid(const Rectangle& part, double cell_px) {
     DensityGrid grid;
     grid.cell_px = cell_px;
     grid.left_px = std::floor(part.left / cell_px) * cell_px;
@@ -210,7 +210,7 @@ double density_cell_px(const Camera& camera, double cell_pixels) {
 }
 
 DensityGrid density_of(const Positions& organisms, const Rectangle& part, double cell_px) {
-    DensityGrid grid = grid_of(part, cell_px);
+    DensityGrid grid = empty_grid(part, cell_px);
     const double cells_per_px = 1 / cell_px; // exact, because cell_px is a power of two; multiplying is faster
     for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
         const auto [x, y] = organisms[i];
@@ -221,7 +221,7 @@ DensityGrid density_of(const Positions& organisms, const Rectangle& part, double
 
 DensityGrid overview_of(const codec::ReceivedSnapshot& snapshot, std::size_t cells_max) {
     const double width = snapshot.about.width_px(), height = snapshot.about.height_px();
-    DensityGrid grid = grid_of({0, 0, width, height}, std::max(width, height) / static_cast<double>(cells_max));
+    DensityGrid grid = empty_grid({0, 0, width, height}, std::max(width, height) / static_cast<double>(cells_max));
     const codec::Entities& organisms = snapshot.entities->organisms;
     for (std::size_t i = 0; i < organisms.x.size(); ++i) {
         count(grid, organisms.x_px(i), organisms.y_px(i), 1);

@@ -27,11 +27,11 @@ using core::Positions;
 /// The property that determines the colours of organisms.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
-/// Ranges from 0 to the greatest health in the snapshot, rounded up to hundreds so that the scale rarely changes; at
-/// least 100.
+/// Returns a colour scale from 0 to the greatest health in the snapshot. Rounds the upper end up to hundreds, at least
+/// 100, so that the scale rarely changes.
 ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp);
 
-/// Ranges from the lowest to the highest value of the gene in the population.
+/// Returns a colour scale from the lowest to the highest value of the gene in the population.
 ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
 
 /// Assigns colours to families. A family keeps its colour over generations as long as it is among the largest.
@@ -39,7 +39,8 @@ class FamilyColours {
   public:
     /// Keeps the colours of known families and assigns free colours to new ones.
     void update(const Population& population);
-    /// family  an index in families() of the population passed to the last update(), or no_family
+    /// Returns the colour of a family. `family` is an index in families() of the population passed to the last
+    /// update(), or no_family.
     Colour of(std::uint8_t family) const;
 
   private:
@@ -86,11 +87,11 @@ class Trails {
   public:
     static constexpr double interval_s = 0.25, kept_s = 3; // in simulated seconds
 
-    /// Adds a snapshot. Clears the older ones first if it is of another generation, run or island, or of an earlier
-    /// tick.
+    /// Adds a snapshot. Clears the older snapshots first if the new one is of another generation, run or island, or of
+    /// an earlier tick.
     void add(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
     void clear() { snapshots_.clear(); }
-    /// The snapshots, oldest first.
+    /// Returns the snapshots, oldest first.
     const std::vector<std::shared_ptr<const codec::ReceivedSnapshot>>& snapshots() const { return snapshots_; }
 
   private:
@@ -99,7 +100,7 @@ class Trails {
 
 /// Adds a line for each organism that is in both snapshots, from its position in `from` to its disc.
 ///
-/// discs  the discs of `to`.
+/// discs  the discs of the organisms in `to`.
 void add_paths(const codec::Entities& from, const codec::Entities& to, std::span<const Shape> discs,
                std::vector<Line>& lines);
 
@@ -118,7 +119,8 @@ struct DensityGrid {
     std::vector<std::uint32_t> counts; // row by row
 };
 
-/// Side of a cell in px of the world: the smallest power of two that is at least `cell_pixels` wide on the screen.
+/// Returns the side of a cell in px of the world: the smallest power of two that is at least `cell_pixels` wide on the
+/// screen.
 double density_cell_px(const Camera& camera, double cell_pixels);
 
 /// Counts the organisms in a part of the island. Cell borders are multiples of cell_px from the island's corner, so
@@ -131,14 +133,14 @@ DensityGrid density_of(const Positions& organisms, const Rectangle& part, double
 void add_density(const DensityGrid& grid, Point island, const ColourScale& scale, std::vector<Shape>& shapes,
                  std::vector<Colour>& colours);
 
-/// The densities that the snapshot contains, one grid per tile.
+/// Returns the densities that the snapshot contains, one grid per tile.
 std::vector<DensityGrid> densities_of(const codec::ReceivedSnapshot& snapshot);
 
-/// Counts everything in the snapshot, at any level of detail. The grid has at most `cells_max` cells along the island's
-/// longer side.
+/// Counts the organisms in the snapshot, at any level of detail, in a grid that covers the whole island. The grid has
+/// at most `cells_max` cells along the island's longer side.
 DensityGrid overview_of(const codec::ReceivedSnapshot& snapshot, std::size_t cells_max);
 
-/// Ranges from 0 to the greatest count, rounded up.
+/// Returns a colour scale from 0 to the greatest count in the grids, rounded up.
 ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp);
 
 } // namespace evod::viewer

@@ -39,7 +39,7 @@ MinimapPlace minimap_place(const Rectangle& viewport, double island_width, doubl
     return place;
 }
 
-bool sees_all(const Camera& camera, double island_width, double island_height) {
+bool is_whole_island_visible(const Camera& camera, double island_width, double island_height) {
     const Rectangle visible = camera.visible();
     return visible.contains({0, 0}) && visible.contains({island_width, island_height});
 }
@@ -48,7 +48,7 @@ void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int numb
     const std::shared_ptr<const codec::ReceivedSnapshot> snapshot =
         world.feed.overview() != nullptr ? world.feed.overview() : world.feed.view().latest();
     const double width = snapshot->about.width_px(), height = snapshot->about.height_px();
-    if (sees_all(camera, width, height)) {
+    if (is_whole_island_visible(camera, width, height)) {
         return;
     }
     if (snapshot != counted_) {

@@ -25,7 +25,7 @@ struct MinimapPlace {
         return {(on_screen.x - screen.left) / zoom, (on_screen.y - screen.top) / zoom};
     }
     Point to_screen(Point world) const { return {screen.left + world.x * zoom, screen.top + world.y * zoom}; }
-    /// The rectangle on the screen that marks the visible part of the world, clipped at the walls.
+    /// Returns the rectangle on the screen that marks the visible part of the world, clipped at the walls.
     Rectangle visible_part(const Rectangle& visible) const;
 };
 
@@ -34,17 +34,17 @@ struct MinimapPlace {
 /// scale  factor for sizes given in pixels at scale 1
 MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height, double scale = 1);
 
-/// Whether the whole island is visible.
-bool sees_all(const Camera& camera, double island_width, double island_height);
+/// Returns whether the whole island is visible.
+bool is_whole_island_visible(const Camera& camera, double island_width, double island_height);
 
 class Minimap {
   public:
     /// Draws the minimap. If the user presses a point of it, moves the camera there. Call between Gui::begin() and
     /// Gui::draw().
     ///
-    /// number  distinguishes the minimaps of a window
+    /// number  the number of the minimap, which differs between the minimaps of a window
     void build(ViewedWorld& world, Camera& camera, const Gui& gui, int number);
-    /// Whether a mouse button was pressed on the minimap since the last call.
+    /// Returns whether a mouse button was pressed on the minimap since the last call.
     bool take_press() { return std::exchange(pressed_, false); }
 
   private:

@@ -59,7 +59,7 @@ uniform int form;
 uniform vec4 edge;
 uniform float edge_pixels;
 out vec4 colour;                     // with premultiplied alpha
-float outside_of() {
+float distance_outside() {
     vec2 beyond = abs(place) - half_size;
     if (form == 0) {
         return length(place) - half_size.x;
@@ -75,7 +75,7 @@ float outside_of() {
     return outside;
 }
 void main() {
-    float outside = outside_of();
+    float outside = distance_outside();
     float whole = clamp(0.5 - outside, 0.0, 1.0);
     float inner = clamp(0.5 - outside - edge_pixels, 0.0, 1.0);
     colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(own_fill.rgb, 1.0) * own_fill.a * inner;

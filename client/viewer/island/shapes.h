@@ -40,7 +40,7 @@ class Layer {
   public:
     Layer();
 
-    /// colours  one for each shape, or empty
+    /// Replaces the contents of the layer. `colours` contains one colour for each shape, or is empty.
     void set(std::span<const Shape> shapes, std::span<const Colour> colours = {});
     void set(std::span<const Line> lines, std::span<const Colour> colours = {});
 

@@ -16,14 +16,14 @@ class OrganismPanel : public Panel {
     void build(Context& context) override;
 };
 
-/// The organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its generation has
-/// ended", "alive for 12.3 s, …".
+/// Returns the organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its
+/// generation has ended", "alive for 12.3 s, …".
 std::string shown_fate(const OrganismHistory& history);
-/// The organism's choice as text: "about to seek food at (120, 40)".
+/// Returns the organism's choice as text: "about to seek food at (120, 40)".
 std::string shown_choice(const evod::v1::OrganismInfo& info);
-/// The parents as text: "Parents: 12 and 45 (generation 35)". A survivor has one parent.
+/// Returns the parents as text: "Parents: 12 and 45 (generation 35)". A survivor has one parent.
 std::string shown_parents(const evod::v1::OrganismInfo& info);
-/// The children as text: "3 (unchanged), 7 (with 12), 9 (single parent)"; "none" if there are no children.
+/// Returns the children as text: "3 (unchanged), 7 (with 12), 9 (single parent)"; "none" if there are no children.
 std::string shown_children(const std::vector<OrganismHistory::Child>& children);
 
 } // namespace evod::viewer

@@ -33,7 +33,7 @@ EffectWords words_of(evod::v1::ParameterEffect effect) {
 }
 
 /// Doubles every % sign, so that printf-style functions print the text unchanged.
-std::string as_format(const std::string& text) {
+std::string escape_percent_signs(const std::string& text) {
     std::string escaped;
     for (const char sign : text) {
         escaped += sign == '%' ? "%%" : std::string(1, sign);
@@ -106,7 +106,7 @@ void ParametersPanel::build(Context& context) {
     }
 }
 
-// ---- the server ------------------------------------------------------------------------------------------------
+// ---- exchange with the server -----------------------------------------------------------------------------------
 
 void ParametersPanel::follow(const Context& context) {
     using Kind = evod::v1::Event::KindCase;
@@ -342,7 +342,7 @@ bool ParametersPanel::build_number(std::size_t i) {
     double number = number_of(edits_.shown(i));
     const double least = about.min(), most = about.max();
     const std::string format = (about.kind() == evod::v1::PARAMETER_KIND_COUNT ? "%.0f" : "%.6g") +
-                               (about.unit().empty() ? "" : " " + as_format(about.unit()));
+                               (about.unit().empty() ? "" : " " + escape_percent_signs(about.unit()));
     if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &number, &least, &most, format.c_str(),
                             spans_decades(about) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None)) {
         edits_.edit(i, value_of(about, number));
@@ -401,8 +401,8 @@ void ParametersPanel::build_remarks(std::size_t i) {
     } else if (edits_.is_pending(i)) {
         widgets::small_text("still " + to_text(edits_.current_value(i)));
     }
-    if (!edits_.changed_by(i).empty()) {
-        widgets::small_text("set by " + edits_.changed_by(i));
+    if (!edits_.client_of_last_change(i).empty()) {
+        widgets::small_text("set by " + edits_.client_of_last_change(i));
     }
 }
 

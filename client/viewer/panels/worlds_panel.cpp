@@ -16,7 +16,7 @@ void cell(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// The statistics of this island; null if the list does not contain them.
+/// Returns the statistics of this island; null if the list does not contain them.
 template <class Statistics>
 const Statistics* of_island(const google::protobuf::RepeatedPtrField<Statistics>& all, std::uint32_t island) {
     const auto found = std::ranges::find(all, island, &Statistics::island);

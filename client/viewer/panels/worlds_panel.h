@@ -23,7 +23,7 @@ class WorldsPanel : public Panel {
   private:
     using Clock = core::SnapshotInterpolator::Clock;
 
-    // Short enough for the user to see the tick numbers rise.
+    // Interval between requests, short enough for the user to see the tick numbers rise.
     static constexpr std::chrono::seconds poll_interval{1};
 
     void poll(ViewedWorld& world, Clock::time_point now);

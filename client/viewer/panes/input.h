@@ -27,11 +27,11 @@ class Input {
     /// Pans the camera in the direction of the arrow keys that are held down.
     void move(Camera& camera, double seconds) const;
 
-    /// The position of the mouse; nullopt while the mouse is outside the window or drags.
+    /// Returns the position of the mouse; nullopt while the mouse is outside the window or drags.
     std::optional<Point> pointed_at() const { return dragging_ ? std::nullopt : mouse_; }
 
-    /// The position of a click since the last call; nullopt if there was none. A click is a press and release without a
-    /// drag.
+    /// Returns the position of a click since the last call; nullopt if there was none. A click is a press and release
+    /// without a drag.
     std::optional<Point> take_click() { return std::exchange(clicked_, std::nullopt); }
 
   private:

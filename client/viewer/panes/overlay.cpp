@@ -18,7 +18,7 @@ namespace evod::viewer {
 
 namespace {
 
-// All lengths here are in pixels at scale 1.
+// The following lengths are in pixels at scale 1.
 constexpr float edge = 14;         // distance between text and the window's edge
 constexpr float help_width = 1060; // width of the help with two columns: keys of the window, keys of the panels
 constexpr std::size_t notices_max = 4;

@@ -35,7 +35,7 @@ class Overlay {
     void build_world(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
     /// Draws the number of the island in its tile.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
-    /// Draws the data of an organism beside it.
+    /// Draws the data of an organism beside the organism.
     void build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
 
   private:

@@ -15,14 +15,14 @@ struct TimeScale {
     std::uint64_t first_tick = 0, last_tick = 0; // first_tick <= last_tick
     double left = 0, width = 1;                  // pixels
 
-    /// The position of a tick. A tick outside the run is placed at the nearer end of the line.
+    /// Returns the position of a tick. A tick outside the run is placed at the nearer end of the line.
     double x_of(std::uint64_t tick) const;
-    /// The tick nearest to x. Beyond an end of the line, the tick at that end.
+    /// Returns the tick nearest to x. If x is beyond an end of the line, returns the tick at that end.
     std::uint64_t tick_at(double x) const;
 };
 
-/// The generations from `first` to `last` to mark: the multiples of the smallest of 1, 2, 5, 10, 20, 50, … for which
-/// there are at most `count_max`.
+/// Returns the generations to mark between `first` and `last`: the multiples of the smallest of 1, 2, 5, 10, 20, 50, …
+/// for which there are at most `count_max` marks.
 std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t last, std::size_t count_max);
 
 /// A label on the line, in pixels.

@@ -12,7 +12,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The connection to the X server. Null if there is no X server or it accepts no more clients.
+/// Returns the connection to the X server. Null if there is no X server or it accepts no more clients.
 Display* connection() {
     static Display* const opened = XOpenDisplay(nullptr); // never closed; see display.h
     return opened;

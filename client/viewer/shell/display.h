@@ -13,16 +13,16 @@ namespace evod::viewer {
 /// Throws std::runtime_error if no window can be opened. The message explains what to do.
 void check_display();
 
-/// The scale of text and widgets for this display, relative to 96 dots per inch. It follows the desktop's setting or,
-/// without one, the size that the display reports; 1 if neither is known. The scale is a multiple of 1/4, from 0.5 to
-/// 4.
+/// Returns the scale of text and widgets for this display, relative to 96 dots per inch. It follows the desktop's
+/// setting or, without one, the size that the display reports; 1 if neither is known. The scale is a multiple of 1/4,
+/// from 0.5 to 4.
 double display_scale();
 
 struct Desktop {
     unsigned width, height; // in pixels
     bool managed;           // a window manager is running, which places windows
 };
-/// The desktop's properties; nullopt without a connection to the X server.
+/// Returns the desktop's properties; nullopt without a connection to the X server.
 std::optional<Desktop> desktop();
 
 } // namespace evod::viewer

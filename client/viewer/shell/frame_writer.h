@@ -17,7 +17,7 @@ class FrameWriter {
   public:
     virtual ~FrameWriter() = default;
 
-    // Both functions throw std::runtime_error with the path and the reason.
+    // Writes a frame. add() and finish() throw std::runtime_error with the path and the reason.
     virtual void add(const sf::Image& frame, std::uint64_t tick) = 0;
     /// Completes the output. Afterwards the folder or film contains every added frame.
     virtual void finish() = 0;
@@ -28,11 +28,12 @@ class FrameWriter {
     std::size_t frame_count_ = 0;
 };
 
-/// The file name of a frame: "frame-000012-tick-720.png". The number counts from 0 and has leading zeros, so that names
-/// sort by time.
+/// Returns the file name of a frame: "frame-000012-tick-720.png". The number counts from 0 and has leading zeros, so
+/// that names sort by time.
 std::string frame_file_name(std::size_t number, std::uint64_t tick);
 
-/// Whether a path names a film, that is, ends in .mp4, .mkv, .webm, .mov, .avi or .gif. Any other path names a folder.
+/// Returns whether a path names a film, that is, ends in .mp4, .mkv, .webm, .mov, .avi or .gif. Any other path names a
+/// folder.
 bool is_film(const std::string& path);
 
 /// Creates a writer for a film or a folder. Replaces an existing film. Creates the folder if it does not exist, and

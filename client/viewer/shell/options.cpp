@@ -151,7 +151,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         .needs(recording)
         .show_default()
         .check(WholeNumber{1, 1'000'000});
-    app.add_option("--fps", &record.fps, "frames per second of a film, 0.1 to 1000; a tick is 1/60 s by default")
+    app.add_option("--fps", &record.fps,
+                   "frames per second of a film, 0.1 to 1000; 60 shows ticks of 1/60 s in real time")
         .needs(recording)
         .show_default()
         .check(RealNumber{0.1, 1000});

@@ -31,7 +31,7 @@ struct Options {
     std::optional<Script> script;
     std::string script_path;
 
-    /// Saves one frame instead of opening a window.
+    /// Options for saving one frame instead of opening a window.
     struct Screenshot {
         std::string path;
         std::uint64_t tick = 0; // wait for a snapshot of this tick or a later one
@@ -39,7 +39,7 @@ struct Options {
     };
     std::optional<Screenshot> screenshot;
 
-    /// Saves a sequence of frames instead of opening a window.
+    /// Options for saving a sequence of frames instead of opening a window.
     struct Record {
         std::string path;                         // a film if is_film(path), otherwise a folder
         std::optional<std::uint64_t> ticks;       // ticks to record; both nullopt: until the run ends
@@ -51,10 +51,10 @@ struct Options {
     std::optional<Record> record;
 };
 
-/// The size of the window, screenshot or recording.
+/// Returns the size of the window, screenshot or recording.
 Options::Size size_of(const Options& options, double scale);
 
-/// The world for the first pane.
+/// Returns the world for the first pane.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);
 
 /// Returns the options. If help, the version or an error was printed, returns the exit status instead.

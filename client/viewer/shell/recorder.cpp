@@ -46,7 +46,7 @@ class Recorder {
     void run() {
         if (wait_until([&] { return all_have_snapshots(panes_); }, true)) {
             try {
-                if (stop_worlds()) {
+                if (pause_worlds()) {
                     record_all();
                 }
             } catch (...) {
@@ -67,7 +67,7 @@ class Recorder {
     }
 
   private:
-    /// The world of the first pane. Its ticks and generations determine when the recording ends.
+    /// Returns the world of the first pane. Its ticks and generations determine when the recording ends.
     ViewedWorld& leader() { return panes_[0].world; }
 
     void record_all() {
@@ -101,9 +101,9 @@ class Recorder {
         } while (advance());
     }
 
-    /// Pauses the worlds that the recorder will step at their current tick, so that no tick is missed between the first
-    /// two frames. Returns false if the recording was interrupted.
-    bool stop_worlds() {
+    /// Pauses each world that the recorder will step, so that no tick is missed between the first two frames. Returns
+    /// false if the recording was interrupted.
+    bool pause_worlds() {
         targets_.assign(panes_.size(), 0);
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             ViewedWorld& world = panes_[i].world;
@@ -112,7 +112,7 @@ class Recorder {
                 step(world, world.feed.snapshot()->about.tick(), i);
             }
         }
-        return wait_until([&] { return all_have_snapshots(panes_) && all_arrived(); }, true);
+        return wait_until([&] { return all_have_snapshots(panes_) && all_at_targets(); }, true);
     }
 
     /// Advances every world to its next frame. Returns false if the leader has no further tick or the recording was
@@ -136,10 +136,10 @@ class Recorder {
                 targets_[i] = target;
             }
         }
-        return wait_until([&] { return all_arrived(); }, leader().commands.may_command());
+        return wait_until([&] { return all_at_targets(); }, leader().commands.may_command());
     }
 
-    /// Runs a world to a tick and stops it there. If this tick is already over, the world only stops; the answer
+    /// Runs a world to a tick and stops it there. If the world has already passed this tick, it only stops. The answer
     /// contains the tick at which it stopped.
     void step(ViewedWorld& world, std::uint64_t tick, std::size_t pane) {
         targets_[pane] = tick;
@@ -162,7 +162,7 @@ class Recorder {
         return snapshot != nullptr && snapshot->about.run_id() != run_ids_[pane];
     }
 
-    bool all_arrived() {
+    bool all_at_targets() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             const std::vector<Tile> tiles = panes_[i].tiles();
             const bool arrived = std::ranges::all_of(tiles, [&](const Tile& tile) {

@@ -29,8 +29,8 @@ std::string in_quotes(std::string_view text) {
     return "\"" + std::string{text} + "\"";
 }
 
-/// The names as a list: "a, b, c".
-std::string in_order(const std::vector<std::string>& names) {
+/// Returns the names as a list: "a, b, c".
+std::string comma_list(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) {
         text += (text.empty() ? "" : ", ") + name;
@@ -349,8 +349,8 @@ struct ScriptLine {
     double timeout_s;               // time limit for this line and the following ones; a verb may change it
 };
 
-/// An error about one word of a line. `number` is the position of the word, from 1.
-core::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
+/// Returns an error about one word of a line. `number` is the position of the word, from 1.
+core::Error word_error(const ScriptLine& line, std::size_t number, const std::string& allowed) {
     return usage("word " + std::to_string(number) + ": got " + in_quotes(line.words[number - 1]) + ", allowed " +
                  allowed);
 }
@@ -371,7 +371,7 @@ const Verb verbs[] = {
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto chord = parse_chord(line.words[1]);
          if (!chord) {
-             return bad_word(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
+             return word_error(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
          }
          return Acts{press_act(*chord)};
      }},
@@ -386,18 +386,18 @@ const Verb verbs[] = {
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
          if (condition == std::end(conditions)) {
-             return bad_word(line, 2, condition_names());
+             return word_error(line, 2, condition_names());
          }
          const std::size_t wanted = condition->argument.empty() ? 2 : 3;
          if (line.words.size() < wanted) {
              return usage("word 3 is missing: wait " + line.words[1] + " " + std::string{condition->argument});
          }
          if (line.words.size() > wanted) {
-             return bad_word(line, wanted + 1, "no more words");
+             return word_error(line, wanted + 1, "no more words");
          }
          const std::string word = wanted == 3 ? line.words[2] : "";
          if (const std::string allowed = condition->fault(word); !allowed.empty()) {
-             return bad_word(line, 3, allowed);
+             return word_error(line, 3, allowed);
          }
          return Acts{[condition, word](Host& host) -> core::Result<bool> { return condition->holds(host, word); }};
      }},
@@ -405,7 +405,7 @@ const Verb verbs[] = {
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto seconds = number_in<double>(line.words[1]);
          if (!seconds || !(*seconds > 0 && *seconds <= timeout_s_max)) {
-             return bad_word(line, 2, "more than 0, to 86400");
+             return word_error(line, 2, "more than 0, to 86400");
          }
          line.timeout_s = *seconds;
          return Acts{};
@@ -439,7 +439,7 @@ std::string verb_names() {
 core::Result<Acts> acts_of(ScriptLine& line) {
     const auto* verb = std::ranges::find(verbs, line.words[0], &Verb::name);
     if (verb == std::end(verbs)) {
-        return bad_word(line, 1, verb_names());
+        return word_error(line, 1, verb_names());
     }
     const std::size_t count = line.words.size() - 1;
     if (count < verb->words_min) {
@@ -447,7 +447,7 @@ core::Result<Acts> acts_of(ScriptLine& line) {
                      std::string{verb->words});
     }
     if (count > verb->words_max) {
-        return bad_word(line, verb->words_max + 2, "no more words (put a word with spaces in quotes)");
+        return word_error(line, verb->words_max + 2, "no more words (put a word with spaces in quotes)");
     }
     return verb->parse(line);
 }
@@ -505,7 +505,7 @@ core::Result<void> Script::advance(Host& host, Clock::time_point now) {
         std::string what =
             place() + "not done within " + std::to_string(static_cast<long long>(step.timeout.count())) + " s";
         if (const auto* choices = host.choices(step.drop_down); choices != nullptr && !choices->empty()) {
-            what += "; " + in_quotes(step.drop_down) + " offers " + in_order(*choices);
+            what += "; " + in_quotes(step.drop_down) + " offers " + comma_list(*choices);
         }
         return usage(std::move(what));
     }

@@ -46,13 +46,13 @@ class Script {
         virtual ~Host() = default;
         /// Adds an event, as if the user had caused it.
         virtual void send(const sf::Event& event) = 0;
-        /// The centre of the widget that was registered under this name by widgets::mark(); nullopt if it is not on the
-        /// screen.
+        /// Returns the centre of the widget that was registered under this name by widgets::mark(); nullopt if it is
+        /// not on the screen.
         virtual std::optional<Point> find(const std::string& widget) const = 0;
-        /// The choices of the drop-down with this name. Each choice is registered as "drop-down: choice". Empty while
-        /// the drop-down is closed; null if the widget is not a drop-down.
+        /// Returns the choices of the drop-down with this name. Each choice is registered as "drop-down: choice". Empty
+        /// while the drop-down is closed; null if the widget is not a drop-down.
         virtual const std::vector<std::string>* choices(const std::string& widget) const = 0;
-        /// The viewed world; null while the start screen is shown.
+        /// Returns the viewed world; null while the start screen is shown.
         virtual const ViewedWorld* world() const = 0;
         /// Saves the window as a PNG file. Returns an error message; empty on success.
         virtual std::string save(const std::string& path) = 0;
@@ -68,10 +68,10 @@ class Script {
     /// step has failed or exceeded its time limit.
     core::Result<void> advance(Host& host, Clock::time_point now);
 
-    /// The verbs and conditions with their arguments and meanings, one per line, for the documentation.
+    /// Returns the verbs and conditions with their arguments and meanings, one per line, for the documentation.
     static std::string reference();
 
-    /// Part of a step. Returns true when it is done, false if it must be called again.
+    /// Performs a part of a step. Returns true when the part is done, false if it must be called again.
     using Act = std::function<core::Result<bool>(Host&)>;
 
   private:

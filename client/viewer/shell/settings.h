@@ -16,12 +16,14 @@
 
 namespace evod::viewer {
 
-/// The path of a file in $XDG_STATE_HOME/evod or ~/.local/state/evod; nullopt if neither XDG_STATE_HOME nor HOME is set.
+/// Returns the path of a file in $XDG_STATE_HOME/evod or ~/.local/state/evod; nullopt if neither XDG_STATE_HOME nor
+/// HOME is set.
 std::optional<std::filesystem::path> in_state_folder(const char* name);
 
 class Settings {
   public:
-    /// Reads the file and passes the settings to `panels`, which must outlive this object. nullopt: nothing is stored.
+    /// Reads the file and passes the settings to `panels`, which must outlive this object. If `file` is nullopt, stores
+    /// nothing.
     Settings(std::optional<std::filesystem::path> file, Panels& panels);
     /// Writes the file.
     ~Settings();

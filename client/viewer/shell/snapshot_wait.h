@@ -13,10 +13,10 @@ namespace evod::viewer {
 /// Interval between two checks for new snapshots.
 constexpr std::chrono::milliseconds poll_interval{2};
 
-/// Why no snapshot has arrived yet, for a timeout message: "the world "default" is paused at tick 12".
+/// Returns why no snapshot has arrived yet, for a timeout message: "the world "default" is paused at tick 12".
 std::string progress_text(const ViewedWorld& world);
 
-/// The world's name in quotes: "the world "default"".
+/// Returns the world's name in quotes: "the world "default"".
 std::string quoted(const std::string& world);
 
 /// Throws std::runtime_error, with one sentence, if no snapshot can ever arrive.

@@ -18,13 +18,13 @@ namespace evod::viewer {
 
 class StartScreen {
   public:
-    /// initial  the initial contents of the fields
+    /// initial  the contents of the fields when the screen opens
     StartScreen(Screen& screen, const core::Options& initial);
 
     /// Shows the screen until the user has chosen a server. Returns nullopt if the user closed the window.
     std::optional<core::Options> run();
 
-    /// Sets the reason why there is no connection, which the screen shows. Empty: the user opened the screen.
+    /// Sets the text in which the screen states why there is no connection. Empty: the user opened the screen.
     void set_reason(std::string reason) { reason_ = std::move(reason); }
 
     /// Adds a server to the list of recent servers.

@@ -7,7 +7,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The offset after the UTF-8 character that begins at `at`.
+/// Returns the offset after the UTF-8 character that begins at `at`.
 std::size_t end_of_character(std::string_view text, std::size_t at) {
     for (++at; at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; ++at) {
     }

@@ -18,9 +18,9 @@ std::string with_separators(std::uint64_t number); // 1234567 → "1,234,567"
 /// Adds separators to a number that is already text: "-1234.5" → "−1,234.5".
 std::string with_separators(std::string printed);
 
-/// The number with at most six digits: "1,234.5", "0.0123"; "–" if it is not finite.
+/// Returns the number with at most six digits: "1,234.5", "0.0123"; "–" if it is not finite.
 std::string shown_number(double number);
-/// The number with its unit: "1,234.5 px". If `unit` is empty, only the number.
+/// Returns the number with its unit: "1,234.5 px". If `unit` is empty, only the number.
 std::string with_unit(double number, std::string_view unit);
 
 std::string shown_tenths(double number); // 251.34 → "251.3"
@@ -34,7 +34,7 @@ std::optional<std::uint64_t> whole_number(std::string_view text);
 std::optional<std::uint64_t> number_in(std::string_view field, std::string_view text, std::uint64_t least,
                                        std::uint64_t most, std::string& problem);
 
-/// The smallest number >= `least` that is 1, 2 or 5 times a power of ten; 1 if `least` is not positive.
+/// Returns the smallest number >= `least` that is 1, 2 or 5 times a power of ten; 1 if `least` is not positive.
 /// nice_step(1.5 * step) is the next larger step: nice_step(1.5 * 20) is 50.
 double nice_step(double least);
 

@@ -6,7 +6,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The names of the items as a list: "a, b, c".
+/// Returns the names of the items as a list: "a, b, c".
 template <class Items, class NameOf>
 std::string name_list(const Items& items, NameOf name_of) {
     std::string names;

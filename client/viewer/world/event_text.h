@@ -9,8 +9,8 @@
 
 namespace evod::viewer {
 
-/// The notice for an event, one sentence without a full stop: "evoctl 127.0.0.1 changed mutation_chance". Empty for
-/// events that have no notice.
+/// Returns the notice for an event, one sentence without a full stop: "evoctl 127.0.0.1 changed mutation_chance". Empty
+/// for events that have no notice.
 std::string event_text(const evod::v1::Event& event);
 
 } // namespace evod::viewer

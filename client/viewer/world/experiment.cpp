@@ -9,7 +9,7 @@ namespace evod::viewer {
 
 namespace {
 
-/// The name of a selection method as it is used in a sentence.
+/// Returns a sentence about how the selection method chooses parents.
 std::string selection_text(const std::string& selection) {
     if (selection == "random") {
         return "Parents are chosen at random, whatever their fitness.";

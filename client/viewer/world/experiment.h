@@ -1,4 +1,4 @@
-// Experiment: what the organisms of the viewed world try to do, as sentences for a newcomer, from the world's parameters.
+// Experiment: explains to a newcomer what the organisms of the viewed world try to do, using the world's parameters.
 //
 // Owner        the summary in the sidebar.
 // Threads      none; used by the thread that draws.
@@ -11,7 +11,8 @@
 
 namespace evod::viewer {
 
-/// "50 organisms seek food (+25 health) and avoid poison (−40). …", from a complete set of parameters.
+/// Returns the sentences for a complete set of parameters: "50 organisms seek food (+25 health) and avoid poison (−40).
+/// …".
 std::string experiment_text(const evod::v1::ParameterSet& set);
 
 class Experiment {
@@ -19,7 +20,7 @@ class Experiment {
     /// Requests the parameters when another run is viewed or they have changed. Call it once per frame.
     void update(ViewedWorld& world, Poll::Clock::time_point now);
 
-    /// Empty until the parameters have arrived.
+    /// Returns the sentences; empty until the parameters have arrived.
     const std::string& text() const { return text_; }
 
   private:

@@ -5,7 +5,7 @@ namespace evod::viewer {
 void OrganismHistory::add(const codec::ReceivedSnapshot& snapshot) {
     if (snapshot.about.generation() != generation_) {
         ended_ = true;
-        // The organism's children are only in the next generation.
+        // Only the next generation contains the organism's children.
         too_late_ = too_late_ || snapshot.about.generation() != generation_ + 1;
         return;
     }

@@ -44,13 +44,13 @@ class OrganismHistory {
     std::uint32_t id() const { return id_; }
     std::uint64_t generation() const { return generation_; }
     const std::vector<Health>& health() const { return health_; } // ordered by time
-    /// The newest description by the server; nullopt before the first one.
+    /// Returns the newest description by the server; nullopt before the first one.
     const std::optional<evod::v1::OrganismInfo>& info() const { return info_; }
     bool dead() const { return info_ && !info_->alive(); }
     bool ended() const { return ended_; } // whether its generation has ended
-    /// The range of each gene in the organism's generation; empty until the population has been received.
+    /// Returns the range of each gene in the organism's generation; empty until the population has been received.
     const std::vector<Population::Range>& ranges() const { return ranges_; }
-    /// The children; nullopt until the next generation's population has been received.
+    /// Returns the children; nullopt until the next generation's population has been received.
     const std::optional<std::vector<Child>>& children() const { return children_; }
     bool waits_for_children() const { return ended_ && !children_ && !too_late_; }
 

@@ -210,7 +210,7 @@ bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
     for (const evod::v1::ParameterState& state : changed.changed()) {
         take(state);
         if (const auto found = index_.find(state.name()); found != index_.end()) {
-            states_[found->second].changed_by = core::to_text(changed.by());
+            states_[found->second].client_of_last_change = core::to_text(changed.by());
         }
     }
     const bool next = changed.revision() == revision_ + 1;
@@ -293,8 +293,8 @@ std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world)
     return busy() || changes.empty() ? std::nullopt : send(world, Kind::Apply, std::move(changes));
 }
 
-std::optional<evod::v1::Request> ParameterEdits::send_back(const std::string& world, Kind kind,
-                                                           std::vector<std::vector<Change>>& from) {
+std::optional<evod::v1::Request> ParameterEdits::send_reversed(const std::string& world, Kind kind,
+                                                               std::vector<std::vector<Change>>& from) {
     while (!busy() && !from.empty()) {
         std::vector<Change> changes;
         for (const Change& change : from.back()) {
@@ -311,17 +311,17 @@ std::optional<evod::v1::Request> ParameterEdits::send_back(const std::string& wo
 }
 
 std::optional<evod::v1::Request> ParameterEdits::undo(const std::string& world) {
-    return send_back(world, Kind::Undo, done_);
+    return send_reversed(world, Kind::Undo, done_);
 }
 
 std::optional<evod::v1::Request> ParameterEdits::redo(const std::string& world) {
-    return send_back(world, Kind::Redo, undone_);
+    return send_reversed(world, Kind::Redo, undone_);
 }
 
-void ParameterEdits::take_done() {
+void ParameterEdits::take_acceptance() {
     for (const Change& change : sent_.changes) {
         State& state = states_[change.parameter];
-        state.changed_by.clear();
+        state.client_of_last_change.clear();
         if (state.edit && same(*state.edit, change.after)) {
             state.edit.reset(); // otherwise the user has edited the value again meanwhile
         }
@@ -359,7 +359,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     forget_refusal();
     const bool done = response != nullptr && response->status().code() == evod::v1::CODE_UNSPECIFIED;
     if (done) {
-        take_done();
+        take_acceptance();
         if (response->has_parameters()) {
             update(response->parameters());
         }

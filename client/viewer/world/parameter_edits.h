@@ -24,7 +24,7 @@ namespace evod::viewer {
 
 bool same(const evod::v1::ParameterValue& a, const evod::v1::ParameterValue& b);
 
-/// The value as text: "0.15", "25", "on", "roulette".
+/// Returns the value as text: "0.15", "25", "on", "roulette".
 std::string to_text(const evod::v1::ParameterValue& value);
 
 /// Converts a real or a count to a number, and a number to a real or a count. A count is rounded and clamped to 32
@@ -32,14 +32,14 @@ std::string to_text(const evod::v1::ParameterValue& value);
 double number_of(const evod::v1::ParameterValue& value);
 evod::v1::ParameterValue value_of(const evod::v1::ParameterDescription& parameter, double number);
 
-/// Whether the range is so large that its slider needs a logarithmic scale.
+/// Returns whether the range is so large that its slider needs a logarithmic scale.
 bool spans_decades(const evod::v1::ParameterDescription& parameter);
 
-/// The allowed values as text: "0.01 to 1", "roulette, tournament", "on or off".
+/// Returns the allowed values as text: "0.01 to 1", "roulette, tournament", "on or off".
 std::string allowed_text(const evod::v1::ParameterDescription& parameter);
 
-/// Whether the name, unit or help of the parameter contains every word of `search`. Case is ignored; _ counts as a
-/// space.
+/// Returns whether the name, unit or help of the parameter contains every word of `search`. Case is ignored; _ counts
+/// as a space.
 bool matches(const evod::v1::ParameterDescription& parameter, std::string_view search);
 
 /// A part of the registry that is shown under one heading.
@@ -54,7 +54,7 @@ std::vector<ParameterGroup> group(std::span<const evod::v1::ParameterDescription
 
 class ParameterEdits {
   public:
-    // Data reported by the server.
+    // The following functions store and return data reported by the server.
 
     /// Sets the registry and clears everything else.
     void describe(std::vector<evod::v1::ParameterDescription> registry);
@@ -70,26 +70,26 @@ class ParameterEdits {
     bool known() const { return !registry_.empty() && revision_ > 0; }
     const std::vector<evod::v1::ParameterDescription>& registry() const { return registry_; }
     std::uint64_t revision() const { return revision_; }
-    /// Whether any change takes effect only in the next generation or at a reset.
+    /// Returns whether any change takes effect only in the next generation or at a reset.
     bool has_pending() const;
 
-    // Data of one parameter, by its index in the registry.
+    // The following functions return data of one parameter; `i` is its index in the registry.
 
     const evod::v1::ParameterValue& current_value(std::size_t i) const { return states_[i].value; }
-    /// The pending value; without one, the current value.
+    /// Returns the pending value; if there is none, the current value.
     const evod::v1::ParameterValue& requested_value(std::size_t i) const;
-    /// The edited value; without an edit, requested_value().
+    /// Returns the edited value; if there is none, requested_value().
     const evod::v1::ParameterValue& shown(std::size_t i) const;
     bool is_pending(std::size_t i) const { return states_[i].pending.has_value(); }
     bool is_edited(std::size_t i) const { return states_[i].edit.has_value(); }
-    /// The client that last changed this parameter. Empty if no other client has changed it since the value was
+    /// Returns the client that last changed this parameter. Empty if no other client has changed it since the value was
     /// received or set here.
-    const std::string& changed_by(std::size_t i) const { return states_[i].changed_by; }
-    /// Why the server rejected the value that was sent last; null if the server accepted it.
+    const std::string& client_of_last_change(std::size_t i) const { return states_[i].client_of_last_change; }
+    /// Returns why the server rejected the value that was sent last; null if the server accepted it.
     const evod::v1::Violation* violation(std::size_t i) const;
 
-    // Editing. Each of these functions clears the violations and the problem of the last refusal, because they are
-    // about earlier values.
+    // The following functions edit values. Each of them clears the violations and the problem of the last refusal,
+    // because they are about earlier values.
 
     /// Edits a value. A value equal to requested_value() removes the edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
@@ -97,31 +97,32 @@ class ParameterEdits {
     void revert_all();
     std::size_t edit_count() const;
 
-    // Transactions, one at a time. The caller must send each returned request and call answered() exactly once for it.
+    // The following functions create transactions. Only one transaction may be pending. The caller must send each
+    // returned request and call answered() exactly once for it.
 
     bool busy() const { return !sent_.changes.empty(); }
-    /// The request that sends all edits. Returns nullopt if there is no edit or a transaction is pending.
+    /// Returns the request that sends all edits. Returns nullopt if there is no edit or a transaction is pending.
     std::optional<evod::v1::Request> apply(const std::string& world);
-    /// The request that restores the values before the last transaction that was not undone. Values that other clients
-    /// have changed since are not restored.
+    /// Returns the request that restores the values before the last transaction that was not undone. Values that other
+    /// clients have changed since are not restored.
     std::optional<evod::v1::Request> undo(const std::string& world);
     std::optional<evod::v1::Request> redo(const std::string& world);
     bool can_undo() const { return !busy() && !done_.empty(); }
     bool can_redo() const { return !busy() && !undone_.empty(); }
 
-    /// response  the answer; null: no answer arrived, and the outcome is unknown
+    /// response  the server's answer to the pending request; null: no answer arrived
     /// returns   whether the caller must request the complete set.
     bool answered(const evod::v1::Response* response);
 
-    /// Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is in
-    /// violation().
+    /// Returns why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is
+    /// in violation().
     const std::string& problem() const { return problem_; }
 
   private:
     struct State {
         evod::v1::ParameterValue value;
         std::optional<evod::v1::ParameterValue> pending, edit;
-        std::string changed_by;
+        std::string client_of_last_change;
         std::optional<evod::v1::Violation> violation;
     };
     struct Change {
@@ -136,10 +137,10 @@ class ParameterEdits {
 
     void forget_refusal();
     std::optional<evod::v1::Request> send(const std::string& world, Kind kind, std::vector<Change> changes);
-    std::optional<evod::v1::Request> send_back(const std::string& world, Kind kind,
-                                               std::vector<std::vector<Change>>& from);
+    std::optional<evod::v1::Request> send_reversed(const std::string& world, Kind kind,
+                                                   std::vector<std::vector<Change>>& from);
     void take(const evod::v1::ParameterState& state);
-    void take_done();
+    void take_acceptance();
     void take_refusal(const evod::v1::Status& status);
 
     std::vector<evod::v1::ParameterDescription> registry_;

@@ -21,8 +21,8 @@ namespace evod::viewer {
 class Poll {
   public:
     using Clock = core::SnapshotInterpolator::Clock;
-    /// Receives the answer. Null: the request was refused or not answered; problem() contains the reason. A handler may
-    /// send the next request or delay it.
+    /// A function that receives the answer. Null: the request was refused or not answered; problem() contains the
+    /// reason. A handler may send the next request or delay it.
     using Handler = std::function<void(const evod::v1::Response*)>;
 
     static constexpr std::chrono::seconds after_refusal{2};
@@ -33,8 +33,8 @@ class Poll {
     Poll(Poll&&) = default;
     Poll& operator=(Poll&&) = default;
 
-    /// Whether a request may be sent now: the interval is over, and no request is pending. If another world or island
-    /// is shown than at the last request, a request may be sent at once, and the pending one is forgotten.
+    /// Returns whether a request may be sent now: the interval is over, and no request is pending. If another world or
+    /// island is shown than at the last request, a request may be sent at once, and the pending one is forgotten.
     bool due(const ViewedWorld& world, Clock::time_point now);
     /// Sends a request. The answer to any earlier request will be dropped.
     void send(ViewedWorld& world, evod::v1::Request request, Clock::time_point now, Handler handler);
@@ -47,9 +47,9 @@ class Poll {
     /// Forgets the pending request and the problem.
     void reset();
 
-    /// Why the last request was refused or not answered, as a sentence; empty if it was answered.
+    /// Returns why the last request was refused or not answered, as a sentence; empty if it was answered.
     const std::string& problem() const { return state_->problem; }
-    /// Whether the server does not support this request. Sending it again would be useless.
+    /// Returns whether the server does not support this request. Sending it again would be useless.
     bool is_unsupported() const { return state_->unsupported; }
 
   private:

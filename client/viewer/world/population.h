@@ -41,7 +41,7 @@ class Population {
     ///          added.
     std::optional<std::string> add(const evod::v1::Population& page);
 
-    /// The id at which the next page must begin.
+    /// Returns the id at which the next page must begin.
     std::uint32_t next() const { return static_cast<std::uint32_t>(size()); }
     bool complete() const { return begun_ && size() == organism_count_; }
 
@@ -63,13 +63,13 @@ class Population {
 
     // The following functions require a complete population.
     Range range(std::size_t gene) const { return ranges_[gene]; }
-    /// The largest families, by decreasing size; among equal sizes, the lower founder comes first. Empty if the server
-    /// sends no founders.
+    /// Returns the largest families, by decreasing size; among equal sizes, the lower founder comes first. Empty if the
+    /// server sends no founders.
     const std::vector<Family>& families() const { return families_; }
-    /// The family of an organism, as an index in families(), or no_family.
+    /// Returns the family of an organism, as an index in families(), or no_family.
     std::uint8_t family(std::uint32_t id) const { return family_.empty() ? no_family : family_[id]; }
     std::size_t family_count() const { return family_count_; }
-    /// The children of an organism of the previous generation, ordered by id.
+    /// Returns the children of an organism of the previous generation, ordered by id.
     std::vector<std::uint32_t> children_of(std::uint32_t parent) const;
 
   private:
@@ -88,7 +88,7 @@ class Population {
     std::vector<std::uint8_t> family_;
 };
 
-/// The ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which
+/// Returns the ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which
 /// organisms live.
 ///
 /// While the generation runs, an organism lives if it has a choice (seek, flee, wander). After the end of the

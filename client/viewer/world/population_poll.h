@@ -39,13 +39,13 @@ class PopulationPoll {
     /// returns  whether the first page was requested.
     bool update(ViewedWorld& world, const Of& of, bool wanted, Clock::time_point now);
 
-    /// The last complete population; null until one has been received.
+    /// Returns the last complete population; null until one has been received.
     const Population* complete() const { return complete_ ? &*complete_ : nullptr; }
-    /// Number of complete populations received so far.
+    /// Returns the number of complete populations received so far.
     std::uint64_t complete_count() const { return complete_count_; }
-    /// Why the population is unknown, as a sentence. Empty if it is known or has been requested.
+    /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const;
-    /// Whether the server does not support GetPopulation.
+    /// Returns whether the server does not support GetPopulation.
     bool is_unsupported() const { return poll_.is_unsupported(); }
 
   private:

@@ -28,7 +28,7 @@ class ReplayControl {
     ReplayControl(const ReplayControl&) = delete;
     ReplayControl& operator=(const ReplayControl&) = delete;
 
-    /// Opens a replay of the viewed world at a moment. The replay is shown as soon as the server has opened it.
+    /// Opens a replay of the viewed world at the moment `at`. The replay is shown as soon as the server has opened it.
     void open(evod::v1::RunMoment at);
     void return_to_present();
     /// Seeks to another moment of the replay. If several seeks are requested while one is running, only the newest of
@@ -38,30 +38,31 @@ class ReplayControl {
     /// running seek.
     void seek_generations(int by);
 
-    /// The tick range of the viewed replay, whether it was opened here or is served from a run file; null for a live
-    /// world.
+    /// Returns the tick range of the viewed replay, whether it was opened here or is served from a run file; null for a
+    /// live world.
     const evod::v1::Replay* info() const { return feed_.replay(); }
-    /// Whether ReplayControl opened the replay, so that return_to_present() closes it.
+    /// Returns whether ReplayControl opened the replay, so that return_to_present() closes it.
     bool is_own() const { return present_.has_value(); }
-    /// Whether a run file's replay shows its last tick, so that it can only go back. Always false for a replay of a
-    /// live world, whose range grows.
+    /// Returns whether a run file's replay shows its last tick, so that it can only go back. Always false for a replay
+    /// of a live world, whose range grows.
     bool at_end() const;
-    /// The live world that return_to_present() will show; nullopt if no replay was opened here.
+    /// Returns the live world that return_to_present() will show; nullopt if no replay was opened here.
     const std::optional<std::string>& present() const { return present_; }
-    /// The target of the newest seek; null if no seek is running.
+    /// Returns the target of the newest seek; null if no seek is running.
     const evod::v1::RunMoment* target() const { return seeks_.target(); }
 
     /// Creates a world that starts from the moment shown.
     void fork(const std::string& name);
-    /// The newest world forked from the viewed world, its replay or its live world. Empty if there is none or it has
-    /// been deleted.
+    /// Returns the newest world forked from the viewed world, its replay or its live world. Empty if there is none or
+    /// it has been deleted.
     const std::string& forked() const { return forked_; }
 
-    // The following functions are called by ViewedWorld.
+    // ViewedWorld calls the following functions.
 
-    /// Whether an OpenReplay request is unanswered.
+    /// Returns whether an OpenReplay request is unanswered.
     bool opening() const { return opening_.valid(); }
-    /// Why the replay requested at the start of evoview cannot be shown, as a sentence; nullopt: no such problem.
+    /// Returns why the replay requested at the start of evoview cannot be shown, as a sentence; nullopt: no such
+    /// problem.
     const std::optional<std::string>& open_refusal() const { return open_refusal_; }
     /// Clears all data about the viewed world and closes its replay. Call before another world is shown.
     void leave(const std::string& next_world);

@@ -105,7 +105,7 @@ std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
     return request;
 }
 
-std::optional<evod::v1::Request> RunControl::ask_for(evod::v1::Speed speed) {
+std::optional<evod::v1::Request> RunControl::request_speed(evod::v1::Speed speed) {
     if (!known()) {
         return std::nullopt;
     }
@@ -121,7 +121,7 @@ std::optional<evod::v1::Request> RunControl::at_factor(double factor) {
     factor_ = std::clamp(factor, factor_min, factor_max);
     evod::v1::Speed speed;
     speed.set_real_time_factor(factor_);
-    return ask_for(speed);
+    return request_speed(speed);
 }
 
 std::optional<evod::v1::Request> RunControl::faster() {
@@ -142,7 +142,7 @@ std::optional<evod::v1::Request> RunControl::max_speed() {
     }
     evod::v1::Speed speed;
     speed.set_max(true);
-    return ask_for(speed);
+    return request_speed(speed);
 }
 
 std::optional<evod::v1::Request> RunControl::run_generations(std::uint64_t generations) {

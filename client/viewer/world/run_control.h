@@ -24,7 +24,8 @@ class RunControl {
     void update(const evod::v1::SnapshotFrame& snapshot);
     void update(const evod::v1::WorldInfo& world);
 
-    // Requests. The caller must send each returned request and call answered() exactly once for it.
+    // The following functions create requests. The caller must send each returned request and call answered() exactly
+    // once for it.
 
     /// Pauses a running world and resumes a paused one. A world that waits, or was stepped while it waited, starts to
     /// run until it is paused. Returns nullopt if the run has ended or its state is unknown.
@@ -56,12 +57,12 @@ class RunControl {
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
     std::uint64_t tick() const { return tick_; }
-    /// Whether the world is running to a given tick, at which it will pause.
+    /// Returns whether the world is running to a given tick, at which it will pause.
     bool stepping() const { return step_target_ > tick_; }
     evod::v1::RunState state() const { return state_; }
     const evod::v1::Speed& speed() const { return speed_; }
     evod::v1::Outcome outcome() const { return outcome_; }
-    /// The newest WorldInfo; empty before the first one arrives. Snapshots may be of later ticks.
+    /// Returns the newest WorldInfo; empty before the first one arrives. Snapshots may be of later ticks.
     const evod::v1::WorldInfo& info() const { return info_; }
 
     static constexpr double factor_min = 0.001,
@@ -70,7 +71,7 @@ class RunControl {
   private:
     void begin_run(const std::string& world, const std::string& run_id);
     void take(const evod::v1::Speed& speed);
-    std::optional<evod::v1::Request> ask_for(evod::v1::Speed speed);
+    std::optional<evod::v1::Request> request_speed(evod::v1::Speed speed);
 
     std::string world_, run_id_;
     std::uint64_t tick_ = 0;        // newest known tick

@@ -13,14 +13,14 @@ namespace evod::viewer {
 
 class SeekQueue {
   public:
-    /// Adds a seek. Returns the seek to send now; nullopt while another is running. A newer seek replaces one that
-    /// waits.
+    /// Adds a seek. Returns the seek to send now; nullopt while another is running. A newer seek replaces a waiting
+    /// seek.
     std::optional<evod::v1::RunMoment> add(evod::v1::RunMoment to);
-    /// Call when the running seek was answered or its answer will never arrive. Returns the seek to send next.
+    /// Ends the running seek. Call when its answer has arrived or will never arrive. Returns the seek to send next.
     std::optional<evod::v1::RunMoment> answered();
     void clear() { *this = SeekQueue{}; }
 
-    /// The target of the newest seek; null if no seek is running.
+    /// Returns the target of the newest seek; null if no seek is running.
     const evod::v1::RunMoment* target() const;
 
   private:

@@ -8,7 +8,7 @@ namespace evod::viewer {
 
 namespace {
 
-core::Options as_evoview(core::Options options) {
+core::Options with_client_name(core::Options options) {
     options.client_name = "evoview";
     options.client_version = EVOD_VERSION;
     return options;
@@ -17,7 +17,7 @@ core::Options as_evoview(core::Options options) {
 } // namespace
 
 ServerConnection::ServerConnection(core::Options options)
-    : options_{as_evoview(std::move(options))}, connection_{options_} {}
+    : options_{with_client_name(std::move(options))}, connection_{options_} {}
 
 void ServerConnection::send(evod::v1::Request request, AnswerHandler handler, std::chrono::milliseconds timeout) {
     unanswered_.push_back({std::move(handler), connection_.send(std::move(request), timeout)});

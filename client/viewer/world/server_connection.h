@@ -33,24 +33,25 @@ class ServerConnection {
     void take_answers();
     /// Drops all unanswered requests: their handlers will not be called.
     void drop_answers() { unanswered_.clear(); }
-    /// Whether every request has been answered. False until the first connection is established.
+    /// Returns whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return connected_count_ > 0 && unanswered_.empty(); }
 
-    /// The server's Welcome message, returned once after each time that a connection is established; nullopt otherwise.
+    /// Returns the server's Welcome message, once for each established connection; nullopt otherwise.
     std::optional<evod::v1::Welcome> take_welcome();
     bool was_connected() const { return connected_count_ > 0; }
     core::ConnectionStatus status() const { return connection_.status(); }
     bool connected() const { return status().state == core::State::Connected; }
-    /// Why there is no connection, as a sentence. Empty while connected, and until the first attempt has failed.
+    /// Returns why there is no connection, as a sentence. Empty while connected, and until the first attempt has
+    /// failed.
     std::string problem() const;
     const core::Endpoint& endpoint() const { return options_.server; }
     /// Gives access to the connection, for subscriptions.
     core::Connection& connection() { return connection_; }
     const core::Connection& connection() const { return connection_; }
 
-    /// Whether the role of this session forbids commands. False until the server has reported the role.
+    /// Returns whether the role of this session forbids commands. False until the server has reported the role.
     bool read_only() const { return role_ == evod::v1::ROLE_VIEWER; }
-    /// Whether this session may create worlds. True until the server has reported the role.
+    /// Returns whether this session may create worlds. True until the server has reported the role.
     bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
 
     /// Adds a notice: a sentence that the window shows for some seconds.
@@ -74,7 +75,7 @@ class ServerConnection {
     std::vector<std::string> notices_;
 };
 
-/// Why a request was refused or not answered, as a sentence; empty if it was accepted.
+/// Returns why a request was refused or not answered, as a sentence; empty if it was accepted.
 std::string refusal_of(const core::Result<evod::v1::Response>& response);
 
 } // namespace evod::viewer

@@ -16,8 +16,8 @@ std::string capitalised(std::string text) {
     return text;
 }
 
-/// The field name without the name of its request: "fork_world.name" → "name".
-std::string own_name(const std::string& field) {
+/// Returns the field name without the name of its request: "fork_world.name" → "name".
+std::string last_field_name(const std::string& field) {
     return field.substr(field.rfind('.') + 1);
 }
 
@@ -70,15 +70,15 @@ std::string refusal_text(const evod::v1::Status& status) {
     if (violations.size() == 1) {
         const evod::v1::Violation& only = violations[0];
         if (!only.field().empty() && status.message().starts_with(only.field())) { // the message says what is allowed
-            return capitalised(own_name(only.field()) + status.message().substr(only.field().size()));
+            return capitalised(last_field_name(only.field()) + status.message().substr(only.field().size()));
         }
         return capitalised(status.message()) + (only.got().empty() ? "" : " (" + only.got() + ")") +
                "; allowed: " + only.allowed();
     }
     std::string text = capitalised(status.message());
     for (int i = 0; i < violations.size(); ++i) {
-        text += (i == 0 ? ": " : "; ") + own_name(violations[i].field()) + " must be " + violations[i].allowed() +
-                (violations[i].got().empty() ? "" : ", not " + violations[i].got());
+        text += (i == 0 ? ": " : "; ") + last_field_name(violations[i].field()) + " must be " +
+                violations[i].allowed() + (violations[i].got().empty() ? "" : ", not " + violations[i].got());
     }
     return text;
 }

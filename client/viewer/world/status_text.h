@@ -13,35 +13,35 @@
 namespace evod::viewer {
 
 std::string speed_text(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
-/// The run state with a hint: "running", "waiting – Space runs". `storage` shows whether a running world has to wait
-/// for the server's disk.
+/// Returns the run state with a hint: "running", "waiting – Space runs". `storage` shows whether a running world has to
+/// wait for the server's disk.
 const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage);
-/// The run state without the hint: "waiting".
+/// Returns the run state without the hint: "waiting".
 const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage);
 
-/// The problem with the server's run files: "Commands are refused: …", "Worlds wait for the disk: …". Empty if there is
-/// none.
+/// Returns the problem with the server's run files: "Commands are refused: …", "Worlds wait for the disk: …". Empty if
+/// there is none.
 std::string storage_text(const evod::v1::Storage& storage);
 
-/// The refusal as a sentence: "There is no such island (9); allowed: 0 to 7".
+/// Returns the refusal as a sentence: "There is no such island (9); allowed: 0 to 7".
 std::string refusal_text(const evod::v1::Status& status);
 
-/// Why there is no connection, as a sentence to be shown beside the fields for server and token. Empty if there is no
-/// problem.
+/// Returns why there is no connection, as a sentence to be shown beside the fields for server and token. Empty if there
+/// is no problem.
 std::string connection_loss_text(const core::ConnectionStatus& status, bool has_token);
 
-/// The title of a snapshot: "Generation 12".
+/// Returns the title of a snapshot: "Generation 12".
 std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
 
-/// The label of a replay: "REPLAY of default" for a replay of a live world, "REPLAY" for one of a run file.
+/// Returns the label of a replay: "REPLAY of default" for a replay of a live world, "REPLAY" for one of a run file.
 std::string replay_label(const evod::v1::Replay& replay);
 
-/// World and island of a snapshot: "default · island 2 of 0–7".
+/// Returns the world and island of a snapshot: "default · island 2 of 0–7".
 std::string place_text(const evod::v1::SnapshotFrame& snapshot);
-/// World, island and speed: "default · island 2 of 0–7 · 4× (240 ticks/s)".
+/// Returns the world, island and speed: "default · island 2 of 0–7 · 4× (240 ticks/s)".
 std::string place_and_speed_text(const evod::v1::SnapshotFrame& snapshot, const RunControl& control);
 
-/// The parts of the statistics line, the most important first. A narrow window omits the last parts.
+/// Returns the parts of the statistics line, the most important first. A narrow window omits the last parts.
 std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapshot,
                                           const evod::v1::GenerationStatistics* last_generation);
 

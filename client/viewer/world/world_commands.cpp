@@ -29,7 +29,7 @@ void WorldCommands::command(MakeRequest make_request) {
     }
 }
 
-/// Whether the run or the replay has ended. If so, adds a notice that suggests what to do.
+/// Returns whether the run or the replay has ended. If so, adds a notice that suggests what to do.
 bool WorldCommands::is_over() {
     const bool over = feed_.control().state() == evod::v1::RUN_STATE_TERMINATED || replay_.at_end();
     if (over) {

@@ -30,10 +30,10 @@ class WorldCommands {
     void at_factor(double factor);
     void reset(std::optional<std::uint64_t> seed);
 
-    /// Whether this session may command the viewed world. A session with the role viewer may command the replay that it
-    /// opened itself.
+    /// Returns whether this session may command the viewed world. A session with the role viewer may command the replay
+    /// that it opened itself.
     bool may_command() const { return !server_.read_only() || replay_.is_own(); }
-    /// Why this session may not command the world, as a sentence without a full stop. Empty if it may.
+    /// Returns why this session may not command the world, as a sentence without a full stop. Empty if it may.
     std::string_view read_only_reason() const { return may_command() ? "" : read_only_text; }
 
   private:

@@ -39,7 +39,7 @@ class WorldFeed {
     WorldFeed(const WorldFeed&) = delete;
     WorldFeed& operator=(const WorldFeed&) = delete;
 
-    // Selection of the data to show.
+    // The following functions select the data to show.
 
     /// Subscribes to another world or island. If the world is another one, clears all data about the old one.
     void show(std::string world, std::uint32_t island);
@@ -53,13 +53,14 @@ class WorldFeed {
     /// after each show().
     void set_view(std::optional<evod::v1::View> view);
 
-    /// The requested world name; empty: the server's choice.
+    /// Returns the requested world name; empty: the server's choice.
     const std::string& world() const { return world_; }
-    /// The world's name as reported by the server; until then, the same as world().
+    /// Returns the world's name as reported by the server; until then, the same as world().
     const std::string& name() const { return control_.known() ? control_.world() : world_; }
-    /// The chosen island.
+    /// Returns the chosen island.
     std::uint32_t island() const { return island_; }
-    /// A number that changes whenever another world, replay or island is shown; no two feeds ever have the same number.
+    /// Returns a number that changes whenever another world, replay or island is shown. No two feeds ever have the same
+    /// number.
     /// An answer to a request that was sent under another number is outdated.
     std::uint64_t place_number() const { return place_number_; }
 
@@ -68,35 +69,35 @@ class WorldFeed {
     void select(std::optional<std::uint32_t> organism) { selected_ = organism; }
     std::optional<std::uint32_t> selected() const { return selected_; }
 
-    // Data reported by the server.
+    // The following functions return data reported by the server.
 
     core::SnapshotInterpolator& view() { return views_[island_]; }
     core::SnapshotInterpolator& view_of(std::uint32_t island) { return views_[island]; }
-    /// The newest snapshot of the chosen island; null until one has arrived.
+    /// Returns the newest snapshot of the chosen island; null until one has arrived.
     const codec::ReceivedSnapshot* snapshot() const { return snapshot_of(island_); }
     const codec::ReceivedSnapshot* snapshot_of(std::uint32_t island) const;
-    /// The number of islands of the world; 1 until a snapshot has arrived.
+    /// Returns the number of islands of the world; 1 until a snapshot has arrived.
     std::uint32_t island_count() const;
-    /// Densities of the whole island, updated about once a second while a view is set; otherwise null.
+    /// Returns densities of the whole island, updated about once a second while a view is set; otherwise null.
     const std::shared_ptr<const codec::ReceivedSnapshot>& overview() const { return overview_snapshot_; }
     const RunControl& control() const { return control_; }
     RunControl& control() { return control_; }
-    /// The tick range, if the world is a replay; null for a live world.
+    /// Returns the tick range, if the world is a replay; null for a live world.
     const evod::v1::Replay* replay() const { return replay_ ? &*replay_ : nullptr; }
-    /// The names of the genes of the viewed run, in the order in which all gene lists are sent. Empty until the server
-    /// has reported them.
+    /// Returns the names of the genes of the viewed run, in the order in which all gene lists are sent. Empty until the
+    /// server has reported them.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
-    /// Statistics of the last finished generation on the chosen island; null in the first generation.
+    /// Returns statistics of the last finished generation on the chosen island; null in the first generation.
     const evod::v1::GenerationStatistics* last_generation() const;
-    /// The state of the server's run files; unspecified if the server stores none or the world is a replay.
+    /// Returns the state of the server's run files; unspecified if the server stores none or the world is a replay.
     const evod::v1::Storage& storage() const { return storage_; }
-    /// The events that the last update received, of all worlds, oldest first.
+    /// Returns the events that the last update received, of all worlds, oldest first.
     const std::vector<evod::v1::Event>& events() const { return events_; }
-    /// Why the server refused the subscription to snapshots, as a sentence; nullopt if it was accepted or has not been
-    /// answered.
+    /// Returns why the server refused the subscription to snapshots, as a sentence; nullopt if it was accepted or has
+    /// not been answered.
     std::optional<std::string> refusal() const;
 
-    // The following functions are called by the other parts of ViewedWorld.
+    // The other parts of ViewedWorld call the following functions.
 
     void take_storage(evod::v1::Storage storage) { storage_ = std::move(storage); }
     /// Stores the state of the world that an answer or event contains.

@@ -50,9 +50,9 @@ TEST(ExperimentFile, EveryInvalidChangeIsReported) {
 
 TEST(ExperimentFile, AScheduleMustFitTheChanges) {
     parameters::Experiment experiment = scheduled();
-    EXPECT_TRUE(fit_schedule(experiment));
+    EXPECT_TRUE(match_schedule_to_parameters(experiment));
     experiment.parameters.tournament_size = 3;
-    const auto refused = fit_schedule(experiment);
+    const auto refused = match_schedule_to_parameters(experiment);
     ASSERT_FALSE(refused);
     EXPECT_THAT(to_text(refused.error()), HasSubstr("at generation 5"));
 }

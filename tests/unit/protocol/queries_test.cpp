@@ -12,7 +12,7 @@ class Queries : public Lived {
   protected:
     v1::Response answer(const v1::Request& request, bool users_only = false) {
         v1::Response response;
-        put_rows(answer_query(request, laboratory, users_only, response), response);
+        add_rows(answer_query(request, laboratory, users_only, response), response);
         return response;
     }
 };
@@ -38,7 +38,7 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
     const QueryResult rows = answer_query(request, laboratory, false, response);
     EXPECT_EQ(response.answer_case(), v1::Response::ANSWER_NOT_SET);
     EXPECT_EQ(std::get<PopulationRows>(rows).first, 1);
-    put_rows(rows, response);
+    add_rows(rows, response);
     EXPECT_EQ(response.population().first(), 1);
     EXPECT_GT(row_bytes_max(request), 0u);
     request.mutable_get_history();

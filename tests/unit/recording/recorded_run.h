@@ -118,7 +118,7 @@ class RecordedRun {
         request.mutable_reset_world()->set_world("w");
         const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.begin_again(entry(), before, tick, record_of(request, *applied, std::move(done)));
+        recorder_.begin_after_reset(entry(), before, tick, record_of(request, *applied, std::move(done)));
     }
 
     void command(

@@ -183,7 +183,7 @@ TEST_F(ArchiveTest, AnUnfinishedNewFileIsDeleted) {
     }
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
-    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_FALSE((*archive)->has_worlds());
     EXPECT_EQ((*archive)->identity_of("w"), nullptr);
     for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
         EXPECT_EQ(file.path().filename(), "lock");
@@ -218,7 +218,7 @@ TEST_F(ArchiveTest, AFileOfAnEndedRunIsRenamed) {
     }
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
-    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_FALSE((*archive)->has_worlds());
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
     const auto answers = (*archive)->take_answers();
     ASSERT_EQ(answers.size(), 1u) << "its commands are not carried out again";

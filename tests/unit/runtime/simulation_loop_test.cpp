@@ -1015,20 +1015,20 @@ TEST_F(LoopWithDisk, SeeksToTheEndOfARunShowItsState) {
 
 TEST_F(LoopWithDisk, SeeksEndWithTheirOwnerOrReplay) {
     const std::string look = look_at_the_past_of_a_run();
-    std::vector<base::Result<std::string>> answers;
+    std::vector<base::Result<std::string>> outcomes;
     const auto seek = [&](std::uint64_t tick) {
         ask(Seek{.world = look, .to = {.generation = {}, .tick = tick}}, 2,
-            [&](const base::Result<std::string>& name) { answers.push_back(name); });
+            [&](const base::Result<std::string>& name) { outcomes.push_back(name); });
     };
     seek(299);
     mailbox.push(SessionEnded{2});
-    pass_until([&] { return answers.size() == 1; });
-    EXPECT_FALSE(answers[0]);
+    pass_until([&] { return outcomes.size() == 1; });
+    EXPECT_FALSE(outcomes[0]);
     EXPECT_EQ(tick(look), 0u) << "the seek ended with its owner";
     seek(299);
     ask(CloseReplay{look}, 2, [](const base::Result<std::string>&) {});
-    pass_until([&] { return answers.size() == 2; });
-    EXPECT_FALSE(answers[1]);
+    pass_until([&] { return outcomes.size() == 2; });
+    EXPECT_FALSE(outcomes[1]);
 }
 
 TEST_F(LoopWithDisk, APacedWorldKeepsItsPaceDuringSeeks) {

@@ -33,7 +33,8 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
     return number ? with_unit(*number, unit) : "–";
 }
 
-/// Whether the panel may pause the world after each generation: the session may command it, and it is not a replay.
+/// Returns whether the panel may pause the world after each generation: the session may command it, and it is not a
+/// replay.
 bool may_hold(const ViewedWorld& world) {
     return world.commands.may_command() && world.replay.info() == nullptr;
 }

@@ -28,28 +28,29 @@ class BreedingRecord {
     explicit BreedingRecord(Key key) : key_{std::move(key)} {}
     const Key& key() const { return key_; }
 
-    /// The next request that is needed to show `moment`. Returns nullopt if no data is missing, or if the last answer
-    /// contained no new row.
+    /// Returns the next request that is needed to show `moment`. Returns nullopt if no data is missing, or if the last
+    /// answer contained no new row.
     std::optional<evod::v1::GetBreeding> wanted(Moment moment) const;
 
     /// Adds the answer to the request from wanted(). Ignores an answer about another generation.
     void add(const evod::v1::Breeding& page);
 
     bool known() const { return known_.has_value(); }
-    /// The merged answers. Each list contains the rows received so far, from row 0. Requires known().
+    /// Returns the merged answers. Each list contains the rows received so far, from row 0. Requires known().
     const evod::v1::Breeding& breeding() const { return *known_; }
-    /// The contender with this organism id; null if its row has not been received.
+    /// Returns the contender with this organism id; null if its row has not been received.
     const evod::v1::Contender* contender(std::uint32_t organism) const;
     const evod::v1::Pick* pick(std::uint32_t index) const;
     const evod::v1::Descendant* descendant(std::uint32_t id) const;
 
-    /// The number of picks and of descendants that the user can step through, at most rows_kept_max each.
+    /// Returns the number of picks and of descendants that the user can step through, at most rows_kept_max each.
     std::uint32_t pick_count() const;
     std::uint32_t descendant_count() const;
 
-    /// The value of a parameter with named choices, such as "roulette"; empty if the server did not send the parameter.
+    /// Returns the value of a parameter with named choices, such as "roulette"; empty if the server did not send the
+    /// parameter.
     std::string choice(const char* parameter) const;
-    /// The value of a real or whole-number parameter; a flag is 0 or 1.
+    /// Returns the value of a real or whole-number parameter; a flag is 0 or 1.
     std::optional<double> number(const char* parameter) const;
 
   private:

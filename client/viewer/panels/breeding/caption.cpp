@@ -13,14 +13,14 @@ std::string counted(std::uint64_t count, const char* one, const char* many) {
     return with_separators(count) + " " + (count == 1 ? one : many);
 }
 
-std::string upper_first(std::string text) {
+std::string capitalise_first_letter(std::string text) {
     if (!text.empty()) {
         text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     }
     return text;
 }
 
-/// "organism 17 (rank 3, fitness 182.4)". For users, the fittest has rank 1.
+/// Returns "organism 17 (rank 3, fitness 182.4)". For users, the fittest has rank 1.
 std::string organism_text(const BreedingRecord& record, std::uint32_t organism) {
     const evod::v1::Contender* contender = record.contender(organism);
     if (contender == nullptr) {
@@ -74,13 +74,13 @@ std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
     if (pick->has_tournament()) {
         text += "Tournament " + with_separators(std::uint64_t{pick->tournament()} + 1);
         if (pick->contestants().empty()) { // there were too many contestants, or the server drew the winner directly
-            return text + " is too large to show. " + upper_first(winner) + " won.";
+            return text + " is too large to show. " + capitalise_first_letter(winner) + " won.";
         }
         return text + " of " +
                counted(static_cast<std::uint64_t>(pick->contestants_size()), "contestant", "contestants") + ": " +
                winner + " won.";
     }
-    return text + upper_first(winner) + ".";
+    return text + capitalise_first_letter(winner) + ".";
 }
 
 std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
@@ -128,7 +128,7 @@ std::string breeding_summary(const BreedingRecord& record) {
     }
     const evod::v1::Breeding& breeding = record.breeding();
     const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
-    std::string text = upper_first(shown_choice(method));
+    std::string text = capitalise_first_letter(shown_choice(method));
     if (method == "tournament") {
         text += print(" of %g", record.number("tournament_size").value_or(0));
     } else if ((method == "roulette" || method == "stochastic_universal") && scaling != "none") {

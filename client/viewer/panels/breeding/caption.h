@@ -10,14 +10,14 @@
 
 namespace evod::viewer {
 
-/// "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25 children"; empty until the first page
-/// has arrived.
+/// Returns a summary of the breeding: "Roulette with windowing · hybrid · 50 organisms, 25 picks → 25 survivors, 25
+/// children"; empty until the first page has arrived.
 std::string breeding_summary(const BreedingRecord& record);
 
-/// The caption of a moment: "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …".
+/// Returns the caption of a moment: "Pick 7 of 25. The pointer stopped at 0.4312 turns, in the slot of organism 17: …".
 std::string caption(const BreedingRecord& record, Moment moment);
 
-/// The value of a parameter with named choices, as text for users: "stochastic universal".
+/// Returns the value of a parameter with named choices, as text for users: "stochastic universal".
 std::string shown_choice(std::string choice);
 
 } // namespace evod::viewer

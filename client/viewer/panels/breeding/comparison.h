@@ -16,7 +16,7 @@
 
 namespace evod::viewer {
 
-/// Every list is indexed by rank and has shape (contenders).
+/// The copies of each rank, observed and expected. Each list is indexed by rank and has one entry per contender.
 struct Comparison {
     std::vector<std::uint32_t> organisms; // id of the organism with this rank
     std::vector<double> fitness;
@@ -32,8 +32,8 @@ struct Comparison {
 /// returns  nullopt until the server has sent every contender.
 std::optional<Comparison> compare(const BreedingRecord& record);
 
-/// For each rank, how many of the first `count` picks selected it. Ignores picks and contenders that have not been
-/// received.
+/// Returns, for each rank, the number of the first `count` picks that selected it. Ignores picks and contenders that
+/// have not been received.
 std::vector<std::uint32_t> copies_after(const BreedingRecord& record, std::uint32_t count);
 
 /// A group of neighbouring ranks that is drawn as one bar.
@@ -46,7 +46,7 @@ struct RankColumn {
 /// Distributes the ranks over at most `columns` groups. The sizes of any two groups differ by at most one.
 ///
 /// copies          observed copies by rank, shape (ranks)
-/// expected_share  the fraction of all picks that `copies` includes, 0 to 1; the expected copies are multiplied by it
+/// expected_share  factor for the expected copies: the fraction of all picks that `copies` includes, 0 to 1
 std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<const std::uint32_t> copies,
                                      double expected_share, std::size_t columns);
 
@@ -56,7 +56,7 @@ struct PickColumn {
     std::optional<double> rank{};      // mean rank of the picks made; nullopt if none was made or received
 };
 
-/// Distributes all picks, in order, over at most `columns` groups. Picks after `index` count as not yet made.
+/// Distributes all picks, in order, over at most `columns` groups. Ignores the ranks of picks after `index`.
 std::vector<PickColumn> pick_columns(const BreedingRecord& record, std::uint32_t index, std::size_t columns);
 
 } // namespace evod::viewer

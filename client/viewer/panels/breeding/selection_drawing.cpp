@@ -84,7 +84,7 @@ float angle_of(double turns) {
     return static_cast<float>((turns - 0.25) * 2 * std::numbers::pi); // the first slot begins at the top
 }
 
-ImVec2 on_circle(ImVec2 centre, float radius, double turns) {
+ImVec2 point_on_circle(ImVec2 centre, float radius, double turns) {
     return {centre.x + radius * std::cos(angle_of(turns)), centre.y + radius * std::sin(angle_of(turns))};
 }
 
@@ -131,11 +131,11 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
         stroke_arc(sheet, centre, middle, arc.begin, arc.end, rank_colour(arc.rank, breeding.contender_count()),
                    thickness);
         if ((arc.end - arc.begin) * circumference > 4) {
-            sheet.list.AddLine(on_circle(centre, inner, arc.begin), on_circle(centre, outer, arc.begin),
+            sheet.list.AddLine(point_on_circle(centre, inner, arc.begin), point_on_circle(centre, outer, arc.begin),
                                ink(palette::background));
             if (arc.first == arc.last && (arc.end - arc.begin) * circumference > 26) {
                 const Colour paper = rank_colour(arc.rank, breeding.contender_count());
-                sheet.write_centred(on_circle(centre, middle, (arc.begin + arc.end) / 2), palette::text_on(paper),
+                sheet.write_centred(point_on_circle(centre, middle, (arc.begin + arc.end) / 2), palette::text_on(paper),
                                     std::to_string(arc.first));
             }
         }
@@ -146,7 +146,7 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
             stroke_arc(sheet, centre, radius, chosen->slot_begin(), chosen->slot_end(), palette::glass_current, 3);
         }
         for (const double side : {chosen->slot_begin(), chosen->slot_end()}) {
-            sheet.list.AddLine(on_circle(centre, inner, side), on_circle(centre, outer, side),
+            sheet.list.AddLine(point_on_circle(centre, inner, side), point_on_circle(centre, outer, side),
                                ink(palette::glass_current), 2);
         }
     }
@@ -156,14 +156,15 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
     const auto ticks = all_at_once ? static_cast<std::uint32_t>(breeding.picks_size()) : index;
     for (std::uint32_t i = 0; i < ticks && record.pick(i) != nullptr; ++i) {
         const double turns = record.pick(i)->turns();
-        sheet.list.AddLine(on_circle(centre, outer + 2, turns), on_circle(centre, outer + 9, turns),
+        sheet.list.AddLine(point_on_circle(centre, outer + 2, turns), point_on_circle(centre, outer + 9, turns),
                            ink(i < index ? palette::text : faint(palette::text_quiet, 130)), 1.5f);
     }
     if (pick != nullptr && pick->has_turns()) {
         const double turns = pick->turns(), half = 7 / circumference;
-        sheet.list.AddTriangleFilled(on_circle(centre, outer + 1, turns), on_circle(centre, outer + 18, turns - half),
-                                     on_circle(centre, outer + 18, turns + half), ink(palette::glass_current));
-        sheet.list.AddLine(on_circle(centre, inner, turns), on_circle(centre, outer, turns),
+        sheet.list.AddTriangleFilled(point_on_circle(centre, outer + 1, turns),
+                                     point_on_circle(centre, outer + 18, turns - half),
+                                     point_on_circle(centre, outer + 18, turns + half), ink(palette::glass_current));
+        sheet.list.AddLine(point_on_circle(centre, inner, turns), point_on_circle(centre, outer, turns),
                            ink(palette::glass_current), 1.5f);
     }
     if (chosen != nullptr) {

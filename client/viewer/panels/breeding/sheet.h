@@ -22,7 +22,7 @@ struct Sheet {
     void write_to_the_left(ImVec2 right, Colour colour, std::string_view text) const;
 };
 
-/// Whether the mouse is inside this rectangle of the current window.
+/// Returns whether the mouse is inside this rectangle of the current window.
 bool pointed_at(ImVec2 corner, ImVec2 end);
 
 } // namespace evod::viewer

@@ -32,7 +32,7 @@ class Stepper {
     bool at_begin() const { return position_ == 0; }
     bool at_end() const { return position_ == last_position(); }
 
-    // Moves by the user; each of these functions also stops playing.
+    // The following functions perform the user's moves. Each of them also stops playing.
     void step();
     void back();
     void next_stage();     // goes to the first moment of the next stage

@@ -25,11 +25,11 @@ double density(double z) {
     return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
 }
 
-/// The value that a standard normal variable exceeds with probability `above`. Newton's method converges because the
-/// logarithm of this probability is concave.
-double normal_above(double above) {
+/// Returns the value that a standard normal variable exceeds with probability `above`. Newton's method converges
+/// because the logarithm of this probability is concave.
+double upper_normal_quantile(double above) {
     if (above > 0.5) {
-        return -normal_above(1 - above);
+        return -upper_normal_quantile(1 - above);
     }
     double z = 0;
     for (int i = 0; i < 60; ++i) {
@@ -49,7 +49,8 @@ std::vector<double> normal_scores(std::size_t population) {
     std::vector<double> scores(population);
     const auto count = static_cast<double>(population);
     const auto density_above = [&](std::size_t ranks) {
-        return ranks == 0 || ranks == population ? 0 : density(normal_above(static_cast<double>(ranks) / count));
+        return ranks == 0 || ranks == population ? 0
+                                                 : density(upper_normal_quantile(static_cast<double>(ranks) / count));
     };
     double before = 0;
     for (std::size_t rank = 0; rank < population; ++rank) {
@@ -60,7 +61,7 @@ std::vector<double> normal_scores(std::size_t population) {
     return scores;
 }
 
-/// (fitness − mean) / standard deviation for each organism; all 0 if all fitness values are equal.
+/// Returns (fitness − mean) / standard deviation for each organism; all 0 if all fitness values are equal.
 std::vector<double> standard_scores(std::span<const double> fitness) {
     const auto count = static_cast<double>(fitness.size());
     const double mean = sum(fitness) / count;
@@ -75,18 +76,18 @@ std::vector<double> standard_scores(std::span<const double> fitness) {
     return scores;
 }
 
-/// The mean of the scores, weighted by the copies.
-double mean_of_copies(std::span<const double> copies, std::span<const double> scores) {
+/// Returns the mean of the scores, weighted by the copies.
+double copy_weighted_mean(std::span<const double> copies, std::span<const double> scores) {
     const double all = sum(copies);
     return all > 0 ? std::inner_product(copies.begin(), copies.end(), scores.begin(), 0.0) / all : 0;
 }
 
 // ---- standard errors: how far two breedings of the same population differ ----------------------------------------
 
-/// The standard error of the mean score of the picked organisms. Returns nullopt if the picks depend on each other in a
-/// way for which no simple formula exists.
-std::optional<double> error_of_intensity(const Selection& selection, const Expectation& expectation,
-                                         std::span<const double> scores) {
+/// Returns the standard error of the mean score of the picked organisms. Returns nullopt if the picks depend on each
+/// other in a way for which no simple formula exists.
+std::optional<double> standard_error_of_intensity(const Selection& selection, const Expectation& expectation,
+                                                  std::span<const double> scores) {
     const auto population = static_cast<double>(scores.size());
     const double picks = selection.picks;
     if (selection.method == Method::Truncation) {
@@ -100,7 +101,7 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     if (!selection.independent_picks) {
         return std::nullopt;
     }
-    const double mean = mean_of_copies(expectation.copies, scores);
+    const double mean = copy_weighted_mean(expectation.copies, scores);
     double square = 0;
     for (std::size_t rank = 0; rank < scores.size(); ++rank) {
         square += expectation.copies[rank] / picks * (scores[rank] - mean) * (scores[rank] - mean);
@@ -108,10 +109,10 @@ std::optional<double> error_of_intensity(const Selection& selection, const Expec
     return std::sqrt(square / picks);
 }
 
-/// The standard error of the share of organisms that are not selected. For independent picks, it follows from the
-/// variance of the number of empty cells in large populations: Σ(q − q²) − (Σ λq)²/picks. λ is an organism's expected
-/// number of copies, q its probability of having none.
-std::optional<double> error_of_unpicked(const Selection& selection, const Expectation& expectation) {
+/// Returns the standard error of the share of organisms that are not selected. For independent picks, it follows from
+/// the variance of the number of empty cells in large populations: Σ(q − q²) − (Σ λq)²/picks. Here λ is an organism's
+/// expected number of copies, and q is its probability of having none.
+std::optional<double> standard_error_of_unpicked(const Selection& selection, const Expectation& expectation) {
     if (selection.method == Method::Truncation || selection.method == Method::Random) {
         return 0;
     }
@@ -128,8 +129,9 @@ std::optional<double> error_of_unpicked(const Selection& selection, const Expect
     return std::sqrt(std::max(variance, 0.0)) / static_cast<double>(expectation.copies.size());
 }
 
-/// Pearson's chi-square of all copies, with its mean and standard deviation. Both are exact for small numbers too.
-/// Source: Haldane 1937, "The exact value of the moments of the distribution of χ²", Biometrika 29.
+/// Sets `prediction` to Pearson's chi-square of all copies, divided by the number of ranks. Its mean and standard
+/// deviation are exact for small numbers of picks too. Source: Haldane 1937, "The exact value of the moments of the
+/// distribution of χ²", Biometrika 29.
 void set_agreement(Prediction& prediction, const Selection& selection, const Expectation& expectation,
                    std::span<const std::uint32_t> copies) {
     if (!selection.independent_picks) {
@@ -194,11 +196,11 @@ std::optional<std::uint32_t> takeover_on_wheel(std::span<const double> fitness) 
 } // namespace
 
 double selection_intensity(std::span<const double> copies, std::span<const double> fitness) {
-    return mean_of_copies(copies, standard_scores(fitness));
+    return copy_weighted_mean(copies, standard_scores(fitness));
 }
 
 double normal_selection_intensity(std::span<const double> copies) {
-    return mean_of_copies(copies, normal_scores(copies.size()));
+    return copy_weighted_mean(copies, normal_scores(copies.size()));
 }
 
 double loss_of_diversity(std::span<const double> copies) {
@@ -316,9 +318,9 @@ std::vector<Prediction> predictions(const Selection& selection, const Expectatio
                                         .sentence = sentence,
                                         .source = "Blickle & Thiele 1996",
                                         .unit = "deviations",
-                                        .expected = mean_of_copies(expectation.copies, scores),
-                                        .standard_error = error_of_intensity(selection, expectation, scores)});
-        intensity.observed = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
+                                        .expected = copy_weighted_mean(expectation.copies, scores),
+                                        .standard_error = standard_error_of_intensity(selection, expectation, scores)});
+        intensity.observed = known ? std::optional{copy_weighted_mean(counted, scores)} : std::nullopt;
     };
     add_intensity(
         "Selection intensity",
@@ -337,7 +339,7 @@ std::vector<Prediction> predictions(const Selection& selection, const Expectatio
         .sentence = "The share of organisms that are never picked; genes that only these organisms had are lost.",
         .source = "Motoki 2002",
         .expected = sum(expectation.unpicked_chance) / population,
-        .standard_error = error_of_unpicked(selection, expectation)});
+        .standard_error = standard_error_of_unpicked(selection, expectation)});
     if (known) {
         unpicked.observed = static_cast<double>(std::count(copies.begin(), copies.end(), 0u)) / population;
     }

@@ -53,12 +53,12 @@ struct Prediction {
     std::optional<double> observed{};       // nullopt: cannot be observed in one breeding
     std::optional<double> standard_error{}; // standard error of the observed number; nullopt: unknown
 
-    /// (observed − expected) / standard error. Returns nullopt if one of these three numbers is unknown. Infinite if
-    /// theory rules out the observed number.
+    /// Returns (observed − expected) / standard error. Returns nullopt if one of these three numbers is unknown.
+    /// Infinite if theory rules out the observed number.
     std::optional<double> deviation() const;
 };
 
-/// (observed − expected) / standard_error; 0 if both numbers differ only by rounding.
+/// Returns (observed − expected) / standard_error; 0 if both numbers differ only by rounding.
 double deviation(double observed, double expected, double standard_error);
 
 /// Predicts the copies of the fittest, selection intensity, the share not selected, loss of diversity, takeover time,
@@ -72,22 +72,22 @@ std::vector<Prediction> predictions(const Selection& selection, const Expectatio
 
 // ---- the numbers, one by one -----------------------------------------------------------------------------------
 
-/// (mean fitness of the picked − mean fitness of all) / standard deviation of the fitness; 0 if all fitness values are
-/// equal.
+/// Returns (mean fitness of the picked − mean fitness of all) / standard deviation of the fitness; 0 if all fitness
+/// values are equal.
 /// copies  expected or observed copies by rank; not all 0.
 double selection_intensity(std::span<const double> copies, std::span<const double> fitness);
 
-/// The selection intensity that these copies would have if the fitness were normally distributed. In large populations
-/// it tends to the closed forms of Blickle & Thiele.
+/// Returns the selection intensity that these copies would have if the fitness were normally distributed. In large
+/// populations it tends to the closed forms of Blickle & Thiele.
 double normal_selection_intensity(std::span<const double> copies);
 
-/// The share of the population that copies of other organisms replace. It is Σ max(0, 1 − expected copies) /
+/// Returns the share of the population that copies of other organisms replace. It is Σ max(0, 1 − expected copies) /
 /// population, with the copies scaled to as many picks as there are organisms. Source: Blickle & Thiele 1996.
 double loss_of_diversity(std::span<const double> copies);
 
-/// Generations until copies of the fittest occupy all places but one. Assumes one copy at the start, selection alone,
-/// replacement of the whole generation, and that every number of copies equals its expectation. Source: Goldberg & Deb
-/// 1991.
+/// Returns the number of generations until copies of the fittest occupy all places but one. Assumes one copy at the
+/// start, selection alone, replacement of the whole generation, and that every number of copies equals its expectation.
+/// Source: Goldberg & Deb 1991.
 ///
 /// copies   expected copies by rank.
 /// returns  nullopt if the takeover never happens or theory gives no value. Theory gives none if generations overlap,

@@ -17,8 +17,8 @@ struct Contestant {
     bool picked_now = false; // whether the pick shown selected this contestant
 };
 
-/// The contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. If an
-/// organism was drawn several times, as many of its entries are marked as it has picks. Empty if the server sent no
+/// Returns the contestants of the tournament that led to pick `index`, in the order drawn. All winners are marked. If
+/// an organism was drawn several times, as many of its entries are marked as it has picks. Empty if the server sent no
 /// contestants.
 std::vector<Contestant> contestants_of(const BreedingRecord& record, std::uint32_t index);
 

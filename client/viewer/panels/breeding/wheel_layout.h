@@ -22,17 +22,17 @@ struct Arc {
     double rank = 0;                   // rank of the organism; for several, the mean weighted by slot width
 };
 
-/// The arcs in the order of the slots, without slots of width 0. Neighbouring slots narrower than a pixel are merged
-/// into arcs that are at least a pixel wide.
+/// Returns the arcs in the order of the slots, without slots of width 0. Neighbouring slots narrower than a pixel are
+/// merged into arcs that are at least a pixel wide.
 ///
 /// circumference_px  circumference of the wheel in pixels, > 0
 std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_px);
 
-/// The organism whose slot contains the angle `turns`; nullptr if the server has not sent it yet.
+/// Returns the organism whose slot contains the angle `turns`; nullptr if the server has not sent it yet.
 const evod::v1::Contender* slot_at(const Contenders& contenders, double turns);
 
-/// Light for the fittest, dark for the lowest rank. Lightness alone encodes the rank, so it is visible with every kind
-/// of colour vision.
+/// Returns the colour of a rank: light for the fittest, dark for the lowest rank. Lightness alone encodes the rank, so
+/// it is visible with every kind of colour vision.
 Colour rank_colour(double rank, std::uint32_t contender_count);
 
 } // namespace evod::viewer

@@ -5,8 +5,8 @@
 namespace evod::viewer {
 
 TimeStepDemo::State TimeStepDemo::exact(double t) const {
-    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2.
-    // (C, S) is (cos wt, sin wt / w), (cosh wt, sinh wt / w) or (1, t).
+    // The exact position is x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2. The pair (C, S) is (cos wt, sin wt / w),
+    // (cosh wt, sinh wt / w) or (1, t).
     const double h = system_.damping_per_s / 2, square = system_.omega_per_s * system_.omega_per_s - h * h;
     const auto [x0, v0] = system_.start;
     const double w = std::sqrt(std::abs(square));
@@ -16,7 +16,7 @@ TimeStepDemo::State TimeStepDemo::exact(double t) const {
         s = (square > 0 ? std::sin(w * t) : std::sinh(w * t)) / w;
     }
     const double fading = std::exp(-h * t), b = v0 + h * x0;
-    // v = x': C' = −square·S, S' = C.
+    // The velocity is v = x', with C' = −square·S and S' = C.
     return {fading * (x0 * c + b * s), fading * (b * c - square * x0 * s) - h * fading * (x0 * c + b * s)};
 }
 
@@ -48,7 +48,8 @@ double TimeStepDemo::explicit_growth(double dt) const {
 }
 
 bool TimeStepDemo::symplectic_is_stable(double dt) const {
-    // Stable if the roots of z² − (2 − ω²dt² − c·dt)·z + 1 − c·dt lie within the unit circle (Jury 1962).
+    // Symplectic Euler is stable if the roots of z² − (2 − ω²dt² − c·dt)·z + 1 − c·dt lie within the unit circle (Jury
+    // 1962).
     const double omega = system_.omega_per_s, c = system_.damping_per_s * dt, k = omega * omega * dt * dt;
     return k + 2 * c < 4 && c < 2;
 }

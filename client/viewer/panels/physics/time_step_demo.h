@@ -37,18 +37,18 @@ class TimeStepDemo {
 
     explicit TimeStepDemo(const System& system) : system_{system} {}
 
-    /// The exact solution at t >= 0.
+    /// Returns the exact solution at t >= 0.
     State exact(double t_s) const;
     State step(State from, double dt_s, EulerMethod method) const;
-    /// The energy of a body of 1 kg in this state, in kg px²/s².
+    /// Returns the energy of a body of 1 kg in this state, in kg px²/s².
     double energy(const State& state) const;
 
     /// Returns step_count + 1 rows. Row 0 is the start; row n is the state after n steps.
     std::vector<Row> rows(double dt_s, std::size_t step_count) const;
 
-    /// The factor by which one step of explicit Euler multiplies a spring's energy.
+    /// Returns the factor by which one step of explicit Euler multiplies a spring's energy.
     double explicit_growth(double dt_s) const;
-    /// Whether the error of symplectic Euler stays bounded for ever.
+    /// Returns whether the error of symplectic Euler stays bounded for ever.
     bool symplectic_is_stable(double dt_s) const;
 
   private:

@@ -17,9 +17,9 @@ Colour pale(Colour colour) {
     return colour;
 }
 
-class Maker {
+class FigureBuilder {
   public:
-    Maker(const Subject& subject, const Subject* other) : subject_{subject}, other_{other} {}
+    FigureBuilder(const Subject& subject, const Subject* other) : subject_{subject}, other_{other} {}
 
     Figure take() { return std::move(figure_); }
     Plot& plot() { return figure_.plot; }
@@ -87,7 +87,7 @@ class Maker {
 } // namespace
 
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene) {
-    Maker make{subject, other};
+    FigureBuilder make{subject, other};
     make.plot().x_label = "generation";
     make.plot().counted_x = true;
     switch (quantity) {

@@ -32,6 +32,8 @@ struct Subject {
     std::string name; // name in the legend of a comparison
 };
 
+/// Builds the plot of a quantity for `subject`.
+///
 /// gene   the gene shown for Quantity::Genes and Quantity::Selection; empty: the means, or the selection, of all genes.
 /// other  the compared history; null: no comparison. If it has no island with this number, all its islands together are
 ///        shown.

@@ -30,21 +30,21 @@ class History {
     /// Records that all generations of this run up to `generation` have ended. A snapshot reports this number.
     void set_ended(std::uint64_t generation);
 
-    /// Call when events may have been missed.
+    /// Makes next_query() request the missing generations. Call when events may have been missed.
     void refresh() { missing_ = again_ = true; }
 
     struct Query {
         std::uint64_t number; // to be passed to receive()
         evod::v1::Request request;
     };
-    /// The query to send now; nullopt if nothing is missing or an answer is pending. After sending a query, call
-    /// receive() or cancel() exactly once.
+    /// Returns the query to send now; nullopt if nothing is missing or an answer is pending. After sending a query,
+    /// call receive() or cancel() exactly once.
     std::optional<Query> next_query();
 
     /// Takes the answer to query `number`. Null: the query failed, and next_query() returns it again.
     void receive(std::uint64_t number, const evod::v1::History* answer);
 
-    /// Whether a query is unanswered.
+    /// Returns whether a query is unanswered.
     bool pending() const { return asked_ != answered_; }
     /// Forgets the pending query. Its answer will be ignored.
     void cancel();
@@ -54,10 +54,10 @@ class History {
 
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
-    /// Whether the table contains every generation that is known to have ended.
+    /// Returns whether the table contains every generation that is known to have ended.
     bool complete() const { return !run_id_.empty() && !missing_; }
     const HistoryTable& table() const { return table_; }
-    /// A number that changes whenever the table changes.
+    /// Returns a number that changes whenever the table changes.
     std::uint64_t revision() const { return revision_; }
 
   private:

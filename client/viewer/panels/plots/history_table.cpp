@@ -17,7 +17,7 @@ constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4
 // Number of columns per gene. The columns of the selection account follow, with the same number per gene.
 constexpr std::size_t columns_of_gene = 4;
 
-std::size_t genes_in(std::size_t columns) {
+std::size_t gene_count_from(std::size_t columns) {
     return (columns - gene_begin) / (2 * columns_of_gene);
 }
 
@@ -27,7 +27,7 @@ constexpr std::size_t islands_max = 65'536; // no world can have as many islands
 /// for fitness_deviation they are in fitness_mean.
 enum class Combination { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
-/// columns  total number of columns.
+/// Returns how to combine the numbers in the column with index `column`. `columns` is the total number of columns.
 Combination combination_of(std::size_t column, std::size_t columns) {
     using enum Combination;
     constexpr Combination of_all[gene_begin] = {
@@ -56,12 +56,12 @@ Combination combination_of(std::size_t column, std::size_t columns) {
     if (column < gene_begin) {
         return of_all[column];
     }
-    const bool is_account = column >= gene_begin + genes_in(columns) * columns_of_gene;
+    const bool is_account = column >= gene_begin + gene_count_from(columns) * columns_of_gene;
     return is_account ? Mean
                       : of_gene[(column - gene_begin) % columns_of_gene]; // all islands have the same population size
 }
 
-std::size_t mean_of_deviation(std::size_t column) {
+std::size_t mean_column_for(std::size_t column) {
     return column < gene_begin ? column - 3 : column - 1;
 }
 
@@ -108,7 +108,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             number = mean_of([&](const auto& row) { return row[column]; });
             break;
         case Combination::Deviation: { // variance within islands plus variance between their means
-            const std::size_t mean_column = mean_of_deviation(column);
+            const std::size_t mean_column = mean_column_for(column);
             const double mean = mean_of([&](const auto& row) { return row[mean_column]; });
             number = std::sqrt(mean_of([&](const auto& row) {
                 const double apart = row[mean_column] - mean;
@@ -137,7 +137,7 @@ void HistoryTable::Rows::put(std::span<const double> numbers) {
         columns.resize(numbers.size(), std::vector<double>(generations().size(), unknown));
     }
     const std::vector<double>& known = columns[generation_column];
-    // The row is nearly always the last one.
+    // The search is nearly always unnecessary, because generations usually arrive in order.
     const auto found = known.empty() || known.back() < numbers[generation_column]
                            ? known.end()
                            : std::lower_bound(known.begin(), known.end(), numbers[generation_column]);
@@ -159,15 +159,15 @@ void HistoryTable::add(std::span<const std::vector<double>> rows) {
         while (end < rows.size() && rows[end][generation_column] == rows[0][generation_column]) {
             ++end;
         }
-        put_generation(rows.first(end));
+        store_generation(rows.first(end));
         rows = rows.subspan(end);
     }
 }
 
-void HistoryTable::put_generation(std::span<const std::vector<double>> rows) {
+void HistoryTable::store_generation(std::span<const std::vector<double>> rows) {
     if (names_.empty()) { // until set_gene_names() is called, genes are named by their numbers
         std::vector<std::string> numbers;
-        for (std::size_t gene = 0; gene < genes_in(rows[0].size()); ++gene) {
+        for (std::size_t gene = 0; gene < gene_count_from(rows[0].size()); ++gene) {
             numbers.push_back("gene_" + std::to_string(gene));
         }
         set_gene_names(std::move(numbers));

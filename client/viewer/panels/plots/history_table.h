@@ -33,18 +33,18 @@ class HistoryTable {
     void set_gene_names(std::vector<std::string> names);
     const std::vector<std::string>& gene_names() const { return gene_names_; }
 
-    /// A column of core::history_columns() with one number per generation, ordered by generation. For all islands
-    /// together, columns named "…best" and "…max" contain the greatest number, "…worst" and "…min" the least, and
-    /// counts the sum. Means are weighted by organism_count; standard deviations are those of the combined population.
-    /// The combined median is unknown (NaN). Returns an empty span if there is no such column or island.
+    /// Returns a column of core::history_columns() with one number per generation, ordered by generation. For all
+    /// islands together, columns named "…best" and "…max" contain the greatest number, "…worst" and "…min" the least,
+    /// and counts the sum. Means are weighted by organism_count; standard deviations are those of the combined
+    /// population. The combined median is unknown (NaN). Returns an empty span if there is no such column or island.
     std::span<const double> column(Island island, std::string_view name) const;
 
     std::uint32_t island_count() const { return static_cast<std::uint32_t>(islands_.size()); }
     bool empty() const { return all_.generations().empty(); }
-    /// The last generation in the table; 0 if the table is empty.
+    /// Returns the last generation in the table; 0 if the table is empty.
     std::uint64_t last_generation() const;
-    /// The last generation up to which no generation after `generation` is missing. Returns `generation` if the next
-    /// one is missing.
+    /// Returns the last generation up to which no generation after `generation` is missing. Returns `generation` if the
+    /// next one is missing.
     std::uint64_t last_without_gap(std::uint64_t generation) const;
 
     /// Returns CSV text that core::read_history_csv() can read, sorted by generation, then by island.
@@ -58,7 +58,7 @@ class HistoryTable {
         void put(std::span<const double> numbers);
     };
 
-    void put_generation(std::span<const std::vector<double>> rows);
+    void store_generation(std::span<const std::vector<double>> rows);
 
     std::vector<std::string> gene_names_;
     std::vector<std::string> names_; // names of the columns

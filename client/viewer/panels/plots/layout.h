@@ -20,7 +20,7 @@ struct Range {
     friend bool operator==(const Range&, const Range&) = default;
 };
 
-/// The smallest range that contains all finite numbers; nullopt if there is none.
+/// Returns the smallest range that contains all finite numbers; nullopt if there is none.
 std::optional<Range> range_of(std::span<const double> numbers);
 std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b);
 
@@ -36,7 +36,7 @@ struct Ticks {
 /// step_min  least distance between two ticks; 1 for counts
 Ticks ticks_in(Range range, int count_max, double step_min = 0);
 
-/// The text of a tick, with as many decimals as `step` requires: "1,500", "0.25", "1.5e+20".
+/// Returns the text of a tick, with as many decimals as `step` requires: "1,500", "0.25", "1.5e+20".
 std::string tick_label(double tick, double step);
 
 /// Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result lies
@@ -62,21 +62,22 @@ std::vector<Group> groups_of(std::span<const double> x, Range shown, std::size_t
 struct LinePoint {
     double x, y;
 };
-/// The line through the numbers. Each group contributes at most four points (the first, least, greatest and last
-/// number), so that no peak is lost.
+/// Returns the line through the numbers. Each group contributes at most four points (the first, least, greatest and
+/// last number), so that no peak is lost.
 std::vector<LinePoint> line_of(std::span<const double> x, std::span<const double> y, std::span<const Group> groups);
 
-/// The least value of `low` and the greatest value of `high` in a group. Groups without a finite number are skipped.
+/// A point of a band: the least value of `low` and the greatest value of `high` in a group. A group without a finite
+/// number has no point.
 struct BandPoint {
     double x, low, high;
 };
 std::vector<BandPoint> band_of(std::span<const double> x, std::span<const double> low, std::span<const double> high,
                                std::span<const Group> groups);
 
-/// The mean of the finite numbers in a group; 0 if there is none.
+/// Returns the mean of the finite numbers in a group; 0 if there is none.
 double mean_of(std::span<const double> y, Group group);
 
-/// The index of the number in `x` that is nearest to `at`; nullopt if `x` is empty.
+/// Returns the index of the number in `x` that is nearest to `at`; nullopt if `x` is empty.
 std::optional<std::size_t> nearest(std::span<const double> x, double at);
 
 /// Counts the numbers in each of `count` bins of equal width. Numbers outside the range are not counted. The upper end

@@ -36,13 +36,13 @@ class Drawing {
         lay_out(box);
     }
 
-    /// Draws no axes. `y` is the vertical range of the box.
+    /// Creates a drawing without axes. `y` is the vertical range of the box.
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
         : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
         group(columns());
     }
 
-    /// The rectangle in which the data are drawn.
+    /// Returns the rectangle in which the data are drawn.
     const Box& area() const { return area_; }
     double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
 
@@ -53,7 +53,7 @@ class Drawing {
         draw_legend();
     }
 
-    void draw_bare() {
+    void draw_without_axes() {
         list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
         draw_series();
         write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
@@ -416,7 +416,7 @@ void curve_widget(const Plot& plot, Range y, float height_pixels) {
     const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), height_pixels};
     ImGui::Dummy(size);
     const Box box{place.x, place.y, place.x + size.x, place.y + size.y};
-    Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_bare();
+    Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_without_axes();
 }
 
 sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {

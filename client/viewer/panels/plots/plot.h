@@ -50,7 +50,7 @@ struct PlotView {
     std::optional<Range> x; // nullopt: the whole axis
 };
 
-/// The x range of all series together.
+/// Returns the x range of all series together.
 Range whole_x(const Plot& plot);
 
 /// Draws the plot in a widget as wide as the window. The wheel zooms along the x axis, dragging moves the visible part,

@@ -24,11 +24,11 @@ class RunHistory {
 
     const History& history() const { return history_; }
     const HistoryTable& table() const { return history_.table(); }
-    /// Why the last query was refused or not answered, as a sentence; empty if it was answered.
+    /// Returns why the last query was refused or not answered, as a sentence; empty if it was answered.
     const std::string& problem() const { return poll_.problem(); }
 
   private:
-    // A world may finish more generations per second than a user can see.
+    // Interval between queries, because a world may finish more generations per second than a user can see.
     static constexpr std::chrono::milliseconds poll_interval{100};
 
     void send_query(ViewedWorld& world, Poll::Clock::time_point now);

@@ -44,9 +44,9 @@ TEST(Minimap, IsHiddenWhenTheWholeIslandIsVisible) {
     Camera camera;
     camera.set_viewport({0, 0, 1000, 600});
     camera.set_island(2'000, 1'000);
-    EXPECT_TRUE(sees_all(camera, 2'000, 1'000));
+    EXPECT_TRUE(is_whole_island_visible(camera, 2'000, 1'000));
     camera.zoom_at({500, 300}, 2);
-    EXPECT_FALSE(sees_all(camera, 2'000, 1'000));
+    EXPECT_FALSE(is_whole_island_visible(camera, 2'000, 1'000));
 }
 
 } // namespace

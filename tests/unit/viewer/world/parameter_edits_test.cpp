@@ -206,7 +206,7 @@ TEST_F(ParameterEditsTest, ShowsChangesOfOthersAndKeepsEdits) {
     *changed.add_changed() = state("food_count", count(28));
     EXPECT_TRUE(edits.update(changed));
     EXPECT_EQ(edits.shown(mutation_chance).real(), 0.3);
-    EXPECT_EQ(edits.changed_by(mutation_chance), "evoctl 127.0.0.1:9");
+    EXPECT_EQ(edits.client_of_last_change(mutation_chance), "evoctl 127.0.0.1:9");
     EXPECT_EQ(edits.shown(food_count).count(), 30u);
     EXPECT_EQ(edits.requested_value(food_count).count(), 28u);
     EXPECT_EQ(edits.apply("w")->set_parameters().expected_revision(), 8u) << "the revision was received";
@@ -231,7 +231,7 @@ TEST_F(ParameterEditsTest, AnOwnChangeHasNoOtherAuthor) {
     changed.set_revision(8);
     *changed.add_changed() = state("mutation_chance", real(0.2));
     EXPECT_TRUE(edits.update(changed));
-    EXPECT_EQ(edits.changed_by(mutation_chance), "");
+    EXPECT_EQ(edits.client_of_last_change(mutation_chance), "");
 }
 
 TEST_F(ParameterEditsTest, UndoAndRedoSendTheOldAndNewValues) {
