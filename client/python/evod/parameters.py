@@ -154,7 +154,7 @@ class Registry(Mapping[str, Description]):
     def assignments(self, values: Mapping[str, object]) -> list[world_pb2.ParameterAssignment]:
         """Converts a mapping of names to values into the messages to send.
 
-        Raises InvalidArgument with every value that is not allowed, in the same words as the server.
+        Raises one InvalidArgument that lists every value that is not allowed, in the same words as the server.
         """
         made, violations = [], []
         for name, value in values.items():
@@ -174,7 +174,7 @@ class Registry(Mapping[str, Description]):
     ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
         """Converts a mapping of names to values, or to schedules of values by generation, into the messages to send.
 
-        Returns the values for generation 1 and the values for later generations. Raises InvalidArgument with every value that
+        Returns the values for generation 1 and the values for later generations. Raises one InvalidArgument that lists every value that
         is not allowed.
         """
         first: dict[str, object] = {}
