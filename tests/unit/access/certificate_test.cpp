@@ -1,6 +1,7 @@
 #include "server/access/certificate.h"
 
 #include "server/access/tls.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -23,13 +24,6 @@ using testing::HasSubstr;
 
 class CertificateTest : public testing::Test {
   protected:
-    CertificateTest() {
-        std::string name = (fs::temp_directory_path() / "evod_XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-    }
-    ~CertificateTest() override { fs::remove_all(folder); }
-
     using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
     Certificate read() const {
         std::FILE* const file = std::fopen((folder + "/evod.crt").c_str(), "r");
@@ -44,7 +38,8 @@ class CertificateTest : public testing::Test {
         return {std::istreambuf_iterator<char>{file}, {}};
     }
 
-    std::string folder;
+    support::TemporaryFolder temporary;
+    const std::string& folder = temporary.path();
 };
 
 TEST_F(CertificateTest, CoversAllHostsItIsMadeFor) {

@@ -1,6 +1,7 @@
 #include "server/access/gate.h"
 
 #include "server/access/certificate.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -17,14 +18,8 @@ using std::chrono::milliseconds;
 
 class GateTest : public testing::Test {
   protected:
-    GateTest() {
-        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-    }
-    ~GateTest() override { std::filesystem::remove_all(folder); }
-
-    std::string folder;
+    support::TemporaryFolder temporary;
+    const std::string& folder = temporary.path();
     Gate::Clock::time_point now;
 };
 

@@ -1,5 +1,7 @@
 #include "server/access/token_file.h"
 
+#include "tests/support/temporary_folder.h"
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -13,21 +15,12 @@ namespace {
 using base::RefusalCode;
 using testing::HasSubstr;
 
-struct Folder {
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        path = name;
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-    std::string path;
-};
-
 TEST(TokenFile, ATokenIsFoundByItsSecretOnly) {
-    const Folder folder;
-    const auto anna = add_token(folder.path, "anna", Role::Viewer), karl = add_token(folder.path, "karl", Role::Admin);
+    const support::TemporaryFolder folder;
+    const auto anna = add_token(folder.path(), "anna", Role::Viewer),
+               karl = add_token(folder.path(), "karl", Role::Admin);
     ASSERT_TRUE(anna && karl);
-    const auto tokens = read_tokens(folder.path);
+    const auto tokens = read_tokens(folder.path());
     ASSERT_TRUE(tokens) << to_text(tokens.error());
     ASSERT_EQ(tokens->size(), 2u);
     EXPECT_EQ(find(*tokens, digest_of(*anna))->name, "anna");
@@ -38,29 +31,29 @@ TEST(TokenFile, ATokenIsFoundByItsSecretOnly) {
 }
 
 TEST(TokenFile, NamesAreUniqueAndRevokedOnesFree) {
-    const Folder folder;
-    ASSERT_TRUE(add_token(folder.path, "anna", Role::Viewer));
-    EXPECT_EQ(add_token(folder.path, "anna", Role::Admin).error().code, RefusalCode::AlreadyExists);
-    ASSERT_TRUE(revoke_token(folder.path, "anna"));
-    EXPECT_TRUE(read_tokens(folder.path)->empty());
-    EXPECT_EQ(revoke_token(folder.path, "anna").error().code, RefusalCode::NotFound);
+    const support::TemporaryFolder folder;
+    ASSERT_TRUE(add_token(folder.path(), "anna", Role::Viewer));
+    EXPECT_EQ(add_token(folder.path(), "anna", Role::Admin).error().code, RefusalCode::AlreadyExists);
+    ASSERT_TRUE(revoke_token(folder.path(), "anna"));
+    EXPECT_TRUE(read_tokens(folder.path())->empty());
+    EXPECT_EQ(revoke_token(folder.path(), "anna").error().code, RefusalCode::NotFound);
     for (const char* name : {"", "a b", "a\n", "\xc3\xa4", "a/b"}) {
-        EXPECT_EQ(add_token(folder.path, name, Role::Viewer).error().code, RefusalCode::InvalidArgument) << name;
+        EXPECT_EQ(add_token(folder.path(), name, Role::Viewer).error().code, RefusalCode::InvalidArgument) << name;
     }
 }
 
 TEST(TokenFile, IsRefusedIfOtherUsersHaveAccess) {
-    const Folder folder;
-    ASSERT_TRUE(add_token(folder.path, "anna", Role::Viewer));
-    const std::string path = token_file_of(folder.path);
+    const support::TemporaryFolder folder;
+    ASSERT_TRUE(add_token(folder.path(), "anna", Role::Viewer));
+    const std::string path = token_file_of(folder.path());
     for (const mode_t mode : {0640, 0604, 0660, 0601}) {
         ASSERT_EQ(::chmod(path.c_str(), mode), 0);
-        EXPECT_EQ(read_tokens(folder.path).error().code, RefusalCode::FailedPrecondition);
+        EXPECT_EQ(read_tokens(folder.path()).error().code, RefusalCode::FailedPrecondition);
     }
     ASSERT_EQ(::chmod(path.c_str(), 0600), 0);
     std::filesystem::rename(path, path + "2");
     std::filesystem::create_symlink(path + "2", path);
-    EXPECT_FALSE(read_tokens(folder.path));
+    EXPECT_FALSE(read_tokens(folder.path()));
 }
 
 TEST(TokenFile, ARefusalNamesTheInvalidLine) {

@@ -1,5 +1,7 @@
 #include "client/core/credentials.h"
 
+#include "tests/support/temporary_folder.h"
+
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -14,13 +16,7 @@ using testing::HasSubstr;
 
 class CredentialsTest : public testing::Test {
   protected:
-    CredentialsTest() {
-        std::string name = (fs::temp_directory_path() / "evod_XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        folder = name;
-        ::unsetenv("EVOD_TOKEN");
-    }
-    ~CredentialsTest() override { fs::remove_all(folder); }
+    CredentialsTest() { ::unsetenv("EVOD_TOKEN"); }
 
     void write_token(const std::string& text, fs::perms permissions = fs::perms::owner_read | fs::perms::owner_write) {
         credentials.token_file = folder + "/token";
@@ -33,7 +29,8 @@ class CredentialsTest : public testing::Test {
         return applied ? "" : applied.error().what;
     }
 
-    std::string folder;
+    support::TemporaryFolder temporary;
+    const std::string& folder = temporary.path();
     Credentials credentials;
     Options options;
 };
@@ -53,7 +50,8 @@ TEST_F(CredentialsTest, TheTokenComesFromFileOrEnvironment) {
 TEST_F(CredentialsTest, ATokenFileMustBePrivateAndHoldAToken) {
     for (const fs::perms others : {fs::perms::group_read, fs::perms::others_read, fs::perms::others_write}) {
         write_token("evod_file\n", fs::perms::owner_read | others);
-        EXPECT_THAT(refusal(), HasSubstr("--token-file: " + credentials.token_file + ": other users can read the file"));
+        EXPECT_THAT(refusal(),
+                    HasSubstr("--token-file: " + credentials.token_file + ": other users can read the file"));
     }
     fs::remove(credentials.token_file);
     write_token(" \n");

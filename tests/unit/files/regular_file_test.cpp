@@ -1,5 +1,7 @@
 #include "server/files/regular_file.h"
 
+#include "tests/support/temporary_folder.h"
+
 #include <gmock/gmock.h>
 
 #include <unistd.h>
@@ -15,17 +17,11 @@ using testing::HasSubstr;
 
 class RegularFileTest : public testing::Test {
   protected:
-    RegularFileTest() {
-        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
-        EXPECT_NE(::mkdtemp(name.data()), nullptr);
-        folder = name;
-        path = folder + "/file";
-    }
-    ~RegularFileTest() override { std::filesystem::remove_all(folder); }
-
     void write(const std::string& bytes) const { std::ofstream{path, std::ios::binary} << bytes; }
 
-    std::string folder, path;
+    support::TemporaryFolder temporary;
+    const std::string& folder = temporary.path();
+    const std::string path = folder + "/file";
 };
 
 TEST_F(RegularFileTest, IsReadCompletely) {

@@ -7,6 +7,7 @@
 #include "server/protocol/parameters.h"
 #include "server/recording/recorder.h"
 #include "server/run_file/database.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -16,30 +17,7 @@
 
 namespace evod::recording {
 using namespace run_file;
-
-class TemporaryFolder {
-  public:
-    explicit TemporaryFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
-        std::string name = (in / "evod_XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::string& path() const { return path_; }
-    void clear() const {
-        for (const auto& file : std::filesystem::directory_iterator{path_}) {
-            std::filesystem::remove(file);
-        }
-    }
-
-  private:
-    std::string path_;
-};
+using support::TemporaryFolder;
 
 /// Changes a run file with SQL, without correcting checksums.
 inline void change(const std::string& path, const std::string& sql) {

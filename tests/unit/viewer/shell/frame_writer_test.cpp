@@ -1,5 +1,6 @@
 #include "client/viewer/drawing/png.h"
 #include "client/viewer/shell/frame_writer.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -35,12 +36,8 @@ void expect_same(const sf::Image& image, const sf::Image& expected) {
 }
 
 struct FrameWriterTest : testing::Test {
-    FrameWriterTest() {
-        std::string name = (std::filesystem::temp_directory_path() / "film-XXXXXX").string();
-        folder = mkdtemp(name.data());
-    }
-    ~FrameWriterTest() override { std::filesystem::remove_all(folder); }
-    std::filesystem::path folder;
+    support::TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path();
 };
 
 TEST(FrameFileName, ContainsNumberAndTickAndSortsByTime) {

@@ -1,5 +1,7 @@
 #include "client/viewer/shell/recent_servers.h"
 
+#include "tests/support/temporary_folder.h"
+
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -14,12 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct RecentServersTest : testing::Test {
-    RecentServersTest() {
-        std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
-        folder = mkdtemp(name.data());
-        file = folder / "evod" / "recent_servers";
-    }
-    ~RecentServersTest() override { std::filesystem::remove_all(folder); }
     void write(const std::string& text) const {
         std::filesystem::create_directories(file.parent_path());
         std::ofstream{file} << text;
@@ -28,7 +24,8 @@ struct RecentServersTest : testing::Test {
         std::ifstream in{file};
         return {std::istreambuf_iterator<char>{in}, {}};
     }
-    std::filesystem::path folder, file;
+    support::TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path(), file = folder / "evod" / "recent_servers";
 };
 
 TEST_F(RecentServersTest, ListsTheNewestFirstAndEachOnce) {
