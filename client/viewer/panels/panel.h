@@ -25,7 +25,7 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        RunHistory* history = nullptr; // of the world; set by Panels
+        const RunHistory* history = nullptr; // of the world; set by Panels
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };

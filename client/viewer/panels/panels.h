@@ -33,8 +33,6 @@ struct SidebarSettings {
     float width = sidebar_width; // pixels at scale 1
     bool collapsed = false;
     std::string tab = "Parameters"; // title of the panel that the sidebar shows
-
-    friend bool operator==(const SidebarSettings&, const SidebarSettings&) = default;
 };
 
 class Panels {

@@ -4,7 +4,7 @@
 #include "client/viewer/drawing/palette.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panes/timeline_layout.h"
-#include "client/viewer/world/status_text.h"
+#include "client/viewer/text/numbers.h"
 
 #include <imgui.h>
 

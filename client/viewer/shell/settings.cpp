@@ -3,7 +3,6 @@
 #include <imgui.h>
 #include <imgui_internal.h> // ImGuiSettingsHandler
 
-#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 #include <system_error>

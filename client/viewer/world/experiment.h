@@ -6,6 +6,7 @@
 
 #include "client/viewer/world/poll.h"
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -24,7 +25,9 @@ class Experiment {
     const std::string& text() const { return text_; }
 
   private:
-    Poll poll_;
+    static constexpr std::chrono::seconds poll_interval{1}; // a fast world finishes many generations per second
+
+    Poll poll_{poll_interval};
     std::string world_, run_id_;
     std::uint64_t connected_count_ = 0;
     bool stale_ = true;

@@ -256,6 +256,36 @@ quit
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
+TEST_F(PanelsTest, TheSidebarIsTheSameAfterARestart) {
+    RealServer server{{"--seed", "7"}};
+    const Ran first = play(server.address(), R"(
+wait snapshot
+wait widget Parameters/Search
+key F2
+wait widget Worlds/default
+key F12
+wait gone Worlds/default
+quit
+)");
+    ASSERT_EQ(first.status, 0) << first.output;
+    const Ran second = play(server.address(), R"(
+wait snapshot
+click "Show the sidebar"
+wait widget Worlds/default
+quit
+)");
+    EXPECT_EQ(second.status, 0) << second.output;
+}
+
+TEST_F(PanelsTest, ADamagedSettingsFileIsIgnored) {
+    RealServer server{{"--seed", "7"}};
+    std::filesystem::create_directories(folder.file("state/evod"));
+    std::ofstream{folder.file("state/evod/evoview.ini")} << "[Sidebar][Data]\nwidth=nan\nwidth=-5\nwidth=1e30\n"
+                                                            "collapsed\ntab=no such panel\n\n[Sidebar\n=\n\xff\x01";
+    const Ran ran = play(server.address(), "wait snapshot\nkey F4\nwait widget Parameters/Search\nquit\n");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
 TEST_F(PanelsTest, EscQuitsOnlyAtTheSecondPress) {
     RealServer server{{"--seed", "7"}};
     const std::string path = folder.file("still_there.png");
