@@ -13,7 +13,7 @@ namespace evod::simulation {
 namespace {
 
 // The kinds of entities in the state hash, except organisms. The hashes of every run depend on these numbers.
-enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
+enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5, EatenKind = 6 };
 
 constexpr std::size_t organisms_per_block = 1024;
 /// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
@@ -60,6 +60,9 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     fate_.begin_generation(organisms);
     counts_ = {};
+    food_counts_ = parameters.fitness_per_food != 0;
+    poison_counts_ = parameters.fitness_per_poison != 0;
+    eaten_hash_ = {};
     living_.clear();
     bodies_.clear();
     boxes_.clear();
@@ -183,7 +186,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     counts_.too_fast_count += step.too_fast;
     counts_.speed_limit_count += step.speed_limited;
     const base::StateHash organisms = feed_and_remove_dead(parameters, tick, executor);
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + eaten_hash_ + hash_of_boxes();
 }
 
 /// Processes food and poison, in parallel if that is faster.
@@ -280,6 +283,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
         organisms += block.hash;
         food_.add_to_hash(block.food_hash_change);
         poison_.add_to_hash(block.poison_hash_change);
+        eaten_hash_ += block.eaten_hash_change;
         counts_.food_eaten += block.food_eaten;
         counts_.poison_eaten += block.poison_eaten;
         counts_.starved_count += block.starved;
@@ -309,7 +313,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
 void Island::feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick,
                                            std::size_t index) {
     Block& block = blocks_[index];
-    block.food_hash_change = block.poison_hash_change = {};
+    block.food_hash_change = block.poison_hash_change = block.eaten_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
     for (const Touch& touch : food_feeding_.touches(index)) {
         food_.prefetch_item(touch.item);
@@ -332,7 +336,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return std::min(health + static_cast<float>(parameters.food_health), cap); });
         block.food_hash_change += food_.set_due(touch.item, tick);
-        ++fate_.food_eaten[touch.id];
+        count_eaten(block, touch.id, fate_.food_eaten, food_counts_);
         ++block.food_eaten;
     }
     for (const Touch& touch : poison_feeding_.touches(index)) {
@@ -342,7 +346,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return health - static_cast<float>(parameters.poison_harm); });
         block.poison_hash_change += poison_.set_due(touch.item, tick);
-        ++fate_.poison_eaten[touch.id];
+        count_eaten(block, touch.id, fate_.poison_eaten, poison_counts_);
         ++block.poison_eaten;
     }
     // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
@@ -366,6 +370,22 @@ void Island::change_health(Block& block, std::uint32_t body, Change&& change) {
     block.hash -= hash_of_organism(bodies_, living_, body);
     living_.health[body] = change(living_.health[body]);
     block.hash += hash_of_organism(bodies_, living_, body);
+}
+
+void Island::count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32_t>& eaten, bool counts) {
+    if (!counts) {
+        ++eaten[id];
+        return;
+    }
+    block.eaten_hash_change -= hash_of_eaten(id);
+    ++eaten[id];
+    block.eaten_hash_change += hash_of_eaten(id);
+}
+
+base::StateHash Island::hash_of_eaten(std::uint32_t id) const {
+    const std::uint32_t food = food_counts_ ? fate_.food_eaten[id] : 0;
+    const std::uint32_t poison = poison_counts_ ? fate_.poison_eaten[id] : 0;
+    return food == 0 && poison == 0 ? base::StateHash{} : base::EntityHash{EatenKind, id}.add(food, poison).finish();
 }
 
 bool Island::is_dying(std::uint32_t body) const {
@@ -520,7 +540,9 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     // At the beginning of a generation, the index of every organism equals its id.
     base::StateHash organisms;
     std::vector<std::uint32_t> gone;
+    eaten_hash_ = {};
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
+        eaten_hash_ += hash_of_eaten(id);
         if (fate_.cause[id] != CauseOfDeath::Alive) {
             gone.push_back(id);
             continue;
@@ -541,7 +563,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
         living_.health[id] = -std::numeric_limits<float>::infinity();
     }
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + eaten_hash_ + hash_of_boxes();
 }
 
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -551,9 +573,12 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
-                fitness[id] = body_of_[id] == no_body
-                                  ? fate_.lived_ticks[id] * parameters.tick_s
-                                  : tick * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
+                const bool dead = body_of_[id] == no_body;
+                const double lived_s = (dead ? fate_.lived_ticks[id] : tick) * parameters.tick_s;
+                const double health = dead ? 0 : static_cast<double>(living_.health[body_of_[id]]);
+                fitness[id] = parameters.fitness_per_second * lived_s + parameters.fitness_per_health * health +
+                              parameters.fitness_per_food * fate_.food_eaten[id] +
+                              parameters.fitness_per_poison * fate_.poison_eaten[id];
             }
         });
         return fitness;

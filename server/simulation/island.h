@@ -59,8 +59,8 @@ class Island {
     /// Sets the island to a state that check() has accepted.
     void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
 
-    /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: seconds lived + health, or
-    /// a function of the chromosome alone.
+    /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: a weighted sum of
+    /// seconds lived, health, food eaten and poison eaten, or a function of the chromosome alone.
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
@@ -112,6 +112,9 @@ class Island {
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
     base::StateHash hash_of_boxes() const;
+    /// Returns the hash of what one organism has eaten. It covers only kinds of items whose weight in the fitness is not
+    /// 0; otherwise the numbers of eaten items do not affect the run.
+    base::StateHash hash_of_eaten(std::uint32_t id) const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
@@ -119,7 +122,7 @@ class Island {
     struct Block {
         base::StateHash hash;             // hash of the living organisms
         std::vector<std::uint32_t> dying; // bodies whose health was at most 0 before they ate
-        base::StateHash food_hash_change, poison_hash_change;
+        base::StateHash food_hash_change, poison_hash_change, eaten_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
     template <class OfFood, class OfPoison>
@@ -128,6 +131,8 @@ class Island {
     void feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>
     void change_health(Block& block, std::uint32_t body, Change&& change);
+    /// Adds 1 to an element of `eaten`. `counts` states whether the state hash covers these numbers.
+    void count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32_t>& eaten, bool counts);
     bool is_dying(std::uint32_t body) const;
     void record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause);
 
@@ -151,6 +156,8 @@ class Island {
     std::uint32_t alive_count_ = 0;
     base::Column<std::uint32_t> body_of_; // index in bodies(), by id
     base::StateHash born_hash_;           // hash of the chromosomes, which do not change during a generation
+    base::StateHash eaten_hash_;          // sum of hash_of_eaten() over all organisms
+    bool food_counts_ = false, poison_counts_ = false; // whether the fitness depends on the numbers of eaten items
     base::StateHash hash_;
 
     std::vector<Block> blocks_; // kept between ticks

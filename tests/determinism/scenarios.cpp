@@ -108,6 +108,13 @@ const std::vector<Scenario>& all() {
          480,
          {}},
 
+        {"weighted_fitness", // eaten items are part of the state; the weights change while it runs
+         R"({"island_count": 2, "population_size": 40, "generation_s": 2, "food_count": 60, "fitness_per_second": 0,
+             "fitness_per_health": 0.5, "fitness_per_food": 10, "selection": "truncation"})",
+         base::Seed{55},
+         480,
+         {{150, R"({"fitness_per_second": -1, "fitness_per_food": 0, "fitness_per_poison": -20})"}}},
+
         {"crowded_migration", // more arrive than an island holds
          R"({"fitness": "gene_sum", "island_count": 4, "population_size": 5, "migration": "fully_connected",
              "migration_epoch": 2, "migrant_count": 3})",

@@ -46,6 +46,10 @@ std::vector<parameters::Parameters> varied_worlds() {
               {"island_width_px", 8000.0},
               {"food_count", 900u},
               {"generation_s", 3.0}}),
+        with({{"fitness_per_second", 0.0},
+              {"fitness_per_food", 10.0},
+              {"fitness_per_poison", -5.0},
+              {"respawn_s", 1.0}}),
         with({{"fitness", std::string{"rastrigin"}}, {"island_count", 2u}}),
     };
 }
