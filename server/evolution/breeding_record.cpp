@@ -151,12 +151,14 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                          WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
-            const std::optional<GeneMask> mask = descent.draw_mask(child / 2);
+            const std::optional<Mixture> drawn = descent.draw_mixture(child / 2);
+            const Mixture mixture = drawn.value_or(Mixture{});
             const Inheritance inheritance =
-                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0));
+                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mixture : mixture.complement());
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
-            descendant.crossed = mask.has_value();
+            descendant.second_share = inheritance.second_share;
+            descendant.crossed = drawn.has_value();
             descent.make_child(inheritance, place, made, WithRecord{descendant});
         }
         descendant.first_genes = chromosome(genes, descendant.parents.first);

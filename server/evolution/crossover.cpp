@@ -14,6 +14,7 @@ int cut_count(const Parameters& parameters) {
     case CrossoverMethod::MultiPoint:
         return static_cast<int>(parameters.crossover_cuts);
     case CrossoverMethod::Uniform:
+    case CrossoverMethod::Blend:
     case CrossoverMethod::None:
         break;
     }
@@ -46,14 +47,17 @@ Crossover::Crossover(const Parameters& parameters)
     EVOD_ASSERT(mask_count_ >= 1);
 }
 
-std::optional<GeneMask> Crossover::draw(base::RandomStream& random) const {
+std::optional<Mixture> Crossover::draw(base::RandomStream& random) const {
     if (method_ == CrossoverMethod::None || !chance_.draw(random)) {
         return {};
     }
     if (method_ == CrossoverMethod::Uniform) {
-        return random.word() & all_genes;
+        return Mixture{.from_second = random.word() & all_genes};
     }
-    return masks_[random.below(mask_count_)];
+    if (method_ == CrossoverMethod::Blend) {
+        return Mixture{.second_share = (random.word() + 0.5) * 0x1p-32};
+    }
+    return Mixture{.from_second = masks_[random.below(mask_count_)]};
 }
 
 } // namespace evod::evolution
