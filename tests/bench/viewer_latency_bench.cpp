@@ -115,8 +115,8 @@ class Viewer {
         renderer().gui().handle(event);
     }
     Point find(const std::string& widget) {
-        frames_until([&] { return renderer().gui().widget_positions().find(widget).has_value(); });
-        return *renderer().gui().widget_positions().find(widget);
+        frames_until([&] { return !renderer().gui().widget_positions().find(widget).empty(); });
+        return renderer().gui().widget_positions().find(widget).front()->centre;
     }
     void click(const std::string& widget) {
         const Point at = find(widget);

@@ -23,7 +23,7 @@ void ForkDialog::build(ViewedWorld& world) {
         ImGui::SetKeyboardFocusHere();
     }
     const bool entered = ImGui::InputText("##name", name_.data(), name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-    widgets::mark("Name of the new world");
+    widgets::mark_field("Name of the new world", name_.data());
     ImGui::SameLine();
     const bool named = name_[0] != '\0';
     ImGui::BeginDisabled(!named);

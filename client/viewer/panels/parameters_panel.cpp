@@ -199,7 +199,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Apply")) {
         apply_ = true;
     }
-    widgets::explain("Sends all edits as one change: the server accepts all of them or none.");
+    widgets::explain(count == 0 ? "There are no edits."
+                                : "Sends all edits as one change: the server accepts all of them or none.");
     ImGui::SameLine();
     if (widgets::button("Discard")) {
         edits_.revert_all();

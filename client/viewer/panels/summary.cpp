@@ -139,7 +139,7 @@ void Summary::build_speed(ViewedWorld& world) {
                             factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
-    widgets::mark("speed");
+    widgets::mark_field("speed", factor);
     widgets::explain("+ doubles and − halves the speed; 1 is real time.");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
         const bool allowed = *factor_ >= least && *factor_ <= most; // the slider does not limit a typed value

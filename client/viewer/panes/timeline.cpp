@@ -181,7 +181,7 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5);
     const bool entered =
         ImGui::InputInt("##generation", &typed_generation_, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue);
-    widgets::mark("generation");
+    widgets::mark_field("generation", typed_generation_);
     if (entered) {
         world.replay.seek(moment_of_generation(static_cast<std::uint64_t>(std::max(typed_generation_, 0))));
     } else if (!ImGui::IsItemActive()) {

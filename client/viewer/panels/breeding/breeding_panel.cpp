@@ -223,27 +223,24 @@ void BreedingPanel::build_generation(const Context& context) {
     const std::uint64_t one = 1;
     std::uint64_t wanted = chosen_;
     const bool changed = ImGui::InputScalar("##generation", ImGuiDataType_U64, &wanted, &one, nullptr);
-    widgets::mark("Generation");
+    widgets::mark_field("Generation", static_cast<double>(chosen_));
     if (changed && newest_ > 0) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
     widgets::explain("Generation of the parents; the panel shows any generation that has bred");
     ImGui::SameLine();
-    ImGui::Checkbox("the newest", &follow_);
-    widgets::mark("the newest");
+    widgets::checkbox("the newest", follow_);
     widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped");
     ImGui::SameLine();
-    ImGui::Checkbox("play each", &play_each_);
-    widgets::mark("play each");
+    widgets::checkbox("play each", play_each_);
     widgets::explain("Plays each breeding from the start when it appears");
     if (may_hold(context.world)) {
         ImGui::SameLine();
         bool held = hold_.on();
-        if (ImGui::Checkbox("hold the world", &held)) {
+        if (widgets::checkbox("hold the world", held)) {
             held ? hold_.hold(run_of(context.world)) : hold_.release();
         }
-        widgets::mark("hold the world");
         widgets::explain(
             "While this panel is open, pauses the world after each generation, one tick into the next. Resuming runs "
             "one more generation.");
@@ -296,14 +293,14 @@ void BreedingPanel::build_transport(const Gui& gui) {
                            static_cast<float>(Stepper::speed_max), "%.3g steps/s", ImGuiSliderFlags_Logarithmic)) {
         stepper_.set_speed(double{speed});
     }
-    widgets::mark("steps/s");
+    widgets::mark_field("steps/s", stepper_.speed());
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
     auto position = static_cast<int>(stepper_.position());
     if (ImGui::SliderInt("##position", &position, 0, static_cast<int>(stepper_.last_position()), "step %d")) {
         stepper_.go_to(static_cast<std::uint32_t>(std::max(position, 0)));
     }
-    widgets::mark("step");
+    widgets::mark_field("step", stepper_.position());
 }
 
 void BreedingPanel::take_keys() {
