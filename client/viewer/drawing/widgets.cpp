@@ -22,7 +22,8 @@ void WidgetPositions::add(MarkedWidget widget) {
     building_.push_back(std::move(widget));
 }
 
-void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, MarkedWidget widget) {
+void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, std::string_view alias,
+                                 MarkedWidget widget) {
     const auto owner = std::ranges::find_if(building_, [&](const MarkedWidget& built) {
         return built.kind == MarkedWidget::Kind::DropDown && built.panel == panel_ && built.name == drop_down;
     });
@@ -30,7 +31,16 @@ void WidgetPositions::add_choice(std::string_view drop_down, std::string_view ch
         owner->choices.emplace_back(choice);
     }
     widget.name = std::string{drop_down} + ": " + std::string{choice};
+    if (!alias.empty()) {
+        widget.aliases = {std::string{drop_down} + ": " + std::string{alias}};
+    }
     add(std::move(widget));
+}
+
+void WidgetPositions::add_alias(std::string_view alias) {
+    if (!building_.empty()) {
+        building_.back().aliases.emplace_back(alias);
+    }
 }
 
 void WidgetPositions::explain(unsigned id, std::string_view note) {
@@ -42,10 +52,12 @@ void WidgetPositions::explain(unsigned id, std::string_view note) {
 std::vector<const MarkedWidget*> WidgetPositions::find(std::string_view name) const {
     std::vector<const MarkedWidget*> found;
     for (const MarkedWidget& widget : shown_) {
-        const bool known = std::ranges::any_of(found, [&](const MarkedWidget* other) {
-            return other->id == widget.id && other->centre == widget.centre; // another name of the same widget
-        });
-        if (!known && (widget.name == name || widget.full_name() == name)) {
+        std::string_view in_panel = name; // without the panel of the widget
+        if (!widget.panel.empty() && name.starts_with(widget.panel + "/")) {
+            in_panel.remove_prefix(widget.panel.size() + 1);
+        }
+        const auto is_named = [&](const std::string& own) { return own == name || own == in_panel; };
+        if (is_named(widget.name) || std::ranges::any_of(widget.aliases, is_named)) {
             found.push_back(&widget);
         }
     }
@@ -93,7 +105,7 @@ WidgetPositions* positions() {
 void add(MarkedWidget widget, ImRect place, ImGuiItemFlags flags) {
     if (WidgetPositions* all = positions()) {
         const ImVec2 centre = place.GetCenter();
-        widget.centre = {centre.x, centre.y};
+        widget.place = {place.Min.x, place.Min.y, place.GetWidth(), place.GetHeight()};
         widget.enabled = (flags & ImGuiItemFlags_Disabled) == 0;
         // A widget may be wider than its column of a table, so the column's clip rectangle counts only vertically.
         const ImGuiWindow& window = *ImGui::GetCurrentWindow();
@@ -117,6 +129,12 @@ void add_last(MarkedWidget widget) {
 
 void mark(std::string_view name) {
     add_last({.name = std::string{name}});
+}
+
+void alias(std::string_view name) {
+    if (WidgetPositions* all = positions()) {
+        all->add_alias(name);
+    }
 }
 
 void mark_field(std::string_view name, std::string value) {
@@ -153,12 +171,13 @@ bool begin_drop_down(const char* label, const char* chosen, std::string_view nam
     return ImGui::BeginCombo(label, chosen, ImGuiComboFlags_HeightLargest);
 }
 
-bool choice(std::string_view drop_down, const std::string& name, bool chosen) {
+bool choice(std::string_view drop_down, const std::string& name, bool chosen, std::string_view alias) {
     const bool taken = ImGui::Selectable(name.c_str(), chosen);
     if (WidgetPositions* all = positions()) {
         const ImGuiLastItemData& last = ImGui::GetCurrentContext()->LastItemData;
-        const ImVec2 centre = last.NavRect.GetCenter();
-        all->add_choice(drop_down, name, {.centre = {centre.x, centre.y}, .id = last.ID});
+        const ImRect& place = last.NavRect;
+        all->add_choice(drop_down, name, alias,
+                        {.place = {place.Min.x, place.Min.y, place.GetWidth(), place.GetHeight()}, .id = last.ID});
     }
     return taken;
 }

@@ -24,8 +24,9 @@ namespace evod::viewer {
 struct MarkedWidget {
     enum class Kind { Other, Field, CheckBox, DropDown };
     Kind kind = Kind::Other;
-    std::string panel{}, name{}; // panel: empty if the widget belongs to no panel
-    Point centre{};
+    std::string panel{}, name{};        // panel: empty if the widget belongs to no panel
+    std::vector<std::string> aliases{}; // further names
+    Rectangle place{};
     unsigned id = 0; // of Dear ImGui; 0: a text, or a group of widgets
     bool enabled = true;
     bool visible = true;                // false: scrolled out of sight
@@ -33,6 +34,7 @@ struct MarkedWidget {
     std::optional<std::string> value{}; // of a field or drop-down as text; "on" or "off" of a check box
     std::vector<std::string> choices{}; // of a drop-down; empty while it is closed
 
+    Point centre() const { return place.centre(); }
     /// "Panel/name", which is unique.
     std::string full_name() const { return panel.empty() ? name : panel + "/" + name; }
 };
@@ -49,11 +51,15 @@ class WidgetPositions {
     /// Registers a widget in the current panel; add() sets its panel.
     void add(MarkedWidget widget);
     /// Registers a choice of an open drop-down as "drop-down: choice".
-    void add_choice(std::string_view drop_down, std::string_view choice, MarkedWidget widget);
+    ///
+    /// alias  another name of the choice; empty: none
+    void add_choice(std::string_view drop_down, std::string_view choice, std::string_view alias, MarkedWidget widget);
+    /// Adds a name to the widget that was registered last.
+    void add_alias(std::string_view alias);
     /// Stores the note of the widget that was registered last, if it has this id.
     void explain(unsigned id, std::string_view note);
 
-    /// Returns the widgets with this name, such as "Apply" or "Parameters/Apply". Names of the same widget count once.
+    /// Returns the widgets with this name or alias, such as "Apply" or "Parameters/Apply".
     std::vector<const MarkedWidget*> find(std::string_view name) const;
     /// The widget of Dear ImGui that was under the mouse in the last complete frame; 0: none.
     unsigned hovered() const { return hovered_id_; }
@@ -79,8 +85,10 @@ class WidgetPositions {
 
 namespace widgets {
 
-/// Registers the widget that was drawn last under this name. A widget may have several names.
+/// Registers the widget that was drawn last under this name.
 void mark(std::string_view name);
+/// Adds a name to the widget that was registered last.
+void alias(std::string_view name);
 /// Registers the field or slider that was drawn last, with its value. A script compares the value with the one it set.
 void mark_field(std::string_view name, std::string value);
 void mark_field(std::string_view name, double value);
@@ -99,7 +107,9 @@ bool checkbox(const char* label, bool& on, std::string_view name = {});
 /// name  the name to register, if it differs from the label
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name = {});
 /// Draws an ImGui::Selectable() and registers it as a choice of the drop-down with this name.
-bool choice(std::string_view drop_down, const std::string& name, bool chosen);
+///
+/// alias  another name of the choice; empty: none
+bool choice(std::string_view drop_down, const std::string& name, bool chosen, std::string_view alias = {});
 
 /// Returns whether a mouse button is pressed in this frame on the current window or on one of its widgets.
 bool window_pressed();

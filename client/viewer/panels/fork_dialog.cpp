@@ -15,6 +15,9 @@ void ForkDialog::build(ViewedWorld& world) {
     ImGui::EndDisabled();
     widgets::explain(may ? "Creates a world that starts from the tick shown."
                          : "Only the role admin may create worlds.");
+    const ImVec2 below{ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
+                       ImGui::GetItemRectMax().y + ImGui::GetStyle().ItemSpacing.y};
+    ImGui::SetNextWindowPos(below, ImGuiCond_Always, {1, 0});
     if (!ImGui::BeginPopup("fork")) {
         return;
     }

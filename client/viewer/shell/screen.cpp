@@ -119,6 +119,7 @@ Screen::Screen(const Options& options)
     : window_{mode_of(options), "evoview", sf::Style::Default, context_settings()}
     , renderer_{scale_of(options)}
     , settings_{in_state_folder("evoview.ini"), renderer_.panels()}
+    , tour_wanted_{wants_tour(options, renderer_.panels().settings().tour_seen)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
     place(window_);

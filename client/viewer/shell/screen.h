@@ -16,6 +16,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -48,6 +49,9 @@ class Screen {
     /// problem  why the key had no effect; empty if it had one
     void report_key(std::string problem);
 
+    /// Returns once whether to show the tour.
+    bool take_tour() { return std::exchange(tour_wanted_, false); }
+
     sf::Window& window() { return window_; }
     WindowRenderer& renderer() { return renderer_; }
 
@@ -58,6 +62,7 @@ class Screen {
     sf::Window window_;
     WindowRenderer renderer_; // declared after window_, because it needs the OpenGL context of the window
     Settings settings_;       // declared after renderer_, whose panels it stores
+    bool tour_wanted_;
     Script script_;
     std::string script_path_;
     std::deque<sf::Event> script_events_;

@@ -234,7 +234,7 @@ Waits obstacle(Run& run, const std::string& name) {
 Waits move_to(Run& run, const std::string& name) {
     auto waits = obstacle(run, name);
     if (waits && waits->empty()) {
-        send_mouse_move(run.host, run.host.find(name).front()->centre);
+        send_mouse_move(run.host, run.host.find(name).front()->centre());
     }
     return waits;
 }
@@ -250,7 +250,7 @@ Waits click_on(Run& run, const std::string& name, sf::Mouse::Button button = sf:
     if (hovered == 0 || (widget.id != 0 && hovered != widget.id)) {
         return in_quotes(name) + " does not react to clicks, or is covered";
     }
-    send_click(run.host, widget.centre, button, control);
+    send_click(run.host, widget.centre(), button, control);
     ++run.actions;
     return "";
 }
@@ -327,12 +327,16 @@ std::optional<core::Result<Script::IslandPlace>> island_place(std::string_view k
 
 namespace {
 
-/// Returns whether two values of a field are equal, as numbers if both are numbers. Sliders store some numbers with
-/// single precision.
+/// Returns whether two values of a widget are equal: as numbers if both are numbers, otherwise as text, in which _ counts
+/// as a space. Sliders store some numbers with single precision.
 bool same_value(const std::string& a, const std::string& b) {
     constexpr double tolerance = 1e-6;
     const auto x = number_in<double>(a), y = number_in<double>(b);
-    return a == b || (x && y && std::abs(*x - *y) <= tolerance * std::max(std::abs(*x), std::abs(*y)));
+    const auto plain = [](std::string text) {
+        std::ranges::replace(text, '_', ' ');
+        return text;
+    };
+    return plain(a) == plain(b) || (x && y && std::abs(*x - *y) <= tolerance * std::max(std::abs(*x), std::abs(*y)));
 }
 
 /// Sets the value of a widget: replaces the text of a field, chooses an entry of a drop-down, or switches a check box.
@@ -344,6 +348,7 @@ class Setting {
         auto waits = move_to(run, name_);
         if (waits && waits->empty()) {
             kind_ = run.host.find(name_).front()->kind;
+            entry_ = run.host.find(name_).front()->full_name() + ": " + text_;
             if (kind_ == Kind::CheckBox && text_ != "on" && text_ != "off") {
                 return usage(in_quotes(name_) + " is a check box: got " + in_quotes(text_) + ", allowed on, off");
             }
@@ -362,7 +367,7 @@ class Setting {
             return "";
         }
         if (kind_ == Kind::DropDown) {
-            return with_entries(run, move_to(run, entry()));
+            return with_entries(run, move_to(run, entry_));
         }
         if (!run.host.typed_text()) {
             return in_quotes(name_) + " is not a field";
@@ -375,7 +380,10 @@ class Setting {
             return "";
         }
         if (kind_ == Kind::DropDown) {
-            return with_entries(run, click_on(run, entry()));
+            return with_entries(run, click_on(run, entry_));
+        }
+        if (text_.empty()) {
+            send_chord(run.host, {.key = Key::Delete});
         }
         send_text(run.host, text_);
         ++run.actions;
@@ -404,7 +412,6 @@ class Setting {
   private:
     using Kind = MarkedWidget::Kind;
 
-    std::string entry() const { return name_ + ": " + text_; }
     /// Adds the entries of the open drop-down to what the line waits for.
     Waits with_entries(const Run& run, Waits waits) const {
         const auto found = run.host.find(name_);
@@ -415,6 +422,7 @@ class Setting {
     }
 
     std::string name_, text_;
+    std::string entry_;       // of a drop-down: the name of the entry to choose
     Kind kind_ = Kind::Other; // determined before the click, because a choice may remove the drop-down
 };
 

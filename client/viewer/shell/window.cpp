@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -53,6 +54,10 @@ Window::Ending Window::run(bool must_connect, const std::function<void()>& conne
                 renderer_.overlay().notice(std::move(notice), now_);
             }
         }
+        if (panes_.focused().world.feed.snapshot() != nullptr && screen_.take_tour()) {
+            renderer_.panels().set_tour_seen();
+            renderer_.overlay().tour().start();
+        }
         WindowRenderer::Frame next = screen_.frame(now_);
         next.interpolate = true;
         next.pointed_at = renderer_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
@@ -66,6 +71,11 @@ void Window::handle_events() {
         const Captured captured = renderer_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
+        }
+        if (event.type == sf::Event::KeyPressed && !captured.keyboard &&
+            renderer_.overlay().tour().handle(event.key.code)) {
+            screen_.report_key("");
+            continue;
         }
         Camera& camera = event.type == sf::Event::MouseWheelScrolled
                              ? panes_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})

@@ -516,6 +516,65 @@ quit
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
+TEST_F(PanelsTest, TheTourExplainsTheWidgetsAndEnds) {
+    RealServer server{{"--seed", "7"}};
+    std::filesystem::remove(folder.file("state/evod/evoview.ini")); // it says that the tour was shown
+    const Ran tour = play(server.address() + " --tour", R"(
+wait widget "Tour/The island"
+wait disabled Tour/Back
+key Right
+wait widget "Tour/Run and pause"
+key Left
+click Tour/Next
+key Enter
+key Space
+wait state running
+wait widget Tour/Speed
+key Right
+wait widget Tour/Fitness
+key Right
+wait widget Tour/Panels
+key Right
+click Tour/Done
+wait gone Tour/Done
+key H
+click "Show the tour"
+wait gone Keys
+key Escape
+wait gone Tour/Next
+quit
+)");
+    EXPECT_EQ(tour.status, 0) << tour.output;
+    EXPECT_THAT(read_file(folder.file("state/evod/evoview.ini")), HasSubstr("tour_seen=1"));
+    const Ran script = play(server.address(), "wait snapshot\nwait widget \"Revision 1\"\nwait gone Tour/Next\nquit\n");
+    EXPECT_EQ(script.status, 0) << script.output;
+}
+
+TEST_F(PanelsTest, SelectionChangesWithThreeActions) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait snapshot
+wait widget "Revision 1"
+set selection tournament
+click Apply
+wait widget "Revision 2"
+actions 3
+set Selection "stochastic universal"
+click Apply
+wait widget "Revision 3"
+set "apply at once" on
+set Search "selection"
+set "Tournament size" 4
+wait widget "Revision 4"
+menu "Tournament size"
+click "Default: 3"
+wait widget "Revision 5"
+quit
+)");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(selection_of(server.parameters()), "stochastic_universal");
+}
+
 TEST_F(PanelsTest, AFailingLineEndsEvoviewAndIsPrinted) {
     const Ran wrong = play("--start", "wait widget Connect\nclik Connect\n");
     EXPECT_EQ(wrong.status, 2);

@@ -228,13 +228,13 @@ void BreedingPanel::build_generation(const Context& context) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    widgets::explain("Generation of the parents; the panel shows any generation that has bred");
+    widgets::explain("Generation of the parents; the panel shows any generation that has bred.");
     ImGui::SameLine();
     widgets::checkbox("the newest", follow_);
-    widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped");
+    widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped.");
     ImGui::SameLine();
     widgets::checkbox("play each", play_each_);
-    widgets::explain("Plays each breeding from the start when it appears");
+    widgets::explain("Plays each breeding from the start when it appears.");
     if (may_hold(context.world)) {
         ImGui::SameLine();
         bool held = hold_.on();
@@ -266,25 +266,25 @@ void BreedingPanel::build_transport(const Gui& gui) {
         ImGui::SameLine();
         return hit;
     };
-    if (button("|<", "To the beginning (Home)")) {
+    if (button("|<", "Goes to the beginning (Home).")) {
         stepper_.to_begin();
     }
-    if (button("<<", "To the previous stage (Page Up)")) {
+    if (button("<<", "Goes to the previous stage (Page Up).")) {
         stepper_.previous_stage();
     }
-    if (button("<", "One step back (left)")) {
+    if (button("<", "Goes one step back (←).")) {
         stepper_.back();
     }
-    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter)")) {
+    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter).")) {
         stepper_.play_or_stop();
     }
-    if (button(">", "One step forward (right)")) {
+    if (button(">", "Goes one step forward (→).")) {
         stepper_.step();
     }
-    if (button(">>", "To the next stage (Page Down)")) {
+    if (button(">>", "Goes to the next stage (Page Down).")) {
         stepper_.next_stage();
     }
-    if (button(">|", "To the end (End)")) {
+    if (button(">|", "Goes to the end (End).")) {
         stepper_.to_end();
     }
     ImGui::SetNextItemWidth(120 * gui.scale());

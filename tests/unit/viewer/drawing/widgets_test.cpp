@@ -34,7 +34,7 @@ TEST(WidgetPositions, AfterAClickTheMouseMustLeaveFirst) {
 }
 
 MarkedWidget widget(const char* name, Point centre, unsigned id) {
-    return {.name = name, .centre = centre, .id = id};
+    return {.name = name, .place = {centre.x, centre.y, 0, 0}, .id = id};
 }
 
 TEST(WidgetPositions, AnOpenDropDownListsItsChoices) {
@@ -43,16 +43,18 @@ TEST(WidgetPositions, AnOpenDropDownListsItsChoices) {
     MarkedWidget compare = widget("compare", apply, 1);
     compare.kind = MarkedWidget::Kind::DropDown;
     positions.add(compare);
-    positions.add_choice("compare", "nothing", widget("", apply, 2));
-    positions.add_choice("compare", "world b", widget("", discard, 3));
+    positions.add_choice("compare", "nothing", "", widget("", apply, 2));
+    positions.add_choice("compare", "world b", "world_b", widget("", discard, 3));
     EXPECT_TRUE(positions.find("compare").empty()) << "not drawn yet";
     positions.end_frame(0);
     for (const char* name : {"compare", "Plots/compare"}) {
         ASSERT_EQ(positions.find(name).size(), 1u);
         EXPECT_EQ(positions.find(name).front()->choices, (std::vector<std::string>{"nothing", "world b"}));
     }
-    ASSERT_EQ(positions.find("Plots/compare: world b").size(), 1u);
-    EXPECT_EQ(positions.find("Plots/compare: world b").front()->centre, discard);
+    for (const char* name : {"Plots/compare: world b", "compare: world_b"}) {
+        ASSERT_EQ(positions.find(name).size(), 1u);
+        EXPECT_EQ(positions.find(name).front()->centre(), discard);
+    }
 }
 
 TEST(WidgetPositions, WidgetsOfOneNameAreAllFound) {
@@ -61,11 +63,14 @@ TEST(WidgetPositions, WidgetsOfOneNameAreAllFound) {
     positions.add(widget("Pause", apply, 1));
     positions.begin_panel("Sidebar");
     positions.add(widget("Pause", discard, 2));
-    positions.add(widget("Pause", discard, 2)); // a second name of the same widget
+    positions.add_alias("Stop");
     positions.end_frame(0);
     ASSERT_EQ(positions.find("Pause").size(), 2u);
     EXPECT_EQ(positions.find("Pause").back()->full_name(), "Sidebar/Pause");
     EXPECT_EQ(positions.find("left/Pause").size(), 1u);
+    ASSERT_EQ(positions.find("Sidebar/Stop").size(), 1u);
+    EXPECT_EQ(positions.find("Stop").front()->full_name(), "Sidebar/Pause");
+    EXPECT_TRUE(positions.find("left/Stop").empty());
 }
 
 TEST(WidgetPositions, ANoteBelongsToTheWidgetBeforeIt) {

@@ -67,7 +67,7 @@ struct Actor : Script::Host {
 
     MarkedWidget& add(const std::string& name, Point centre, MarkedWidget::Kind kind = MarkedWidget::Kind::Other) {
         under_mouse = static_cast<unsigned>(widgets.size()) + 1;
-        widgets.push_back({.kind = kind, .name = name, .centre = centre, .id = under_mouse});
+        widgets.push_back({.kind = kind, .name = name, .place = {centre.x, centre.y, 0, 0}, .id = under_mouse});
         return widgets.back();
     }
 
