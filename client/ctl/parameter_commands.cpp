@@ -4,6 +4,8 @@
 #include "client/ctl/text.h"
 #include "proto/command_line/command.h"
 
+#include <algorithm>
+
 namespace evod::ctl {
 
 namespace {
@@ -195,10 +197,14 @@ void describe_one(const Common& common, const Registry& registry, const std::str
                                  : parameter->kind() == v1::PARAMETER_KIND_COUNT ? "a whole number"
                                  : parameter->kind() == v1::PARAMETER_KIND_FLAG  ? "true or false"
                                                                                  : "a choice";
+        std::string choices;
+        for (int i = 0; i < std::min(parameter->choices_size(), parameter->choice_help_size()); ++i) {
+            choices += "\n  " + parameter->choices(i) + ": " + parameter->choice_help(i);
+        }
         return parameter->name() + ": " + kind + "\n  " + parameter->help() + "\n  allowed       " +
                allowed(*parameter) + "\n  default       " + to_text(parameter->default_value()) +
                (parameter->unit().empty() ? "" : "\n  unit          " + parameter->unit()) + "\n  takes effect  " +
-               effect_of(*parameter) + "\n";
+               effect_of(*parameter) + choices + "\n";
     });
 }
 

@@ -2,6 +2,8 @@
 // converted.
 #pragma once
 
+#include "proto/text/violation_text.h"
+
 #include <boost/system/result.hpp>
 
 #include <string>
@@ -92,7 +94,7 @@ struct Violation {
 };
 
 /// What Violation::got contains if `field` is a name that does not exist.
-inline constexpr const char* unknown_name = "an unknown name";
+using text::unknown_name;
 
 /// The error that is returned for a refused request. A refused request has changed nothing.
 struct Refusal {

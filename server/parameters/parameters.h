@@ -128,11 +128,8 @@ std::vector<const ParameterDescription*> parameters_that_differ(const Parameters
 /// Returns the parameter with this name; nullptr if there is none.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// Returns at most three of the existing names that are most similar to `name`, the most similar first: for "did you
-/// mean".
-std::vector<std::string_view> similar_names(std::string_view name, std::span<const std::string_view> existing);
 /// Returns the parameter names that are most similar to `name`.
-std::vector<std::string_view> similar_parameter_names(std::string_view name);
+std::vector<std::string> similar_parameter_names(std::string_view name);
 
 struct Assignment {
     std::string name;

@@ -1,5 +1,6 @@
 #include "server/protocol/parameters.h"
 
+#include "server/parameters/choice_help.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
 
@@ -72,6 +73,7 @@ v1::ParameterDescription to_proto(const parameters::ParameterDescription& descri
         to.set_kind(v1::PARAMETER_KIND_CHOICE);
         for (const std::string_view name : choice->names) {
             to.add_choices(std::string{name});
+            to.add_choice_help(std::string{parameters::choice_help(description.name, name)});
         }
     } else {
         to.set_kind(v1::PARAMETER_KIND_FLAG);

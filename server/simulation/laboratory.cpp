@@ -322,7 +322,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
     // A replay needs no lease, because a replay belongs to the client that opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased) {
-        ++entry.control.lease;
+        entry.control.lease = ++leases_granted_;
     }
     entry.control.paused = true;
     entry.control.until_tick.reset();

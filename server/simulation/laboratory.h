@@ -30,7 +30,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then pause
     bool paused = false;
     bool leased = false;     // the pause or step lasts only until the lease ends
-    std::uint64_t lease = 0; // incremented by each RunUntilTick that grants or extends a lease
+    std::uint64_t lease = 0; // number of the lease; each RunUntilTick that grants or extends one gives it a new number
     Speed speed = 1.0;
 };
 
@@ -150,6 +150,8 @@ class Laboratory {
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Event> events_;
     std::optional<Storage> storage_;
+    std::uint64_t leases_granted_ =
+        0; // a number is never used again, also after a reset or a new world of the same name
 };
 
 } // namespace evod::simulation

@@ -15,6 +15,9 @@ void ForkDialog::build(ViewedWorld& world) {
     ImGui::EndDisabled();
     widgets::explain(may ? "Creates a world that starts from the tick shown."
                          : "Only the role admin may create worlds.");
+    const ImVec2 below{ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
+                       ImGui::GetItemRectMax().y + ImGui::GetStyle().ItemSpacing.y};
+    ImGui::SetNextWindowPos(below, ImGuiCond_Always, {1, 0});
     if (!ImGui::BeginPopup("fork")) {
         return;
     }
@@ -23,7 +26,7 @@ void ForkDialog::build(ViewedWorld& world) {
         ImGui::SetKeyboardFocusHere();
     }
     const bool entered = ImGui::InputText("##name", name_.data(), name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-    widgets::mark("Name of the new world");
+    widgets::mark_field("Name of the new world", name_.data());
     ImGui::SameLine();
     const bool named = name_[0] != '\0';
     ImGui::BeginDisabled(!named);

@@ -34,7 +34,7 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     list.AddLine({across(range.mean), corner.y - 2 * pixel}, {across(range.mean), corner.y + height + 2 * pixel},
                  ink(palette::wall), 2 * pixel);
     ImGui::Dummy({width, height});
-    widgets::explain(print("range in this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+    widgets::explain(print("Range in this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
                            double{range.mean}));
 }
 

@@ -33,6 +33,7 @@ struct SidebarSettings {
     float width = sidebar_width; // pixels at scale 1
     bool collapsed = false;
     std::string tab = "Parameters"; // title of the panel that the sidebar shows
+    bool tour_seen = false;         // whether the tour was shown
 };
 
 class Panels {
@@ -61,6 +62,7 @@ class Panels {
 
     const SidebarSettings& settings() const { return settings_; }
     void set(SidebarSettings settings);
+    void set_tour_seen() { settings_.tour_seen = true; }
 
     /// The width of the sidebar in pixels, in a window of this width. A panel that needs more room widens it.
     double width(unsigned window_pixels, double scale) const;

@@ -99,18 +99,22 @@ void Summary::build_buttons(ViewedWorld& world, float scale) {
         world.commands.pause_or_resume();
     }
     widgets::mark(label);
-    widgets::explain("Space");
+    widgets::alias("Run or pause");
+    const std::string why_not = !why.empty() ? std::string{why} + "." : over ? "The run has ended." : "";
+    widgets::explain(why_not.empty() ? "Runs or pauses the world (Space)." : why_not);
     ImGui::SameLine();
     if (widgets::button("One generation")) {
         world.commands.run_generations(1);
     }
-    widgets::explain("Runs until the generation has ended and the next one is bred, then waits.");
+    widgets::explain(why_not.empty() ? "Runs until the generation has ended and the next one is bred, then waits."
+                                     : why_not);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!control.known());
     if (widgets::button(world.replay.is_own() ? "Live" : "Replay")) {
         world.toggle_replay();
     }
+    widgets::alias("Replay or live");
     widgets::explain(world.replay.is_own() ? "Returns to the live world (P)."
                                            : "Shows earlier generations of this run, with a time line (P).");
     ImGui::SameLine();
@@ -139,7 +143,7 @@ void Summary::build_speed(ViewedWorld& world) {
                             factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
-    widgets::mark("speed");
+    widgets::mark_field("speed", factor);
     widgets::explain("+ doubles and − halves the speed; 1 is real time.");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
         const bool allowed = *factor_ >= least && *factor_ <= most; // the slider does not limit a typed value

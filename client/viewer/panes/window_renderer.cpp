@@ -65,7 +65,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
             panes.focus(i);
         }
     }
-    overlay_.build(gui_, panels_, frame.now);
+    overlay_.build(gui_, panels_, worlds, frame.now);
     if (frame.interactive) {
         panels_.build({panes.focused().world, gui_, frame.now, panes.focused().island_view},
                       {worlds.width, 0, sidebar, worlds.height});

@@ -123,10 +123,13 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
                    "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
     const auto start = app.add_flag("--start", &options.start, "show the start screen first");
+    const auto tour = app.add_flag("--tour", &options.tour,
+                                   "show the tour of the window; default: once, at the first start without --script");
     const auto script = app.add_option("--script", &options.script_path, "file with actions to perform in the window");
     const auto shot =
         app.add_option("--screenshot", &screenshot.path, "save one frame as this PNG file, without a window")
             .excludes(start)
+            .excludes(tour)
             .excludes(script);
     app.add_option("--at-tick", &screenshot.tick,
                    "tick of the screenshot; the first snapshot of this tick or a later one is saved")
@@ -139,6 +142,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
                ".mp4, .mkv, .webm, .mov, .avi or .gif, as a film created by ffmpeg")
             .excludes(shot)
             .excludes(start)
+            .excludes(tour)
             .excludes(script);
     app.add_option("--record-ticks", &record.ticks,
                    "stop after this many ticks; default: at the end of the run, or with Ctrl+C")

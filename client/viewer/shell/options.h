@@ -28,6 +28,7 @@ struct Options {
 
     bool server_given = false; // if false and no server answers, the start screen opens
     bool start = false;        // start with the start screen
+    bool tour = false;         // show the tour, even if it was shown before or a script runs
     std::optional<Script> script;
     std::string script_path;
 
@@ -53,6 +54,13 @@ struct Options {
 
 /// Returns the size of the window, screenshot or recording.
 Options::Size size_of(const Options& options, double scale);
+
+/// Returns whether evoview shows the tour: once, at the first start that a user watches.
+///
+/// seen  whether it was shown at an earlier start
+inline bool wants_tour(const Options& options, bool seen) {
+    return options.tour || (!options.script && !seen);
+}
 
 /// Returns the world for the first pane.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);

@@ -29,6 +29,8 @@ void read_line(SidebarSettings& settings, std::string_view line) {
         settings.collapsed = value == "1";
     } else if (name == "tab") {
         settings.tab = value;
+    } else if (name == "tour_seen") {
+        settings.tour_seen = value == "1";
     }
 }
 
@@ -70,8 +72,8 @@ Settings::Settings(std::optional<std::filesystem::path> file, Panels& panels)
     };
     handler.WriteAllFn = [](ImGuiContext*, ImGuiSettingsHandler* self, ImGuiTextBuffer* out) {
         const SidebarSettings& settings = panels_of(self).settings();
-        out->appendf("[%s][Data]\nwidth=%.0f\ncollapsed=%d\ntab=%s\n\n", section, double{settings.width},
-                     settings.collapsed ? 1 : 0, settings.tab.c_str());
+        out->appendf("[%s][Data]\nwidth=%.0f\ncollapsed=%d\ntab=%s\ntour_seen=%d\n\n", section, double{settings.width},
+                     settings.collapsed ? 1 : 0, settings.tab.c_str(), settings.tour_seen ? 1 : 0);
     };
     ImGui::GetCurrentContext()->SettingsHandlers.push_back(handler);
     ImGui::LoadIniSettingsFromDisk(file_->c_str());

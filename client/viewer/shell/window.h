@@ -31,6 +31,8 @@ class Window {
 
   private:
     void handle_events();
+    /// Returns why this action would have no effect now; empty if it would have one.
+    std::string problem_of(Action action);
     void carry_out(Action action);
     void close_front();
     void save_screenshot();

@@ -154,7 +154,9 @@ key F7
 wait widget "3 generations, up to 3"
 click "image width"
 key Q
-set "image width" 5
+key Ctrl+A
+type 5
+key Enter
 set "image height" 300
 click "Save PNG"
 quit

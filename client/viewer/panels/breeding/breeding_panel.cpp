@@ -223,27 +223,24 @@ void BreedingPanel::build_generation(const Context& context) {
     const std::uint64_t one = 1;
     std::uint64_t wanted = chosen_;
     const bool changed = ImGui::InputScalar("##generation", ImGuiDataType_U64, &wanted, &one, nullptr);
-    widgets::mark("Generation");
+    widgets::mark_field("Generation", static_cast<double>(chosen_));
     if (changed && newest_ > 0) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    widgets::explain("Generation of the parents; the panel shows any generation that has bred");
+    widgets::explain("Generation of the parents; the panel shows any generation that has bred.");
     ImGui::SameLine();
-    ImGui::Checkbox("the newest", &follow_);
-    widgets::mark("the newest");
-    widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped");
+    widgets::checkbox("the newest", follow_);
+    widgets::explain("Shows each new breeding once the previous one has been stepped through or skipped.");
     ImGui::SameLine();
-    ImGui::Checkbox("play each", &play_each_);
-    widgets::mark("play each");
-    widgets::explain("Plays each breeding from the start when it appears");
+    widgets::checkbox("play each", play_each_);
+    widgets::explain("Plays each breeding from the start when it appears.");
     if (may_hold(context.world)) {
         ImGui::SameLine();
         bool held = hold_.on();
-        if (ImGui::Checkbox("hold the world", &held)) {
+        if (widgets::checkbox("hold the world", held)) {
             held ? hold_.hold(run_of(context.world)) : hold_.release();
         }
-        widgets::mark("hold the world");
         widgets::explain(
             "While this panel is open, pauses the world after each generation, one tick into the next. Resuming runs "
             "one more generation.");
@@ -269,25 +266,25 @@ void BreedingPanel::build_transport(const Gui& gui) {
         ImGui::SameLine();
         return hit;
     };
-    if (button("|<", "To the beginning (Home)")) {
+    if (button("|<", "Goes to the beginning (Home).")) {
         stepper_.to_begin();
     }
-    if (button("<<", "To the previous stage (Page Up)")) {
+    if (button("<<", "Goes to the previous stage (Page Up).")) {
         stepper_.previous_stage();
     }
-    if (button("<", "One step back (left)")) {
+    if (button("<", "Goes one step back (←).")) {
         stepper_.back();
     }
-    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter)")) {
+    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays or stops (Space, Enter).")) {
         stepper_.play_or_stop();
     }
-    if (button(">", "One step forward (right)")) {
+    if (button(">", "Goes one step forward (→).")) {
         stepper_.step();
     }
-    if (button(">>", "To the next stage (Page Down)")) {
+    if (button(">>", "Goes to the next stage (Page Down).")) {
         stepper_.next_stage();
     }
-    if (button(">|", "To the end (End)")) {
+    if (button(">|", "Goes to the end (End).")) {
         stepper_.to_end();
     }
     ImGui::SetNextItemWidth(120 * gui.scale());
@@ -296,14 +293,14 @@ void BreedingPanel::build_transport(const Gui& gui) {
                            static_cast<float>(Stepper::speed_max), "%.3g steps/s", ImGuiSliderFlags_Logarithmic)) {
         stepper_.set_speed(double{speed});
     }
-    widgets::mark("steps/s");
+    widgets::mark_field("steps/s", stepper_.speed());
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
     auto position = static_cast<int>(stepper_.position());
     if (ImGui::SliderInt("##position", &position, 0, static_cast<int>(stepper_.last_position()), "step %d")) {
         stepper_.go_to(static_cast<std::uint32_t>(std::max(position, 0)));
     }
-    widgets::mark("step");
+    widgets::mark_field("step", stepper_.position());
 }
 
 void BreedingPanel::take_keys() {

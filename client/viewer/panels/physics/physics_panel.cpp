@@ -138,10 +138,10 @@ void PhysicsPanel::build_demo() {
     const char* rate_label = spring_ ? "ω, 1/s" : "damping, 1/s";
     changed |= ImGui::SliderFloat(rate_label, &rate_per_s_, 0.5f, 10, "%.1f",
                                   ImGuiSliderFlags_AlwaysClamp); // prevents a rate of 0 and a division by 0
-    widgets::mark(rate_label);
+    widgets::mark_field(rate_label, rate_per_s_);
     changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
                                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    widgets::mark("tick, ms");
+    widgets::mark_field("tick, ms", tick_ms_);
     if (!history_.empty() && widgets::button("use the tick of this world")) {
         tick_ms_ = std::clamp(static_cast<float>(history_.last().tick_s() * 1000), tick_ms_min, tick_ms_max);
         changed = true;

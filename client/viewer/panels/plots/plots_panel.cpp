@@ -32,7 +32,7 @@ void build_pixels(const char* label, const char* name, int& pixels) {
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         pixels = std::clamp(pixels, image_pixels_min, image_pixels_max);
     }
-    widgets::mark(name);
+    widgets::mark_field(name, pixels);
     widgets::explain(std::string{"The "} + name + ", " + with_separators(image_pixels_min) + " to " +
                      with_separators(image_pixels_max) + " pixels.");
 }
@@ -171,12 +171,13 @@ void PlotsPanel::compare_with_file(const std::string& path) {
     file_ = std::move(*loaded);
     other_world_.reset();
     other_name_ = std::filesystem::path{path}.stem().string();
+    compared_ = "file " + path;
 }
 
 void PlotsPanel::build_comparison() {
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
     const bool compares = other_world_ || file_;
-    if (widgets::begin_drop_down("compare", compares ? other_name_.c_str() : "nothing")) {
+    if (widgets::begin_drop_down("compare", compares ? compared_.c_str() : "nothing")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
             worlds_stale_ = true;
@@ -195,6 +196,7 @@ void PlotsPanel::build_comparison() {
                 other_world_->set_run(world);
                 file_.reset();
                 other_name_ = world.name();
+                compared_ = "world " + other_name_;
             }
         }
         for (const std::string& name : files_) {
@@ -206,7 +208,7 @@ void PlotsPanel::build_comparison() {
         ImGui::SetNextItemWidth(-1);
         const bool entered = ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(),
                                                       path_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-        widgets::mark("path of another CSV file");
+        widgets::mark_field("path of another CSV file", path_.data());
         if (entered) {
             compare_with_file(path_.data());
             ImGui::CloseCurrentPopup();

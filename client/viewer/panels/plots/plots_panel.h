@@ -49,6 +49,7 @@ class PlotsPanel : public Panel {
     std::unique_ptr<RunHistory> other_world_; // another world to compare with; null: none
     std::optional<HistoryTable> file_;        // an earlier run to compare with
     std::string other_name_;                  // name of the compared history
+    std::string compared_;                    // the chosen entry of the drop-down "compare"
     PopulationPoll population_{population_interval};
 
     std::vector<evod::v1::WorldInfo> worlds_;

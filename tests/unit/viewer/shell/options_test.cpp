@@ -71,5 +71,15 @@ TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
     }
 }
 
+TEST(Tour, IsShownOnceAndNotInScripts) {
+    Options options;
+    EXPECT_TRUE(wants_tour(options, false));
+    EXPECT_FALSE(wants_tour(options, true));
+    options.script = Script{};
+    EXPECT_FALSE(wants_tour(options, false));
+    options.tour = true;
+    EXPECT_TRUE(wants_tour(options, true));
+}
+
 } // namespace
 } // namespace evod::viewer
