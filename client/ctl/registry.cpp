@@ -136,21 +136,6 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     }
 }
 
-std::string to_text(const v1::ParameterValue& value) {
-    switch (value.kind_case()) {
-    case v1::ParameterValue::kReal:
-        return number_text(value.real(), text::Exponent::IfLong);
-    case v1::ParameterValue::kCount:
-        return std::to_string(value.count());
-    case v1::ParameterValue::kFlag:
-        return value.flag() ? "true" : "false";
-    case v1::ParameterValue::kChoice:
-        return value.choice();
-    default:
-        return "-";
-    }
-}
-
 std::string allowed(const v1::ParameterDescription& parameter) {
     switch (parameter.kind()) {
     case v1::PARAMETER_KIND_REAL:

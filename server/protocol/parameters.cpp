@@ -133,6 +133,19 @@ v1::PlannedChange to_proto(const parameters::PlannedChange& change) {
     return to;
 }
 
+v1::AppliedChange to_proto(const simulation::Change& change) {
+    v1::AppliedChange to;
+    to.set_generation(change.generation);
+    *to.mutable_by() = change.by.empty() ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(change.by);
+    for (const simulation::ChangedValue& value : change.values) {
+        v1::ChangedValue& changed = *to.add_values();
+        changed.set_name(value.name);
+        *changed.mutable_before() = to_proto(value.before);
+        *changed.mutable_after() = to_proto(value.after);
+    }
+    return to;
+}
+
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations) {

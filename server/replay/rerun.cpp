@@ -1,6 +1,7 @@
 #include "server/replay/rerun.h"
 
 #include "server/protocol/commands.h"
+#include "server/replay/past_changes.h"
 #include "server/run_file/checkpoint.h"
 
 #include <algorithm>
@@ -33,6 +34,24 @@ std::optional<simulation::Command> command_of(const std::string& request) {
     }
     auto command = protocol::to_command(message, {});
     return command ? std::optional{*std::move(command)} : std::nullopt;
+}
+
+/// Returns the number of the last journal entry that a beginning of a generation, or a checkpoint of it, contains.
+std::uint64_t last_entry_before(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
+                                const run_file::StoredCheckpoint* checkpoint,
+                                std::span<const ParameterChange> changes) {
+    if (checkpoint != nullptr) {
+        // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
+        // entry.
+        return checkpoint->journal_entries;
+    }
+    // The stored beginning of a generation already contains the changes between the end of the previous generation and
+    // the first tick.
+    const simulation::Moment& opening = begun.opening.moment;
+    const auto first = opening.generation == file.identity().first_generation
+                           ? changes.begin()
+                           : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
+    return first == changes.begin() ? 0 : std::prev(first)->entry;
 }
 
 } // namespace
@@ -177,13 +196,17 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
     if (!history) {
         return history.error();
     }
-    return from(file, **begun, checkpoint, changes, *std::move(history), executor);
+    simulation::Changes past;
+    if (history_count > 0) {
+        const auto& moment = checkpoint != nullptr ? checkpoint->moment : (*begun)->opening.moment;
+        past = past_changes(file, changes, last_entry_before(file, **begun, checkpoint, changes), moment);
+    }
+    return from(file, **begun, checkpoint, changes, *std::move(history), executor, std::move(past));
 }
 
 Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                           const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
-                          simulation::World::History history, base::Executor& executor) {
-    const simulation::Moment& opening = begun.opening.moment;
+                          simulation::World::History history, base::Executor& executor, simulation::Changes past) {
     simulation::World world{file.identity().seed,
                             begun.opening,
                             begun.born,
@@ -192,13 +215,10 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
                             file.identity().first_population,
                             begun.founders,
                             file.identity().schedule};
+    world.set_past_changes(std::move(past));
+    const std::uint64_t last_entry = last_entry_before(file, begun, checkpoint, changes);
     if (checkpoint == nullptr) {
-        // The stored beginning of a generation already contains the changes between the end of the previous generation
-        // and the first tick.
-        const auto first = opening.generation == file.identity().first_generation
-                               ? changes.begin()
-                               : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
-        return with_changes(file, std::move(world), changes, first == changes.begin() ? 0 : std::prev(first)->entry);
+        return with_changes(file, std::move(world), changes, last_entry);
     }
     const auto unusable = [&](const std::string& why) {
         return damaged(file, "its checkpoint after tick " + std::to_string(checkpoint->moment.tick) +
@@ -215,9 +235,7 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
     if (world.hash() != checkpoint->hash) {
         return unusable("its state hash differs from the stored one");
     }
-    // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
-    // entry.
-    return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
+    return with_changes(file, std::move(world), changes, last_entry);
 }
 
 Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::World world,
@@ -289,7 +307,7 @@ bool ComingChanges::apply(const ParameterChange& change, simulation::World& worl
     }
     const auto requested = request_of(world.parameters(), change.assignments);
     if (requested) {
-        world.request_parameters(*requested);
+        world.request_parameters(*requested, change.by);
     }
     return requested.has_value();
 }

@@ -19,7 +19,7 @@ struct ParameterChange {
     std::uint64_t tick = 0;  // the command was applied after this tick
     std::vector<parameters::Assignment> assignments;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
-    std::string by = {};                                        // the user who planned the change
+    std::string by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
 };
 
@@ -96,7 +96,7 @@ class Rerun {
     /// generation     its beginning must be retained.
     /// checkpoint     a checkpoint of this generation; nullptr: the beginning of the generation or of the file.
     /// changes        all changes in the file, as parameter_changes() returns them.
-    /// history_count  as in before().
+    /// history_count  as in before(); if it is 0, the world gets no past changes either.
     static base::Result<Rerun> begun_at(run_file::RunFile& file, std::uint64_t generation,
                                         const run_file::StoredCheckpoint* checkpoint,
                                         std::span<const ParameterChange> changes, std::size_t history_count,
@@ -106,10 +106,11 @@ class Rerun {
     /// begun       a valid beginning of a generation. The run must follow the model of this program.
     /// checkpoint  a checkpoint of this generation, to start from; nullptr: its first tick.
     /// changes     in order of ticks. Changes that `begun` or `checkpoint` already contains are skipped.
+    /// past        what the world then reports as its past changes.
     static base::Result<Rerun> from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                                     const run_file::StoredCheckpoint* checkpoint,
                                     std::span<const ParameterChange> changes, simulation::World::History history,
-                                    base::Executor& executor);
+                                    base::Executor& executor, simulation::Changes past = {});
 
     const simulation::World& world() const { return world_; }
     const ComingChanges& changes() const { return changes_; }

@@ -403,7 +403,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     Applied applied = applied_now(entry);
     applied.parameters = parameters::after_request(world.parameters(), *requested);
     if (!command.dry_run) {
-        world.request_parameters(*requested);
+        world.request_parameters(*requested, command.by);
     }
     return applied;
 }

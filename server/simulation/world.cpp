@@ -65,6 +65,7 @@ World World::at_its_opening(base::Executor& executor, bool keep_requests) const 
 void World::become_fork() {
     planned_.clear();
     planned_count_ = 0;
+    changes_.clear();
     const auto is_inherited = [&](const GenerationRows& rows) {
         return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
     };
@@ -145,7 +146,12 @@ std::span<const std::uint32_t> World::founders(const Island& island) const {
     return founders_.empty() ? std::span<const std::uint32_t>{} : founders_[island.index()];
 }
 
-void World::request_parameters(const parameters::Parameters& requested) {
+void World::record_change(const parameters::Parameters& requested, const std::string& by) {
+    changes_.add(moment_.generation + (generation_over_ ? 1 : 0), by, parameters_.requested, requested);
+}
+
+void World::request_parameters(const parameters::Parameters& requested, const std::string& by) {
+    record_change(requested, by);
     parameters_ = parameters::after_request(parameters_, requested);
 }
 
@@ -241,6 +247,7 @@ void World::apply_planned(std::span<const parameters::Assignment> changes,
             .planned = id, .by = by, .names = std::move(names), .violations = requested.error().violations});
         return;
     }
+    record_change(*requested, by);
     parameters_.requested = *requested;
     ++parameters_.revision;
     events_.push_back(

@@ -20,6 +20,7 @@
 #include "server/evolution/termination.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
+#include "server/simulation/changes.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
@@ -146,7 +147,9 @@ class World {
     void drop_due_changes();
     /// Sets the requested parameters, which assign() has computed from parameters().requested. Each takes effect at the
     /// time that its Effect states.
-    void request_parameters(const parameters::Parameters& requested);
+    ///
+    /// by  the client that requested them
+    void request_parameters(const parameters::Parameters& requested, const std::string& by = {});
 
     bool generation_over() const { return generation_over_; }
     /// Returns the termination criterion that holds with the active parameters at the end of a generation; during a
@@ -171,7 +174,11 @@ class World {
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
-    /// Drops the statistics that a fork does not inherit, and the changes that were planned for the original.
+    /// The changes of parameters in this run, oldest first.
+    const Changes& changes() const { return changes_; }
+    /// For replays: sets the changes of the run before the present moment.
+    void set_past_changes(Changes changes) { changes_ = std::move(changes); }
+    /// Drops the statistics that a fork does not inherit, the changes of the original, and those planned for it.
     void become_fork();
     /// The fitness in the ended generation, per island, by id. Empty during a generation.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
@@ -184,6 +191,8 @@ class World {
           parameters::Schedule schedule);
     void begin_run();
     void make_islands();
+    /// Adds the requested parameters that differ from `requested` to the changes of the run.
+    void record_change(const parameters::Parameters& requested, const std::string& by);
     /// Applies the changes planned for the generation that is about to be bred.
     void apply_planned_for(std::uint64_t generation);
     /// Applies the changes planned for the tick that has just ended.
@@ -220,6 +229,7 @@ class World {
     std::vector<Island> islands_;
     Opening opening_;
     History history_;
+    Changes changes_;
     std::vector<EventKind> events_;
     Founders founders_;
     std::vector<std::vector<double>> fitness_; // fitness in the ended generation: per island, by id

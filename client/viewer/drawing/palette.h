@@ -91,6 +91,7 @@ constexpr Colour series_blue = kinds[4];
 constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
+constexpr Colour plot_mark{74, 58, 150}; // a change of parameters
 // Colours of the integrators in the time step demonstration.
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];

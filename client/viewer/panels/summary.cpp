@@ -71,18 +71,28 @@ void Summary::build_curve(const Panel::Context& context) {
     const auto generations = table.column(std::nullopt, "generation");
     const auto mean = table.column(std::nullopt, "fitness_mean"), best = table.column(std::nullopt, "fitness_best");
     Plot plot;
-    plot.series = {{.name = "best", .colour = palette::series_orange, .x = generations, .y = best},
-                   {.name = "mean", .colour = palette::series_blue, .x = generations, .y = mean}};
     if (generations.empty()) {
         plot.title = context.history->history().complete() ? "Fitness: the curve begins when the first generation ends"
                                                            : "Fitness: loading the earlier generations …";
     } else {
-        plot.title = print("Fitness by generation: best %.3g, mean %.3g in generation %.0f", best.back(), mean.back(),
-                           generations.back());
+        plot.title = "Fitness, generation " + shown_number(generations.back());
+        plot.x_label = "generation";
+        plot.counted_x = true;
+        plot.series = {{.name = "best",
+                        .newest = significant(best.back()),
+                        .colour = palette::series_orange,
+                        .x = generations,
+                        .y = best},
+                       {.name = "mean",
+                        .newest = significant(mean.back()),
+                        .colour = palette::series_blue,
+                        .x = generations,
+                        .y = mean}};
+        plot.marks = {{context.history->history().changes()}};
     }
     const Range range = joined(range_of(best), range_of(mean)).value_or(Range{0, 1});
     ImGui::PushFont(&context.gui.label());
-    curve_widget(plot, with_room({std::min(range.min, 0.0), range.max}, 0.25), curve_height * context.gui.scale());
+    curve_widget(plot, with_room({std::min(range.min, 0.0), range.max}, 0.05), curve_height * context.gui.scale());
     ImGui::PopFont();
     widgets::mark("Fitness curve");
 }

@@ -52,6 +52,14 @@ std::string shown_number(double number) {
     return with_separators(text == "-0" ? "0" : std::move(text));
 }
 
+std::string significant(double number) {
+    if (number == 0 || !std::isfinite(number)) {
+        return shown_number(number);
+    }
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(number))) - 2);
+    return shown_number(std::round(number / unit) * unit);
+}
+
 std::string with_unit(double number, std::string_view unit) {
     return shown_number(number) + (unit.empty() ? "" : " ") + std::string{unit};
 }

@@ -35,6 +35,17 @@ TEST(Numbers, HaveSixDigits) {
     EXPECT_EQ(with_unit(3, ""), "3");
 }
 
+TEST(Numbers, HaveThreeSignificantDigits) {
+    EXPECT_EQ(significant(1234.5), "1,230");
+    EXPECT_EQ(significant(104'286), "104,000");
+    EXPECT_EQ(significant(0.64032), "0.64");
+    EXPECT_EQ(significant(-343.082), "−343");
+    EXPECT_EQ(significant(9.996), "10");
+    EXPECT_EQ(significant(0), "0");
+    EXPECT_EQ(significant(-1.2345e-9), "−1.23e-09");
+    EXPECT_EQ(significant(std::numeric_limits<double>::infinity()), "–");
+}
+
 TEST(Numbers, AreReadOnlyFromDigits) {
     EXPECT_EQ(whole_number("0"), 0u);
     EXPECT_EQ(whole_number("18446744073709551615"), ~std::uint64_t{0});
