@@ -98,7 +98,7 @@ void everything(benchmark::State& state) {
                          colours);
         add_radii(organisms, shapes, setting.population, 4, seen, {}, rings);
         add_radii(organisms, shapes, setting.population, 5, seen, {}, rings);
-        add_forces(organisms, shapes, setting.population, seen, {}, arrows, targets);
+        add_forces(organisms, shapes, setting.population, seen, {}, palette::of({}), arrows, targets);
         add_paths(setting.before->entities->organisms, organisms, shapes, ways);
         benchmark::DoNotOptimize(shapes.data());
         benchmark::DoNotOptimize(targets.lines.data());

@@ -67,7 +67,10 @@ constexpr IslandColours dark{.outside = {11, 12, 22},
                              .food_radius = {150, 236, 116, 200},
                              .poison_radius = {240, 72, 64, 220},
                              .trail = {150, 130, 245, 120},
-                             .death = {255, 176, 90}};
+                             .death = {255, 176, 90},
+                             .wanders = {196, 198, 212},
+                             .seeks = kinds[1],
+                             .flees = {255, 140, 50}};
 constexpr IslandColours light{.outside = strip,
                               .ground = {250, 250, 253},
                               .wall = {92, 96, 124},
@@ -86,7 +89,10 @@ constexpr IslandColours light{.outside = strip,
                               .food_radius = {62, 150, 60, 220},
                               .poison_radius = {186, 12, 28, 220},
                               .trail = {112, 84, 222, 80},
-                              .death = {224, 120, 20}};
+                              .death = {224, 120, 20},
+                              .wanders = wanders,
+                              .seeks = seeks,
+                              .flees = flees};
 constexpr IslandColours classic{.outside = strip,
                                 .ground = background,
                                 .wall = wall,
@@ -105,7 +111,10 @@ constexpr IslandColours classic{.outside = strip,
                                 .food_radius = food_radius,
                                 .poison_radius = poison_radius,
                                 .trail = trail,
-                                .death = organism};
+                                .death = organism,
+                                .wanders = wanders,
+                                .seeks = seeks,
+                                .flees = flees};
 
 std::uint8_t between(std::uint8_t from, std::uint8_t to, double share) {
     return static_cast<std::uint8_t>(std::lround(from + (to - from) * share));

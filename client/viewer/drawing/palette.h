@@ -105,10 +105,11 @@ struct IslandColours {
     Colour pointed_at, selected; // rings around organisms
     Colour food, poison, crate, crate_edge, obstacle;
     Colour food_radius, poison_radius, trail, death;
+    Colour wanders, seeks, flees; // the choice of an organism
 };
 const IslandColours& of(Look look);
 
-// Colours for the choice of an organism.
+// Colours of the choices on a light background.
 constexpr Colour wanders{90, 90, 96};
 constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];

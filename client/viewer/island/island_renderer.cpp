@@ -143,7 +143,7 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
         // After a change of the level of detail, draw densities until the first snapshot with the new detail arrives.
         const bool has_densities = std::ranges::any_of(
             snapshot->tiles, [](const auto& tile) { return tile.detail == evod::v1::DETAIL_DENSITY; });
-        if (island_view.shows_density(camera, snapshot->about) || has_densities) {
+        if (island_view.shows_density(camera, *snapshot) || has_densities) {
             draw_density(*snapshot, organisms, camera, island_view);
         } else {
             draw_items(*snapshot, camera, styles);
@@ -173,7 +173,8 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
         const auto highlight = [&](std::optional<std::size_t> index, Layer& layer, const ShapeStyle& style) {
             if (index && *index < organisms.size()) {
                 const auto [x, y] = organisms[*index];
-                const float radius = organisms.entities->radius_px(*index);
+                const double beyond = static_cast<double>(styles.highlight_pixels) * camera.scale() / camera.zoom();
+                const float radius = organisms.entities->radius_px(*index) + static_cast<float>(beyond);
                 layer.set(std::array{Shape{x, y, radius, radius}});
                 painter_.draw(layer, style);
             }
@@ -285,7 +286,8 @@ void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera&
     }
     arrow_lines_.clear();
     target_lines_.clear();
-    add_forces(organisms, discs_, *population, camera.visible(), chosen, arrow_lines_, target_lines_);
+    add_forces(organisms, discs_, *population, camera.visible(), chosen, palette::of(island_view.options.look),
+               arrow_lines_, target_lines_);
     const Styles& styles = styles_of(island_view.options.look);
     targets_.set(target_lines_.lines, target_lines_.colours);
     painter_.draw(targets_, styles.target);

@@ -54,7 +54,7 @@ void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::
     const bool no_single_organism_matters =
         options.colour_by == ColourBy::Nothing && !details_of_all && !world.feed.selected();
     const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
-    const auto detail = shows_density(camera, about)          ? evod::v1::DETAIL_DENSITY
+    const auto detail = shows_density(camera, *snapshot_)     ? evod::v1::DETAIL_DENSITY
                         : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
                                                               : evod::v1::DETAIL_FULL;
     if (auto view = region_.update(camera, detail, now)) {
@@ -62,9 +62,13 @@ void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::
     }
 }
 
-bool IslandView::shows_density(const Camera& camera, const evod::v1::SnapshotFrame& island) const {
+bool IslandView::shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const {
+    const evod::v1::SnapshotFrame& island = snapshot.about;
+    const std::size_t streamed = snapshot.entities->organisms.x.size();
+    const double count =
+        std::max({double(island.organism_count()), double(island.live().organism_count()), double(streamed)});
     return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera) &&
-           too_many_for_dots(camera, island, std::max(island.organism_count(), island.live().organism_count()));
+           too_many_for_dots(camera, island, count);
 }
 
 // ---- requests --------------------------------------------------------------------------------------------------

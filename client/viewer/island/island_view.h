@@ -93,7 +93,7 @@ class IslandView {
     /// organism has been selected.
     const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
     /// Returns whether densities are shown because the visible organisms are too small and too many.
-    bool shows_density(const Camera& camera, const evod::v1::SnapshotFrame& island) const;
+    bool shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often

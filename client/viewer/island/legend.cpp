@@ -70,14 +70,15 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
     if (needs_population && population == nullptr && !island_view.problem().empty()) {
         legend.entries.push_back({palette::unknown, island_view.problem()});
     }
-    if (island_view.options.radii && population != nullptr) {
+    if (island_view.options.radii && island_view.options.of_all && population != nullptr) {
         legend.entries.push_back({{}, "perception radius for food", &Styles::food_radius});
         legend.entries.push_back({{}, "perception radius for poison", &Styles::poison_radius});
     }
     if (island_view.options.forces && population != nullptr) {
-        legend.entries.push_back({palette::seeks, "seeks food", &Styles::arrow});
-        legend.entries.push_back({palette::flees, "flees from poison", &Styles::arrow});
-        legend.entries.push_back({palette::wanders, "wanders; an arrow of 30 px is 100 kg px/s²", &Styles::arrow});
+        const palette::IslandColours& colours = palette::of(island_view.options.look);
+        legend.entries.push_back({colours.seeks, "seeks food", &Styles::arrow});
+        legend.entries.push_back({colours.flees, "flees from poison", &Styles::arrow});
+        legend.entries.push_back({colours.wanders, "wanders; an arrow of 30 px is 100 kg px/s²", &Styles::arrow});
     }
     return legend;
 }

@@ -27,7 +27,7 @@ class MarkPainter {
     /// three quarters of the greatest health.
     ///
     /// centre  of the mark on the screen, in pixels
-    /// radius  of the mark in pixels
+    /// radius  of the mark in pixels, with its arc or tips
     /// scale   factor for sizes given in pixels at scale 1
     /// colour  replaces the fill of the style
     void add(ImDrawList& list, ImVec2 centre, float radius, double scale, const ShapeStyle& style,

@@ -35,10 +35,10 @@ bool may_touch(const Rectangle& rectangle, float x, float y, float radius) {
            y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
 }
 
-Colour colour_of(evod::v1::Choice choice) {
-    return choice == evod::v1::CHOICE_SEEK   ? palette::seeks
-           : choice == evod::v1::CHOICE_FLEE ? palette::flees
-                                             : palette::wanders;
+Colour colour_of(evod::v1::Choice choice, const palette::IslandColours& colours) {
+    return choice == evod::v1::CHOICE_SEEK   ? colours.seeks
+           : choice == evod::v1::CHOICE_FLEE ? colours.flees
+                                             : colours.wanders;
 }
 
 /// Calls `act` with the index of each chosen organism.
@@ -148,7 +148,8 @@ void add_radii(const codec::Entities& organisms, std::span<const Shape> discs, c
 }
 
 void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-                const Rectangle& visible, const Chosen& chosen, ColouredLines& arrows, ColouredLines& targets) {
+                const Rectangle& visible, const Chosen& chosen, const palette::IslandColours& colours,
+                ColouredLines& arrows, ColouredLines& targets) {
     constexpr float reach_px = 200; // no organism perceives farther than this
     for_each(chosen, organisms.id.size(), [&](std::size_t i) {
         const std::uint32_t id = organisms.id[i];
@@ -160,7 +161,7 @@ void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, 
         if (choice == evod::v1::CHOICE_UNSPECIFIED) {
             return;
         }
-        const Colour colour = colour_of(choice);
+        const Colour colour = colour_of(choice, colours);
         arrows.lines.push_back({x, y, x + arrow_px_per_force * population.force_x()[id],
                                 y + arrow_px_per_force * population.force_y()[id]});
         arrows.colours.push_back(colour);

@@ -85,7 +85,8 @@ struct ColouredLines {
 
 /// Adds, for each visible chosen organism, an arrow along its force and a line to its target, coloured by its choice.
 void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-                const Rectangle& visible, const Chosen& chosen, ColouredLines& arrows, ColouredLines& targets);
+                const Rectangle& visible, const Chosen& chosen, const palette::IslandColours& colours,
+                ColouredLines& arrows, ColouredLines& targets);
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 

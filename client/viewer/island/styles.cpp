@@ -39,6 +39,7 @@ Styles vivid(const palette::IslandColours& of, std::uint8_t shadow) {
     styles.poison = {.form = Form::Star, .fill = of.poison, .half_pixels_min = 0.75f};
     styles.trail = {.form = Form::SoftLine, .fill = of.trail, .line_pixels = 5};
     styles.shadow = {.form = Form::SoftLine, .fill = {0, 0, 0, shadow}, .line_pixels = 48};
+    styles.highlight_pixels = 8;
     styles.label_zoom_min = 1.4f;
     return styles;
 }
@@ -53,6 +54,7 @@ Styles classic(const palette::IslandColours& of) {
     styles.poison = {.fill = of.poison, .half_pixels_min = 1};
     styles.trail = {.form = Form::Line, .fill = of.trail, .line_pixels = 1.5f};
     styles.shadow = {.form = Form::SoftLine, .fill = transparent};
+    styles.highlight_pixels = 0;
     styles.label_zoom_min = 0.45f;
     return styles;
 }

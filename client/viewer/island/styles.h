@@ -15,6 +15,7 @@ struct Styles {
     ShapeStyle organism_dot;         // streamed without radius and health
     ShapeStyle food_dot, poison_dot; // among organisms that are too small to see one by one
     ShapeStyle pointed_at, selected;
+    float highlight_pixels; // from the outline of an organism to the two rings above, at scale 1
     ShapeStyle food, poison, crate, obstacle;
     ShapeStyle food_radius, poison_radius, arrow, target;
     ShapeStyle trail, shadow; // the shadow of the walls on the outside

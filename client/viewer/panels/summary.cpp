@@ -51,22 +51,19 @@ void Summary::build_marks(Look look, const Gui& gui) {
     const float scale = gui.scale(), radius = 7 * scale, gap = 6 * scale, height = 26 * scale;
     const palette::IslandColours& colours = palette::of(look);
     const Styles& styles = styles_of(look);
-    const bool vivid = look.skin == Skin::Vivid;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(colours.ground), 4 * scale);
     float left = corner.x + gap;
-    const auto add = [&](const ShapeStyle& style, float mark_radius, const char* name) {
-        marks_.add(list, {left + radius, corner.y + height / 2}, mark_radius, double{scale}, style);
-        left =
-            write(list, gui.label(), {left + 2 * radius + gap, corner.y + (height - gui.label().FontSize) / 2 - scale},
-                  colours.label, name) +
-            2.5f * gap;
+    const auto add = [&](const ShapeStyle& style, const char* name) {
+        marks_.add(list, {left + radius, corner.y + height / 2}, radius, double{scale}, style);
+        const float top = corner.y + (height - gui.label().FontSize) / 2 - scale;
+        left = write(list, gui.label(), {left + 2 * radius + gap, top}, colours.label, name) + 2.5f * gap;
     };
-    add(styles.organism, vivid ? 0.7f * radius : radius, vivid ? "organism, arc: health" : "organism, number: health");
-    add(styles.food, (vivid ? 0.55f : 0.75f) * radius, "food");
-    add(styles.poison, (vivid ? 0.55f : 0.75f) * radius, "poison");
+    add(styles.organism, look.skin == Skin::Vivid ? "organism, arc: health" : "organism, number: health");
+    add(styles.food, "food");
+    add(styles.poison, "poison");
     ImGui::Dummy({width, height});
 }
 

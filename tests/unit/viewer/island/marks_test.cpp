@@ -118,11 +118,11 @@ TEST_F(MarksTest, RadiiAreDrawnOfVisibleOrganismsOnly) {
 
 TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ColouredLines arrows, targets;
-    add_forces(organisms, discs, population, everything, {}, arrows, targets);
+    add_forces(organisms, discs, population, everything, {}, palette::of({}), arrows, targets);
     EXPECT_THAT(arrows.lines, ElementsAre(Line{100, 10, 100 + arrow_px_per_force, 10},
                                           Line{200, 20, 200 + arrow_px_per_force, 20 + 2 * arrow_px_per_force}));
     EXPECT_THAT(targets.lines, ElementsAre(Line{100, 10, 0, 0}, Line{200, 20, 2, 4}));
-    EXPECT_THAT(targets.colours, ElementsAre(palette::seeks, palette::seeks));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::of({}).seeks, palette::of({}).seeks));
 
     auto page = page_of(0, 3, 3);
     *page.mutable_choices() = {evod::v1::CHOICE_WANDER, evod::v1::CHOICE_SEEK, evod::v1::CHOICE_FLEE};
@@ -130,14 +130,14 @@ TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ASSERT_EQ(others.add(page), std::nullopt);
     arrows.clear();
     targets.clear();
-    add_forces(organisms, discs, others, everything, {}, arrows, targets);
-    EXPECT_THAT(arrows.colours, ElementsAre(palette::wanders, palette::flees));
-    EXPECT_THAT(targets.colours, ElementsAre(palette::flees)) << "a wandering organism has no target";
+    add_forces(organisms, discs, others, everything, {}, palette::of({}), arrows, targets);
+    EXPECT_THAT(arrows.colours, ElementsAre(palette::of({}).wanders, palette::of({}).flees));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::of({}).flees)) << "a wandering organism has no target";
     arrows.clear();
     targets.clear();
-    add_forces(organisms, discs, others, {5'000, 5'000, 10, 10}, {}, arrows, targets);
+    add_forces(organisms, discs, others, {5'000, 5'000, 10, 10}, {}, palette::of({}), arrows, targets);
     EXPECT_THAT(arrows.lines, IsEmpty());
-    add_forces(organisms, discs, population, everything, std::vector<std::size_t>{1}, arrows, targets);
+    add_forces(organisms, discs, population, everything, std::vector<std::size_t>{1}, palette::of({}), arrows, targets);
     EXPECT_THAT(targets.lines, ElementsAre(Line{200, 20, 2, 4})) << "of the chosen organism";
 }
 
