@@ -11,6 +11,11 @@ constexpr double dots_radius_pixels = 2; // organisms smaller than this are stre
 
 } // namespace
 
+ViewOptions default_options(Look look) {
+    const bool vivid = look.skin == Skin::Vivid;
+    return {.look = look, .trails = vivid, .flashes = vivid, .radii = vivid};
+}
+
 // ---- the region ------------------------------------------------------------------------------------------------
 
 std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod::v1::Detail detail,
@@ -45,15 +50,25 @@ void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::
     if (!in_part_) {
         return;
     }
-    const bool no_single_organism_matters = options.colour_by == ColourBy::Nothing && !options.radii &&
-                                            !options.forces && !options.trails && !world.feed.selected();
+    const bool details_of_all = options.of_all && (options.radii || options.forces) && shows_details(camera);
+    const bool no_single_organism_matters =
+        options.colour_by == ColourBy::Nothing && !details_of_all && !world.feed.selected();
     const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
-    const auto detail = shows_density(camera)                 ? evod::v1::DETAIL_DENSITY
+    const auto detail = shows_density(camera, *snapshot_)     ? evod::v1::DETAIL_DENSITY
                         : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
                                                               : evod::v1::DETAIL_FULL;
     if (auto view = region_.update(camera, detail, now)) {
         world.feed.set_view(std::move(view));
     }
+}
+
+bool IslandView::shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const {
+    const evod::v1::SnapshotFrame& island = snapshot.about;
+    const std::size_t streamed = snapshot.entities->organisms.x.size();
+    const double count =
+        std::max({double(island.organism_count()), double(island.live().organism_count()), double(streamed)});
+    return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera) &&
+           too_many_for_dots(camera, island, count);
 }
 
 // ---- requests --------------------------------------------------------------------------------------------------
@@ -62,16 +77,18 @@ PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
     return {world.feed.world(), shown_.run_id, world.feed.island(), gene_names_.size()};
 }
 
-bool IslandView::needs_population() const {
+bool IslandView::needs_population(bool points_at) const {
+    const bool any_chosen = options.of_all || points_at || (organism_history_ && !organism_history_->ended());
+    const bool forces = options.forces && any_chosen;
     const bool current_needed =
-        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || options.radii ||
-        options.forces ||
+        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage ||
+        (options.radii && any_chosen) || forces ||
         (organism_history_ && (organism_history_->waits_for_children() ||
                                (!organism_history_->ended() && organism_history_->ranges().empty())));
     if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
         return false;
     }
-    return population() == nullptr || (options.forces && population_tick_ != tick_);
+    return population() == nullptr || (forces && population_tick_ != tick_);
 }
 
 void IslandView::take_population() {
@@ -109,7 +126,8 @@ void IslandView::forget() {
     *this = std::move(fresh);
 }
 
-void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
+void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
+                               const Camera& camera) {
     const auto& about = snapshot->about;
     if (shown_.run_id != about.run_id()) {
         if (!shown_.run_id.empty()) { // the world was reset
@@ -129,9 +147,14 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
         }
     }
     trails_.add(snapshot);
+    if (options.flashes && shows_traces(camera, *snapshot)) {
+        flashes_.add(snapshot);
+    } else {
+        flashes_.clear();
+    }
 }
 
-void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
+void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at) {
     if (shown_.number != world.feed.place_number()) {
         forget();
         shown_.number = world.feed.place_number();
@@ -141,7 +164,7 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         return;
     }
     if (snapshot != snapshot_) {
-        take_snapshot(world, snapshot);
+        take_snapshot(world, snapshot, camera);
     }
     if (gene_names_ != world.feed.gene_names()) {
         gene_names_ = world.feed.gene_names();
@@ -154,7 +177,7 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         organism_tick_ = ~std::uint64_t{0};
     }
     take_population();
-    if (population_poll_.update(world, population_of(world), needs_population(), now)) {
+    if (population_poll_.update(world, population_of(world), needs_population(points_at), now)) {
         population_tick_ = tick_;
     }
     const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();

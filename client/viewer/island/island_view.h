@@ -5,6 +5,7 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
+#include "client/viewer/island/flashes.h"
 #include "client/viewer/island/marks.h"
 #include "client/viewer/world/organism_history.h"
 #include "client/viewer/world/population_poll.h"
@@ -21,13 +22,20 @@ namespace evod::viewer {
 
 /// The settings of the View panel: which parts of an island are drawn, and how.
 struct ViewOptions {
+    Look look;
     ColourBy colour_by = ColourBy::Nothing;
     std::size_t gene = 0; // index of the gene that colours organisms, in the world's list of genes
-    palette::Ramp ramp = palette::Ramp::Viridis;
-    bool radii = false, forces = false, trails = false;
-    bool density = true; // draw densities in place of organisms that are too small to see
+    palette::Ramp ramp = palette::Ramp::Violet;
+    bool trails = true, flashes = true;
+    bool radii = true, forces = false;
+    bool of_all = false; // radii and forces of all organisms; otherwise of the organisms pointed at and selected
+    bool density = true; // draw densities in place of organisms that are too many to see
     bool minimap = true; // show the minimap while part of the island is out of sight
+    friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
+
+/// The options with which a look is shown at first. The classic skin shows organisms, items and walls only.
+ViewOptions default_options(Look look);
 
 /// Chooses the region and the level of detail in which a large island is streamed. The region is twice as wide and high
 /// as the visible part, so that a small pan stays inside it. The region changes at most once per `interval`.
@@ -59,7 +67,9 @@ class IslandView {
     static constexpr std::uint32_t streamed_in_part_min = 5'000;
 
     /// Reads the newest snapshot, requests the data that the options need, and moves the streamed region.
-    void update(ViewedWorld& world, const Camera& camera, Clock::time_point now);
+    ///
+    /// points_at  whether the mouse points at an organism
+    void update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at = false);
 
     /// Keeps the followed organism in the centre. Following ends when the user moves the camera or the organism dies.
     void follow(ViewedWorld& world, Camera& camera, double blend);
@@ -78,13 +88,12 @@ class IslandView {
     std::string problem() const { return population_poll_.problem(); }
     const FamilyColours& family_colours() const { return family_colours_; }
     const Trails& trails() const { return trails_; }
+    const Flashes& flashes() const { return flashes_; }
     /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
     /// organism has been selected.
     const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
-    /// Returns whether densities are shown because organisms are too small.
-    bool shows_density(const Camera& camera) const {
-        return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera);
-    }
+    /// Returns whether densities are shown because the visible organisms are too small and too many.
+    bool shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
@@ -96,9 +105,10 @@ class IslandView {
         friend bool operator==(const Shown&, const Shown&) = default;
     };
     PopulationPoll::Of population_of(const ViewedWorld& world) const;
-    bool needs_population() const;
+    bool needs_population(bool points_at) const;
     void forget();
-    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
+    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
+                       const Camera& camera);
     void take_population();
     void request_organism(ViewedWorld& world, Clock::time_point now);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
@@ -114,6 +124,7 @@ class IslandView {
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     FamilyColours family_colours_;
     Trails trails_;
+    Flashes flashes_;
     std::optional<OrganismHistory> organism_history_;
 
     struct Followed {

@@ -2,6 +2,7 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/island/styles.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/world/status_text.h"
@@ -15,26 +16,6 @@ namespace evod::viewer {
 namespace {
 
 constexpr float curve_height = 84; // pixels at scale 1
-
-/// Explains the marks of the island in one line: each mark as it is drawn, followed by its name.
-void build_marks(float scale) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float line = ImGui::GetTextLineHeight(), radius = 5 * scale;
-    const auto centre = [&] {
-        const ImVec2 place = ImGui::GetCursorScreenPos();
-        ImGui::Dummy({3 * radius, line});
-        ImGui::SameLine(0, 2 * scale);
-        return ImVec2{place.x + radius, place.y + line / 2};
-    };
-    list.AddCircle(centre(), radius, ink(palette::organism), 0, 2 * scale);
-    ImGui::TextUnformatted("organism, with its health");
-    ImGui::SameLine(0, 12 * scale);
-    list.AddCircleFilled(centre(), radius * 0.8f, ink(palette::food));
-    ImGui::TextUnformatted("food");
-    ImGui::SameLine(0, 12 * scale);
-    list.AddCircleFilled(centre(), radius * 0.8f, ink(palette::poison));
-    ImGui::TextUnformatted("poison");
-}
 
 } // namespace
 
@@ -55,15 +36,35 @@ void Summary::build(Panel::Context& context) {
 void Summary::build_experiment(Panel::Context& context) {
     ViewedWorld& world = context.world;
     experiment_.update(world, context.now);
-    const float scale = context.gui.scale();
     ImGui::PushFont(&context.gui.label());
     if (experiment_.text().empty()) {
         widgets::small_text(world.feed.control().known() ? "Loading the experiment …" : "No world is open yet.");
     } else {
         widgets::small_text(experiment_.text(), palette::text);
     }
-    build_marks(scale);
+    build_marks(context.island_view.options.look, context.gui);
     ImGui::PopFont();
+}
+
+/// Explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
+void Summary::build_marks(Look look, const Gui& gui) {
+    const float scale = gui.scale(), radius = 7 * scale, gap = 6 * scale, height = 26 * scale;
+    const palette::IslandColours& colours = palette::of(look);
+    const Styles& styles = styles_of(look);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(colours.ground), 4 * scale);
+    float left = corner.x + gap;
+    const auto add = [&](const ShapeStyle& style, const char* name) {
+        marks_.add(list, {left + radius, corner.y + height / 2}, radius, double{scale}, style);
+        const float top = corner.y + (height - gui.label().FontSize) / 2 - scale;
+        left = write(list, gui.label(), {left + 2 * radius + gap, top}, colours.label, name) + 2.5f * gap;
+    };
+    add(styles.organism, look.skin == Skin::Vivid ? "organism, arc: health" : "organism, number: health");
+    add(styles.food, "food");
+    add(styles.poison, "poison");
+    ImGui::Dummy({width, height});
 }
 
 void Summary::build_curve(const Panel::Context& context) {

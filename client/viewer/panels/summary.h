@@ -6,6 +6,7 @@
 // Threads      none; used on the drawing thread.
 #pragma once
 
+#include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/fork_dialog.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
@@ -24,11 +25,13 @@ class Summary {
 
   private:
     void build_experiment(Panel::Context& context);
+    void build_marks(Look look, const Gui& gui);
     void build_curve(const Panel::Context& context);
     void build_buttons(ViewedWorld& world, float scale);
     void build_speed(ViewedWorld& world);
 
     Experiment experiment_;
+    MarkPainter marks_;
     ForkDialog fork_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused

@@ -41,18 +41,19 @@ void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
     }
     const std::vector<Rectangle> places = in_tiles(viewport_of(place_, scale), all.size(), aspect);
     for (std::size_t i = 0; i < all.size(); ++i) {
-        all[i].camera.set_viewport(places[i]);
+        all[i].camera.set_viewport(places[i], scale);
     }
 }
 
 // ---- all panes -------------------------------------------------------------------------------------------------
 
-Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside) : wanted_{std::move(wanted)} {
-    panes_.push_back(std::make_unique<Pane>(wanted_));
+Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside, const ViewOptions& view)
+    : wanted_{std::move(wanted)} {
+    panes_.push_back(std::make_unique<Pane>(wanted_, view));
     wanted_.replay_generation.reset();
     if (beside) {
         wanted_.world = *beside;
-        panes_.push_back(std::make_unique<Pane>(wanted_));
+        panes_.push_back(std::make_unique<Pane>(wanted_, view));
     }
 }
 
@@ -125,7 +126,7 @@ void Panes::open_beside(std::string world, std::uint32_t island) {
     wanted_.world = std::move(world);
     wanted_.island = island;
     wanted_.all_islands = focused().world.feed.all_islands();
-    panes_.push_back(std::make_unique<Pane>(wanted_));
+    panes_.push_back(std::make_unique<Pane>(wanted_, focused().island_view.options));
     focus_ = 1;
 }
 

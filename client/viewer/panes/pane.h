@@ -29,7 +29,7 @@ struct Tile {
 
 class Pane {
   public:
-    explicit Pane(WantedWorld wanted) : world{std::move(wanted)} {}
+    Pane(WantedWorld wanted, const ViewOptions& view) : world{std::move(wanted)} { island_view.options = view; }
 
     ViewedWorld world;
     IslandView island_view; // how the chosen island is shown
@@ -64,7 +64,8 @@ class Pane {
 class Panes {
   public:
     /// beside  world of a second pane; nullopt: no second pane
-    explicit Panes(WantedWorld wanted, const std::optional<std::string>& beside = {});
+    /// view    how each pane shows its island at first
+    explicit Panes(WantedWorld wanted, const std::optional<std::string>& beside = {}, const ViewOptions& view = {});
 
     /// Processes everything that each pane has received from its server since the last call.
     void update(core::SnapshotInterpolator::Clock::time_point now);

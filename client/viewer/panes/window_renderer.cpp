@@ -79,26 +79,27 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
     const double blend = frame.interpolate ? tile.view.blend_at(frame.now) : 1;
     const codec::ReceivedSnapshot* snapshot = tile.view.latest().get();
     IslandRenderer::Highlighted highlighted;
+    if (snapshot != nullptr && frame.pointed_at) {
+        highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
+    }
     if (snapshot != nullptr && chosen) {
         pane.blend = blend;
-        pane.island_view.update(pane.world, tile.camera, frame.now);
+        pane.island_view.update(pane.world, tile.camera, frame.now, highlighted.pointed_at.has_value());
         pane.island_view.follow(pane.world, tile.camera, blend);
         if (const auto selected = pane.world.feed.selected()) {
             highlighted.selected = snapshot->entities->organisms.index_of(*selected);
         }
     }
-    if (snapshot != nullptr && frame.pointed_at) {
-        highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
-    }
     const IslandView& island_view = pane.island_view_of(tile);
     renderer.draw(tile.view, blend, tile.camera, frame.width_pixels, frame.height_pixels, island_view, highlighted);
-    if (!island_view.shows_density(tile.camera)) {
+    const Look look = island_view.options.look;
+    if (!renderer.density_scale()) {
         const Rectangle& viewport = tile.camera.viewport();
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
         list.PushClipRect(
             {static_cast<float>(viewport.left), static_cast<float>(viewport.top)},
             {static_cast<float>(viewport.left + viewport.width), static_cast<float>(viewport.top + viewport.height)});
-        renderer.draw_labels(tile.view, blend, tile.camera, list, gui_.label());
+        renderer.draw_labels(tile.view, blend, tile.camera, look, highlighted, list, gui_.label());
         list.PopClipRect();
     }
     if (pane.world.feed.all_islands()) {
@@ -106,9 +107,9 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
     }
     if (snapshot != nullptr && chosen) {
         build_legend(legend_of(island_view, *snapshot, renderer.density_scale(), renderer.density_cell_px()),
-                     tile.camera, gui_);
+                     tile.camera, gui_, look, marks_);
         if (island_view.options.minimap) {
-            pane.minimap.build(pane.world, tile.camera, gui_, pane_number);
+            pane.minimap.build(pane.world, tile.camera, gui_, look, pane_number);
         }
     }
     if (highlighted.pointed_at) {

@@ -7,6 +7,7 @@
 
 #include "client/viewer/drawing/gui.h"
 #include "client/viewer/island/island_renderer.h"
+#include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/panels.h"
 #include "client/viewer/panes/overlay.h"
 #include "client/viewer/panes/pane.h"
@@ -65,6 +66,7 @@ class WindowRenderer {
 
     Gui gui_;
     std::vector<std::unique_ptr<IslandRenderer>> island_renderers_; // one per tile
+    MarkPainter marks_;                                             // of the legends
     Overlay overlay_;
     Panels panels_;
     Clock::time_point drawn_{};

@@ -54,6 +54,8 @@ class Screen {
 
     sf::Window& window() { return window_; }
     WindowRenderer& renderer() { return renderer_; }
+    /// The view options that the next window and the next start of evoview use.
+    ViewOptions& stored_view() { return settings_.view(); }
 
   private:
     class ScriptHost;

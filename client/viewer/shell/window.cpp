@@ -28,7 +28,14 @@ Window::Window(Screen& screen, const Options& options)
     : screen_{screen}
     , window_{screen.window()}
     , renderer_{screen.renderer()}
-    , panes_{wanted_of(options), options.beside} {}
+    , panes_{wanted_of(options), options.beside, view_of(options, screen.stored_view())}
+    , stores_view_{!options.skin && !options.background} {}
+
+Window::~Window() {
+    if (stores_view_) {
+        screen_.stored_view() = panes_.focused().island_view.options;
+    }
+}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = core::SnapshotInterpolator::Clock;

@@ -22,6 +22,10 @@ class Window {
     };
 
     Window(Screen& screen, const Options& options);
+    /// Stores how the island is shown, unless the command line set its look.
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
 
     /// Shows worlds until the user closes the window or evoview must return to the start screen.
     ///
@@ -41,6 +45,7 @@ class Window {
     sf::Window& window_;
     WindowRenderer& renderer_;
     Panes panes_;
+    bool stores_view_;
     Input input_;
     core::SnapshotInterpolator::Clock::time_point now_{};
     core::SnapshotInterpolator::Clock::time_point

@@ -278,11 +278,30 @@ quit
     EXPECT_EQ(second.status, 0) << second.output;
 }
 
+TEST_F(PanelsTest, TheLookIsStoredUnlessTheCommandLineSetsIt) {
+    RealServer server{{"--seed", "7"}};
+    const Ran first = play(server.address(), "wait snapshot\nkey F5\nset skin classic\n"
+                                             "click \"flashes of meals and deaths\"\nquit\n");
+    EXPECT_EQ(first.status, 0) << first.output;
+    std::ifstream stored{folder.file("state/evod/evoview.ini")};
+    const std::string text{std::istreambuf_iterator<char>{stored}, {}};
+    EXPECT_NE(text.find("skin=classic\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("trails=0\nflashes=1\n"), std::string::npos) << text;
+    const Ran vivid = play(server.address() + " --skin vivid --background light",
+                           "wait snapshot\nkey F5\nwait widget View/background\nquit\n");
+    EXPECT_EQ(vivid.status, 0) << vivid.output;
+    const Ran second = play(server.address(), "wait snapshot\nkey F5\nwait widget View/skin\n"
+                                              "wait gone View/background\nquit\n");
+    EXPECT_EQ(second.status, 0) << second.output;
+}
+
 TEST_F(PanelsTest, ADamagedSettingsFileIsIgnored) {
     RealServer server{{"--seed", "7"}};
     std::filesystem::create_directories(folder.file("state/evod"));
-    std::ofstream{folder.file("state/evod/evoview.ini")} << "[Sidebar][Data]\nwidth=nan\nwidth=-5\nwidth=1e30\n"
-                                                            "collapsed\ntab=no such panel\n\n[Sidebar\n=\n\xff\x01";
+    std::ofstream{folder.file("state/evod/evoview.ini")}
+        << "[Sidebar][Data]\nwidth=nan\nwidth=-5\nwidth=1e30\n"
+           "collapsed\ntab=no such panel\n\n[Island][Data]\nskin=neon\n"
+           "gene=-1\ncolour_by=gene\ntrails\n\n[Sidebar\n=\n\xff\x01";
     const Ran ran = play(server.address(), "wait snapshot\nkey F4\nwait widget Parameters/Search\nquit\n");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }

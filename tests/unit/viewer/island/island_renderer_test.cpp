@@ -49,10 +49,13 @@ TEST(Labels, AreDrawnOnlyWhereTheyAreReadable) {
     Camera camera;
     camera.set_viewport({0, 0, 1280, 650});
     camera.set_island(1280, 720);
-    EXPECT_TRUE(labels_are_readable(camera, 50));
-    EXPECT_FALSE(labels_are_readable(camera, 10'000));
+    EXPECT_TRUE(labels_are_readable(camera, 50, 0.45));
+    EXPECT_FALSE(labels_are_readable(camera, 10'000, 0.45));
+    EXPECT_FALSE(labels_are_readable(camera, 50, 1.4)) << "the organisms are small";
+    camera.set_viewport({0, 0, 1280, 650}, 3);
+    EXPECT_FALSE(labels_are_readable(camera, 50, 0.45)) << "the numbers are large";
     camera.set_island(20'000, 20'000);
-    EXPECT_FALSE(labels_are_readable(camera, 1));
+    EXPECT_FALSE(labels_are_readable(camera, 1, 0.45));
 }
 
 TEST(Labels, RoundHealthUpSoThatTheLivingNeverShowZero) {

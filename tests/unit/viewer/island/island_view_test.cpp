@@ -204,7 +204,7 @@ TEST_F(IslandViewTest, RestartsWhenTheGenerationEndsBetweenPages) {
 
 TEST_F(IslandViewTest, RequestsForcesAgainWhileTheWorldRuns) {
     show(4, 100);
-    island_view.options.forces = true;
+    island_view.options.forces = island_view.options.of_all = true;
     answer_page(3, 4);
     until([&] { return island_view.population() != nullptr; });
     show(4, 110);
@@ -214,7 +214,7 @@ TEST_F(IslandViewTest, RequestsForcesAgainWhileTheWorldRuns) {
 
 TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     session->refuse(next_request().request_id(), evod::v1::CODE_UNIMPLEMENTED, "what?");
     until([&] { return !island_view.problem().empty(); });
     EXPECT_THAT(island_view.problem(), HasSubstr("sends no genes"));
@@ -225,7 +225,7 @@ TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
 
 TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     const auto request = next_request();
     evod::v1::ServerMessage message;
     message.mutable_response()->set_request_id(request.request_id());
@@ -308,7 +308,7 @@ TEST_F(IslandViewTest, ForgetsEverythingWithAnotherRun) {
 
 TEST_F(IslandViewTest, DropsRequestsOfTheLiveWorldInAReplay) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     const auto unanswered = next_request();
     EXPECT_EQ(unanswered.get_population().world(), "default");
     show_replay();
@@ -364,6 +364,22 @@ TEST_F(IslandViewTest, StreamsOnlyTheVisiblePartOfLargeIslands) {
     ASSERT_TRUE(request.has_set_view()) << request.DebugString();
     EXPECT_EQ(request.set_view().subscription_id(), 9u);
     EXPECT_LT(request.set_view().view().region().width_px(), 300);
+}
+
+TEST_F(IslandViewTest, RequestsRadiiWhileTheMousePointsAtAnOrganism) {
+    show(4, 100);
+    EXPECT_EQ(session->unread_bytes(), 0u) << "radii are shown, but of no organism";
+    island_view.update(*world, camera, std::chrono::steady_clock::now(), true);
+    answer_page(3, 4);
+    until([&] { return island_view.population() != nullptr; });
+}
+
+TEST(IslandView, TheClassicSkinAddsNothingByDefault) {
+    const ViewOptions classic = default_options({Skin::Classic});
+    EXPECT_FALSE(classic.trails || classic.flashes || classic.radii || classic.forces);
+    const ViewOptions vivid = default_options({Skin::Vivid, Background::Light});
+    EXPECT_EQ(vivid.look, (Look{Skin::Vivid, Background::Light}));
+    EXPECT_EQ(default_options({}), ViewOptions{});
 }
 
 TEST(IslandView, CyclesThroughTheColourings) {

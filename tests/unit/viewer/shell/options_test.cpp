@@ -56,10 +56,25 @@ TEST(ViewerOptions, ScreenshotsAndRecordingsShareTheTimeout) {
     EXPECT_EQ(recording.record->timeout_s, 5);
 }
 
+TEST(ViewerOptions, TheLookReplacesTheStoredOne) {
+    EXPECT_EQ(view_of(parsed({})), ViewOptions{}) << "vivid and dark";
+    ViewOptions stored = default_options({Skin::Classic});
+    stored.trails = true;
+    EXPECT_EQ(view_of(parsed({}), stored), stored);
+    EXPECT_EQ(view_of(parsed({"--skin", "classic"}), stored), stored);
+    EXPECT_EQ(view_of(parsed({"--background", "light"}), stored), stored) << "classic has one background";
+    EXPECT_EQ(view_of(parsed({"--skin", "vivid"}), stored), ViewOptions{}) << "with the defaults of the skin";
+    EXPECT_EQ(view_of(parsed({"--skin", "vivid", "--background", "light"}), stored).look,
+              (Look{Skin::Vivid, Background::Light}));
+}
+
 TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
     const std::vector<std::vector<const char*>> invalid{{"--size", "12by4"},
                                                         {"--size", "1280x9999999"},
                                                         {"--timeout", "5"},
+                                                        {"--skin", "neon"},
+                                                        {"--background", "blue"},
+                                                        {"--skin", "classic", "--background", "dark"},
                                                         {"--at-tick", "5"},
                                                         {"--past", "0"},
                                                         {"--screenshot", "a.png", "--record", "b.mp4"},
