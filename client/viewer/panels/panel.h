@@ -16,6 +16,8 @@
 
 namespace evod::viewer {
 
+class Freezer;
+class NewWorldDialog;
 class RunHistory;
 
 class Panel {
@@ -25,7 +27,10 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        const RunHistory* history = nullptr; // of the world; set by Panels
+        // Panels sets the following members.
+        const RunHistory* history = nullptr; // of the world
+        Freezer* freezer = nullptr;
+        NewWorldDialog* new_world = nullptr;
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };

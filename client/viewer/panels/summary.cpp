@@ -114,7 +114,14 @@ void Summary::build_buttons(ViewedWorld& world, float scale) {
     widgets::explain(world.replay.is_own() ? "Returns to the live world (P)."
                                            : "Shows earlier generations of this run, with a time line (P).");
     ImGui::SameLine();
-    fork_.build(world);
+    const bool may_create = world.server.may_create();
+    ImGui::BeginDisabled(!may_create);
+    if (widgets::button("Fork")) {
+        world.replay.fork();
+    }
+    ImGui::EndDisabled();
+    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
+                                : no_creation_text);
     ImGui::EndDisabled();
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);

@@ -6,7 +6,6 @@
 // Threads      none; used on the drawing thread.
 #pragma once
 
-#include "client/viewer/panels/fork_dialog.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
 
@@ -29,7 +28,6 @@ class Summary {
     void build_speed(ViewedWorld& world);
 
     Experiment experiment_;
-    ForkDialog fork_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused
 };

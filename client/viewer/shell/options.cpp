@@ -122,6 +122,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--scale", &options.scale,
                    "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
+    app.add_option("--freezer", &options.freezer,
+                   "folder with frozen organisms and populations; default: ~/.local/share/evod/freezer");
     const auto start = app.add_flag("--start", &options.start, "show the start screen first");
     const auto script = app.add_option("--script", &options.script_path, "file with actions to perform in the window");
     const auto shot =

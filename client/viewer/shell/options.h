@@ -30,6 +30,7 @@ struct Options {
     bool start = false;        // start with the start screen
     std::optional<Script> script;
     std::string script_path;
+    std::string freezer; // folder with frozen organisms
 
     /// Options for saving one frame instead of opening a window.
     struct Screenshot {

@@ -121,6 +121,8 @@ Screen::Screen(const Options& options)
     , settings_{in_state_folder("evoview.ini"), renderer_.panels()}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
+    renderer_.panels().set_freezer(options.freezer.empty() ? default_freezer_folder()
+                                                           : std::filesystem::path{options.freezer});
     place(window_);
     window_.setVerticalSyncEnabled(true);
 }

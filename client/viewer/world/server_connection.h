@@ -15,10 +15,14 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace evod::viewer {
+
+/// Why a session with another role than admin may not create worlds.
+constexpr std::string_view no_creation_text = "Only the role admin may create and delete worlds";
 
 class ServerConnection {
   public:
