@@ -4,6 +4,7 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/world/freezer.h"
+#include "client/viewer/world/mouse_tool.h"
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -12,6 +13,14 @@
 #include <utility>
 
 namespace evod::viewer {
+
+namespace {
+
+MouseTool::Model model_of(const Frozen& organism) {
+    return {organism.name, organism.islands[0]};
+}
+
+} // namespace
 
 void FreezerPanel::build(Context& context) {
     Freezer& freezer = *context.freezer;
@@ -52,7 +61,7 @@ void FreezerPanel::build_freeze(Context& context) {
     }
     ImGui::SetNextItemWidth(160 * context.gui.scale());
     ImGui::InputTextWithHint("##name", "name: world-g12", &name_);
-    widgets::mark("name");
+    widgets::mark_field("name", name_);
     widgets::explain("The name of the file. Empty: the name of the world and the number of the generation.");
     ImGui::SameLine();
     ImGui::BeginDisabled(context.world.feed.snapshot() == nullptr);
@@ -65,7 +74,7 @@ void FreezerPanel::build_freeze(Context& context) {
 
 void FreezerPanel::build_files(Context& context) {
     constexpr ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                      ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
+                                      ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_ScrollY;
     const std::vector<Frozen>& files = context.freezer->files();
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const float height =
@@ -87,14 +96,24 @@ void FreezerPanel::build_files(Context& context) {
             chosen_ = file.name;
         }
         widgets::mark(file.name);
+        if (!file.problem.empty()) {
+            widgets::mark(file.name + " is damaged");
+            widgets::explain(file.problem);
+        }
+        if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left) && file.is_organism()) {
+            context.tool->drag(model_of(file));
+        } else if (ImGui::IsItemDeactivated() && context.tool->dragging()) {
+            context.tool->drop();
+        }
         ImGui::SameLine(0, 0);
         ImGui::TextUnformatted(file.name.c_str()); // a name may contain ##
         ImGui::TableNextColumn();
         if (file.problem.empty()) {
             ImGui::TextUnformatted(file.content_text().c_str());
         } else {
-            widgets::small_text(file.problem, palette::warning);
-            widgets::mark(file.name + " is damaged");
+            ImGui::PushStyleColor(ImGuiCol_Text, ink(palette::warning));
+            ImGui::TextUnformatted(("damaged: " + file.problem).c_str()); // in one line, like the other rows
+            ImGui::PopStyleColor();
         }
         ImGui::PopID();
     }
@@ -104,6 +123,15 @@ void FreezerPanel::build_files(Context& context) {
 void FreezerPanel::build_actions(Context& context) {
     const Frozen* file = context.freezer->find(chosen_);
     const bool usable = file != nullptr && file->problem.empty();
+    const std::string problem = context.tool->problem(MouseTool::Kind::Food, context.world);
+    ImGui::BeginDisabled(!usable || !file->is_organism() || !problem.empty());
+    if (widgets::button("Thaw")) {
+        context.tool->place(model_of(*file));
+    }
+    ImGui::EndDisabled();
+    widgets::explain(problem.empty() ? "Then a click in the island places the organism. You can also drag it there."
+                                     : problem);
+    ImGui::SameLine();
     ImGui::BeginDisabled(!usable);
     if (widgets::button("New world …")) {
         context.new_world->open(false, chosen_);

@@ -135,17 +135,17 @@ void NewWorldDialog::build_fields(const Panel::Context& context) {
     }
     begin_field("name", scale);
     name_edited_ = ImGui::InputText("##name", &wanted_.name) || name_edited_;
-    widgets::mark("name");
+    widgets::mark_field("name", wanted_.name);
     begin_field("seed", scale);
     ImGui::InputTextWithHint("##seed", "empty: chosen at random", &wanted_.seed, ImGuiInputTextFlags_CharsDecimal);
-    widgets::mark("seed");
+    widgets::mark_field("seed", wanted_.seed);
     widgets::explain("Determines everything that is random. Two worlds with equal seeds and parameters are equal.");
     build_population(context);
-    const bool parameters = ImGui::TreeNode("Parameters");
-    widgets::mark("Parameters");
+    const bool as_text = ImGui::TreeNode("Parameters as text");
+    widgets::mark("Parameters as text");
     widgets::explain("The text of the experiment. A parameter that it does not name has its default value.");
-    if (parameters) {
-        ImGui::InputTextMultiline("##parameters", &wanted_.experiment_json, {-1, 7 * ImGui::GetTextLineHeight()});
+    if (as_text) {
+        ImGui::InputTextMultiline("##text", &wanted_.experiment_json, {-1, 7 * ImGui::GetTextLineHeight()});
         widgets::mark("text");
         ImGui::TreePop();
     }

@@ -48,7 +48,7 @@ class NewWorldDialog {
 
     bool opening_ = false, beside_ = false, name_edited_ = false;
     std::optional<std::size_t> preset_ = 0; // index of presets(); nullopt: the parameters of the viewed world
-    NewWorld wanted_;                       // without the population, which is read when it is sent
+    NewWorldForm wanted_;                   // without the population, which is read when it is sent
     std::string population_;                // name of a file in the freezer; empty: drawn from the seed
 };
 

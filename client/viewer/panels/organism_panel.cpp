@@ -59,6 +59,9 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
 } // namespace
 
 std::string shown_parents(const evod::v1::OrganismInfo& info) {
+    if (info.has_placed_tick()) {
+        return "No parents: placed by a user after tick " + with_separators(info.placed_tick()) + " of the generation";
+    }
     if (info.parents().empty()) {
         return "No parents: founder of generation 1, or loaded from a file";
     }
@@ -75,6 +78,9 @@ std::string shown_fate(const OrganismHistory& history) {
     }
     const evod::v1::OrganismInfo& info = *history.info();
     if (!info.alive()) {
+        if (info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_REMOVED) {
+            return print("removed by a user after %.1f s", info.lived_s());
+        }
         return print("died of %s after %.1f s",
                      info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
     }

@@ -17,6 +17,7 @@
 namespace evod::viewer {
 
 class Freezer;
+class MouseTool;
 class NewWorldDialog;
 class RunHistory;
 
@@ -31,6 +32,7 @@ class Panel {
         const RunHistory* history = nullptr; // of the world
         Freezer* freezer = nullptr;
         NewWorldDialog* new_world = nullptr;
+        MouseTool* tool = nullptr;
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };

@@ -143,6 +143,7 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
     context.history = &history_;
     context.freezer = &freezer_;
     context.new_world = &new_world_;
+    context.tool = &tool_;
     if (context.world.take_new_world_offer()) {
         if (context.world.server.may_create()) {
             new_world_.open(true);

@@ -12,6 +12,7 @@
 #include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/panels/summary.h"
 #include "client/viewer/world/freezer.h"
+#include "client/viewer/world/mouse_tool.h"
 
 #include <SFML/Window/Event.hpp>
 
@@ -62,6 +63,9 @@ class Panels {
     const std::vector<std::string_view>& titles() const { return titles_; }
     std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
 
+    /// What a click in an island does.
+    MouseTool& tool() { return tool_; }
+    const MouseTool& tool() const { return tool_; }
     /// Sets the folder of the freezer.
     void set_freezer(std::filesystem::path folder) { freezer_ = Freezer{std::move(folder)}; }
 
@@ -100,6 +104,7 @@ class Panels {
     Summary summary_;
     Freezer freezer_;
     NewWorldDialog new_world_;
+    MouseTool tool_;
     std::vector<std::size_t> used_;       // indices of detached panels, the most recently used last
     std::optional<std::size_t> keyboard_; // index of the panel with the keyboard focus
 };

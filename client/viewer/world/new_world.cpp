@@ -89,7 +89,7 @@ std::string experiment_json(const evod::v1::ParameterSet& set) {
     return text + "\n}\n";
 }
 
-core::Result<evod::v1::Request> create_request(const NewWorld& wanted) {
+core::Result<evod::v1::Request> create_request(const NewWorldForm& wanted) {
     if (std::string problem = name_problem("name", wanted.name); !problem.empty()) {
         return refused(std::move(problem));
     }

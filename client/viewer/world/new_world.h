@@ -27,7 +27,7 @@ std::string unused_name(std::string_view base, std::span<const std::string> used
 std::string experiment_json(const evod::v1::ParameterSet& set);
 
 /// What a user chose for a new world.
-struct NewWorld {
+struct NewWorldForm {
     std::string name{};
     std::string seed{}; // empty: the server chooses one
     std::string experiment_json{};
@@ -37,6 +37,6 @@ struct NewWorld {
 
 /// Returns the request, or an error of kind Usage that begins with the name of the field. With a population, the
 /// request also sets `population_size` and `island_count` to the numbers of the population.
-core::Result<evod::v1::Request> create_request(const NewWorld& wanted);
+core::Result<evod::v1::Request> create_request(const NewWorldForm& wanted);
 
 } // namespace evod::viewer

@@ -56,7 +56,7 @@ void WholePopulation::send(ViewedWorld& world, const std::shared_ptr<State>& sta
 
 void WholePopulation::take(ViewedWorld& world, const std::shared_ptr<State>& state, const evod::v1::Population& page) {
     const bool first = state->genes.islands.empty() && state->page.next() == 0;
-    if (!first && page.generation() != state->genes.generation) {
+    if (!first && (page.generation() != state->genes.generation || state->page.is_outdated_by(page))) {
         if (++state->attempt > attempts_max) {
             state->handler(failed("The generations are too short to read a whole one: pause the world first"));
             return;

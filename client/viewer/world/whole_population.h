@@ -1,6 +1,7 @@
 // WholePopulation: requests the genes of all organisms of the viewed world, of all its islands, in one generation.
 //
-// The server answers page by page. If another generation begins before the last page, the request starts again.
+// The server answers page by page. If another generation begins or an organism is placed before the last
+// page, the request starts again.
 //
 // Owner        FreezerPanel.
 // Threads      none; used by the thread that draws.

@@ -9,7 +9,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string refusal_of(const NewWorld& wanted) {
+std::string refusal_of(const NewWorldForm& wanted) {
     const auto request = create_request(wanted);
     return request ? "accepted" : request.error().what;
 }

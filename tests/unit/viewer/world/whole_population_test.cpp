@@ -71,6 +71,19 @@ TEST_F(WholePopulationTest, BeginsAgainWithANewGeneration) {
     EXPECT_THAT((*read)->islands, SizeIs(3));
 }
 
+TEST_F(WholePopulationTest, BeginsAgainAfterAnOrganismWasPlaced) {
+    answer(next(), page_of(0, 2, 3, 4, 6));
+    answer(next(), page_of(2, 2, 4, 4, 6)); // now of four organisms
+    for (std::uint32_t island = 0; island < 3; ++island) {
+        const auto request = next();
+        EXPECT_EQ(request.get_population().first_organism(), 0u);
+        answer(request, page_of(0, 4, 4, 4, 6));
+    }
+    until(world, [&] { return read.has_value(); });
+    ASSERT_TRUE(*read);
+    EXPECT_THAT((*read)->islands[0], SizeIs(24));
+}
+
 TEST_F(WholePopulationTest, GivesUpOnAWorldThatIsTooFast) {
     std::uint64_t generation = 4;
     for (unsigned attempt = 0; attempt < WholePopulation::attempts_max; ++attempt) {
