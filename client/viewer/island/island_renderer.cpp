@@ -55,24 +55,42 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
+namespace {
+
+/// Returns the circle at a point of the screen whose centre is nearest.
+///
+/// radius_px  a function that returns the radius of a circle, by its index
+template <class Radius>
+std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Radius radius_px, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
     const Point world = camera.to_world(screen);
     const double slack = 3 / camera.zoom();
     std::optional<std::size_t> found;
-    double nearest = 0; // squared distance of the nearest organism so far
-    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
-        const auto [x_px, y_px] = organisms[i];
+    double nearest = 0; // squared distance of the nearest circle so far
+    for (std::size_t i = 0, size = circles.size(); i < size; ++i) {
+        const auto [x_px, y_px] = circles[i];
         const double x = x_px - world.x, y = y_px - world.y, distance = x * x + y * y;
-        const double reach = organisms.entities->radius_px(i) + slack;
+        const double reach = radius_px(i) + slack;
         if (distance <= reach * reach && (!found || distance < nearest)) {
             found = i;
             nearest = distance;
         }
     }
     return found;
+}
+
+} // namespace
+
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
+    return circle_at(
+        screen, organisms, [&](std::size_t i) { return organisms.entities->radius_px(i); }, camera);
+}
+
+std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera) {
+    return circle_at(
+        screen, {.entities = &items}, [&](std::size_t) { return radius_px; }, camera);
 }
 
 void IslandRenderer::set_circles(Layer& layer, const codec::Entities& items, float radius) {

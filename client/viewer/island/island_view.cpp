@@ -88,7 +88,9 @@ bool IslandView::needs_population(bool points_at) const {
     if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
         return false;
     }
-    return population() == nullptr || (forces && population_tick_ != tick_);
+    const bool complete = // organisms may have been placed since the population was requested
+        population() != nullptr && population()->size() >= snapshot_->about.live().organism_count();
+    return !complete || (forces && population_tick_ != tick_);
 }
 
 void IslandView::take_population() {

@@ -4,6 +4,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
+#include "client/viewer/world/freezer.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
@@ -58,6 +59,9 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
 } // namespace
 
 std::string shown_parents(const evod::v1::OrganismInfo& info) {
+    if (info.has_placed_tick()) {
+        return "No parents: placed by a user after tick " + with_separators(info.placed_tick()) + " of the generation";
+    }
     if (info.parents().empty()) {
         return "No parents: founder of generation 1, or loaded from a file";
     }
@@ -74,6 +78,9 @@ std::string shown_fate(const OrganismHistory& history) {
     }
     const evod::v1::OrganismInfo& info = *history.info();
     if (!info.alive()) {
+        if (info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_REMOVED) {
+            return print("removed by a user after %.1f s", info.lived_s());
+        }
         return print("died of %s after %.1f s",
                      info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
     }
@@ -111,6 +118,17 @@ std::string shown_children(const std::vector<OrganismHistory::Child>& children) 
     return text.empty() ? "none" : text;
 }
 
+void OrganismPanel::build_freeze(Context& context, const OrganismHistory& history) {
+    if (widgets::button("Freeze")) {
+        const std::string name = context.world.feed.name() + "-g" + std::to_string(history.generation()) + "-o" +
+                                 std::to_string(history.id());
+        const auto& genes = history.info()->genes();
+        const auto saved = context.freezer->save(name, {{genes.begin(), genes.end()}});
+        context.world.server.notice(saved ? "Stored the organism in the freezer as " + *saved : saved.error().what);
+    }
+    widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");
+}
+
 void OrganismPanel::build(Context& context) {
     const OrganismHistory* history = context.island_view.organism_history();
     if (history == nullptr) {
@@ -131,6 +149,7 @@ void OrganismPanel::build(Context& context) {
             context.island_view.toggle_following(context.world);
         }
     }
+    build_freeze(context, *history);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
     ImGui::Separator();

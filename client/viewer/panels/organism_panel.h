@@ -14,6 +14,9 @@ class OrganismPanel : public Panel {
     static constexpr std::string_view name = "Organism";
     std::string_view title() const override { return name; }
     void build(Context& context) override;
+
+  private:
+    void build_freeze(Context& context, const OrganismHistory& history);
 };
 
 /// Returns the organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its

@@ -16,6 +16,9 @@
 
 namespace evod::viewer {
 
+class Freezer;
+class MouseTool;
+class NewWorldDialog;
 class RunHistory;
 
 class Panel {
@@ -25,7 +28,11 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        const RunHistory* history = nullptr; // of the world; set by Panels
+        // Panels sets the following members.
+        const RunHistory* history = nullptr; // of the world
+        Freezer* freezer = nullptr;
+        NewWorldDialog* new_world = nullptr;
+        MouseTool* tool = nullptr;
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };

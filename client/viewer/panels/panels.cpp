@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
+#include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
 #include "client/viewer/panels/physics/physics_panel.h"
@@ -22,7 +23,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t tabs_per_row = 4;
+constexpr std::size_t tabs_per_row = 5;
 
 ImVec2 corner_of(Rectangle place) {
     return {static_cast<float>(place.left), static_cast<float>(place.top)};
@@ -47,6 +48,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<PlotsPanel>()});
     places_.push_back({std::make_unique<BreedingPanel>()});
     places_.push_back({std::make_unique<PhysicsPanel>()});
+    places_.push_back({std::make_unique<FreezerPanel>()});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }
@@ -121,6 +123,7 @@ void Panels::begin_session() {
         fresh.places_[i].detached = places_[i].detached;
     }
     fresh.settings_ = std::move(settings_);
+    fresh.freezer_ = std::move(freezer_);
     fresh.used_ = std::move(used_);
     *this = std::move(fresh);
 }
@@ -138,6 +141,16 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
     keyboard_.reset();
     history_.update(context.world, context.now);
     context.history = &history_;
+    context.freezer = &freezer_;
+    context.new_world = &new_world_;
+    context.tool = &tool_;
+    if (context.world.take_new_world_offer()) {
+        if (context.world.server.may_create()) {
+            new_world_.open(true);
+        } else {
+            context.world.server.notice("There is no other world. " + std::string{no_creation_text});
+        }
+    }
     if (settings_.collapsed) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
@@ -148,6 +161,7 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
             build_detached(i, context, sidebar);
         }
     }
+    new_world_.build(context);
 }
 
 void Panels::build_collapsed(Rectangle sidebar, float scale) {
@@ -227,20 +241,30 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
 }
 
 void Panels::build_tabs(const Gui& gui) {
-    const float scale = gui.scale(), gap = 4 * scale;
-    const float width = (ImGui::GetContentRegionAvail().x - gap * (tabs_per_row - 1)) / tabs_per_row;
+    const float scale = gui.scale(), gap = 4 * scale, row_width = ImGui::GetContentRegionAvail().x;
+    const auto text_width = [&](std::size_t i) { return ImGui::CalcTextSize(titles_[i].data()).x; };
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+    float room = 0; // of each tab of the row, around its text
     for (std::size_t i = 0; i < places_.size(); ++i) {
+        const std::size_t end = std::min(i - i % tabs_per_row + tabs_per_row, places_.size());
+        if (i % tabs_per_row == 0) {
+            const auto count = static_cast<float>(end - i);
+            room = row_width - gap * (count - 1);
+            for (std::size_t k = i; k < end; ++k) {
+                room -= text_width(k);
+            }
+            room /= count;
+        }
         const bool chosen = i == tab();
         ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
         ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
-        if (ImGui::Button(titles_[i].data(), {width, 25 * scale})) {
+        if (ImGui::Button(titles_[i].data(), {text_width(i) + room, 25 * scale})) {
             show(i);
         }
         ImGui::PopStyleColor(2);
         widgets::mark(titles_[i]);
         widgets::explain(std::string{titles_[i]} + " (" + panel_key(i) + ")");
-        if (i % tabs_per_row + 1 < tabs_per_row) {
+        if (i + 1 < end) {
             ImGui::SameLine();
         }
     }

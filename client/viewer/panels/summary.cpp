@@ -5,17 +5,28 @@
 #include "client/viewer/island/styles.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/panels/plots/run_history.h"
+#include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 
 namespace evod::viewer {
 
 namespace {
 
 constexpr float curve_height = 84; // pixels at scale 1
+
+/// What a click in an island does, by MouseTool::Kind.
+constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
+    "A click in the island selects the organism there (Esc).",
+    "A click in the island places food. It does not reappear when it is eaten.",
+    "A click in the island places poison. It does not reappear when it is eaten.",
+    "A click in the island places a copy of the selected organism, or of the last organism from the freezer.",
+    "A click in the island removes the organism, food or poison there until the generation ends.",
+};
 
 } // namespace
 
@@ -31,6 +42,7 @@ void Summary::build(Panel::Context& context) {
     build_curve(context);
     build_buttons(context.world, context.gui.scale());
     build_speed(context.world);
+    build_tools(context);
 }
 
 void Summary::build_experiment(Panel::Context& context) {
@@ -129,7 +141,14 @@ void Summary::build_buttons(ViewedWorld& world, float scale) {
     widgets::explain(world.replay.is_own() ? "Returns to the live world (P)."
                                            : "Shows earlier generations of this run, with a time line (P).");
     ImGui::SameLine();
-    fork_.build(world);
+    const bool may_create = world.server.may_create();
+    ImGui::BeginDisabled(!may_create);
+    if (widgets::button("Fork")) {
+        world.replay.fork();
+    }
+    ImGui::EndDisabled();
+    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
+                                : no_creation_text);
     ImGui::EndDisabled();
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);
@@ -180,6 +199,36 @@ void Summary::build_speed(ViewedWorld& world) {
     }
     if (control.info().slowed()) {
         widgets::small_text("The server cannot keep up: simulated time runs slower, no tick is skipped.");
+    }
+}
+
+void Summary::build_tools(const Panel::Context& context) {
+    MouseTool& tool = *context.tool;
+    const OrganismHistory* selected = context.island_view.organism_history();
+    const bool copies = context.world.feed.selected() && selected != nullptr && selected->info();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Click");
+    for (std::size_t i = 0; i < MouseTool::names.size(); ++i) {
+        const auto kind = static_cast<MouseTool::Kind>(i);
+        const bool chosen = tool.kind() == kind, takes_copy = copies && kind == MouseTool::Kind::Organism;
+        const std::string problem = takes_copy && !tool.model() ? tool.problem(MouseTool::Kind::Food, context.world)
+                                                                : tool.problem(kind, context.world);
+        ImGui::SameLine(0, 4 * context.gui.scale());
+        ImGui::BeginDisabled(!problem.empty());
+        ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
+        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
+        const bool pressed = ImGui::Button(MouseTool::names[i].data());
+        widgets::mark("Click: " + std::string{MouseTool::names[i]}); // the panel Organism has a tab with this label
+        if (pressed) {
+            if (takes_copy) {
+                const auto& genes = selected->info()->genes();
+                tool.place({"a copy of organism " + std::to_string(selected->id()), {genes.begin(), genes.end()}});
+            }
+            tool.choose(kind);
+        }
+        ImGui::PopStyleColor(2);
+        ImGui::EndDisabled();
+        widgets::explain(problem.empty() ? explanations[i] : problem);
     }
 }
 

@@ -1,13 +1,13 @@
 // Summary: the top of the sidebar. It explains the focused world to a newcomer and controls its run.
 //
-//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls
+//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls ·
+//   what a click in the island does
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/island/mark_painter.h"
-#include "client/viewer/panels/fork_dialog.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
 
@@ -29,10 +29,10 @@ class Summary {
     void build_curve(const Panel::Context& context);
     void build_buttons(ViewedWorld& world, float scale);
     void build_speed(ViewedWorld& world);
+    void build_tools(const Panel::Context& context);
 
     Experiment experiment_;
     MarkPainter marks_;
-    ForkDialog fork_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused
 };

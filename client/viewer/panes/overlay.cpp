@@ -180,11 +180,7 @@ void Overlay::build_notices(const Gui& gui, Rectangle worlds, Clock::time_point 
     }
 }
 
-void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen,
-                             const Gui& gui) {
-    const codec::Entities& organisms = snapshot.entities->organisms;
-    const std::string text = print("organism %u\nhealth %.1f\nradius %.1f px", organisms.id[organism],
-                                   double{organisms.health(organism)}, double{organisms.radius_px(organism)});
+void Overlay::build_hint(const std::string& text, Point screen, const Gui& gui) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 size = size_of(text, gui.label());
     const float scale = gui.scale();
@@ -195,6 +191,14 @@ void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_
     list.AddRectFilled(corner, {corner.x + size.x + 16 * scale, corner.y + size.y + 12 * scale}, ink(palette::note),
                        5 * scale);
     write(list, gui.label(), {corner.x + 8 * scale, corner.y + 6 * scale}, palette::note_text, text);
+}
+
+void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen,
+                             const Gui& gui) {
+    const codec::Entities& organisms = snapshot.entities->organisms;
+    build_hint(print("organism %u\nhealth %.1f\nradius %.1f px", organisms.id[organism],
+                     double{organisms.health(organism)}, double{organisms.radius_px(organism)}),
+               screen, gui);
 }
 
 void Overlay::build_help(const Gui& gui, const Panels& panels) {

@@ -39,6 +39,8 @@ class Overlay {
     void build_world(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
     /// Draws the number of the island in its tile.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
+    /// Draws a note beside the mouse.
+    void build_hint(const std::string& text, Point screen, const Gui& gui);
     /// Draws the data of an organism beside the organism.
     void build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
 

@@ -90,7 +90,8 @@ class Panes {
 
     /// With one pane, opens a second one and moves the focus to it. It shows the newest fork of the focused world.
     /// Without a fork, it shows the live world of the focused replay. Otherwise it shows the next world of the server,
-    /// as soon as its name has arrived. With two panes, closes the pane without the focus.
+    /// as soon as its name has arrived; if there is no other world, the window offers to create one. With two panes,
+    /// closes the pane without the focus.
     void toggle_beside();
     void toggle_linked() { linked_ = !linked_; }
     bool linked() const { return linked_; }
@@ -98,6 +99,7 @@ class Panes {
     void link_cameras(const Camera& leader);
 
   private:
+    void show_beside(std::size_t pane, std::string world);
     void open_beside(std::string world, std::uint32_t island);
 
     std::vector<std::unique_ptr<Pane>> panes_; // never empty

@@ -1,5 +1,6 @@
 #include "client/viewer/panes/window_renderer.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/offscreen.h"
 #include "client/viewer/drawing/palette.h"
 #include "client/viewer/drawing/window_layout.h"
@@ -21,7 +22,57 @@ void clear(Colour colour, const WindowRenderer::Frame& frame) {
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
+/// Returns the point of an island at a point of the screen, and what is drawn there; nullopt if the island is not there.
+std::optional<MouseTool::Target> target_at(Point screen, std::uint32_t island, const core::SnapshotInterpolator& view,
+                                           double blend, const Camera& camera) {
+    const codec::ReceivedSnapshot* snapshot = view.latest().get();
+    if (snapshot == nullptr || !camera.viewport().contains(screen)) {
+        return std::nullopt;
+    }
+    const Point place = camera.to_world(screen);
+    const Rectangle whole{0, 0, snapshot->about.width_px(), snapshot->about.height_px()};
+    if (!whole.contains(place)) {
+        return std::nullopt;
+    }
+    const codec::QuantisedSnapshot& entities = *snapshot->entities;
+    const auto id_of = [](const codec::Entities& of, std::optional<std::size_t> index) {
+        return index ? std::optional{of.id[*index]} : std::nullopt;
+    };
+    const double radius_px = snapshot->about.item_radius_px();
+    return MouseTool::Target{.island = island,
+                             .generation = snapshot->about.generation(),
+                             .x_px = place.x,
+                             .y_px = place.y,
+                             .organism =
+                                 id_of(entities.organisms, organism_at(screen, view.organisms_at(blend), camera)),
+                             .food = id_of(entities.food, item_at(screen, entities.food, radius_px, camera)),
+                             .poison = id_of(entities.poison, item_at(screen, entities.poison, radius_px, camera))};
+}
+
+/// Draws a circle where the tool would place something.
+void draw_preview(MouseTool::Kind kind, double item_radius_px, Point screen, const Camera& camera) {
+    const Colour colour = kind == MouseTool::Kind::Food     ? palette::food
+                          : kind == MouseTool::Kind::Poison ? palette::poison
+                                                            : palette::organism;
+    const double radius_px = kind == MouseTool::Kind::Organism ? typical_radius_px : item_radius_px;
+    const auto radius = static_cast<float>(std::max(radius_px * camera.zoom(), 3.0));
+    const ImVec2 centre{static_cast<float>(screen.x), static_cast<float>(screen.y)};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddCircleFilled(centre, radius, ink(faint(colour, 110)));
+    list.AddCircle(centre, radius, ink(colour), 0, 2);
+}
+
 } // namespace
+
+void WindowRenderer::click_at(Pane& pane, Point screen) {
+    const MouseTool& tool = panels_.tool();
+    if (tool.kind() == MouseTool::Kind::Select) {
+        select_at(pane, screen);
+    } else if (const auto target =
+                   target_at(screen, pane.world.feed.island(), pane.world.feed.view(), pane.blend, pane.camera())) {
+        tool.click(pane.world, *target);
+    }
+}
 
 void WindowRenderer::select_at(Pane& pane, Point screen) {
     ViewedWorld& world = pane.world;
@@ -40,12 +91,16 @@ Captured WindowRenderer::captured(const sf::Event& event) const {
     return captured;
 }
 
-void WindowRenderer::draw(Panes& panes, const Frame& frame) {
+void WindowRenderer::draw(Panes& panes, const Frame& wanted) {
+    Frame frame = wanted;
     const double sidebar = frame.interactive ? panels_.width(frame.width_pixels, gui_.scale()) : 0;
     const Rectangle worlds{0, 0, std::max(frame.width_pixels - sidebar, 1.0), double(frame.height_pixels)};
     panes.lay_out(worlds, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
+    if (panels_.tool().dragging()) { // the sidebar has the mouse, but the islands show where the drag would end
+        frame.pointed_at = Point{ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+    }
     clear(palette::strip_edge, frame); // visible between panes and tiles
     std::size_t renderer_index = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -70,7 +125,21 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
         panels_.build({panes.focused().world, gui_, frame.now, panes.focused().island_view},
                       {worlds.width, 0, sidebar, worlds.height});
     }
+    if (panels_.tool().take_drop()) {
+        drop_at_mouse(panes);
+    }
     gui_.draw();
+}
+
+/// Places the organism that the user has dragged to an island.
+void WindowRenderer::drop_at_mouse(Panes& panes) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const Point screen{mouse.x, mouse.y};
+    const bool covered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AnyWindow);
+    if (!covered && panes.focus_at(screen)) {
+        click_at(panes.focused(), screen);
+    }
+    panels_.tool().choose(MouseTool::Kind::Select);
 }
 
 void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame,
@@ -112,7 +181,15 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
             pane.minimap.build(pane.world, tile.camera, gui_, look, pane_number);
         }
     }
-    if (highlighted.pointed_at) {
+    if (const MouseTool& tool = panels_.tool(); tool.kind() != MouseTool::Kind::Select && frame.pointed_at) {
+        if (const auto target = target_at(*frame.pointed_at, tile.island, tile.view, blend, tile.camera)) {
+            if (tool.kind() != MouseTool::Kind::Remove) {
+                draw_preview(tool.kind(), snapshot->about.item_radius_px(), *frame.pointed_at, tile.camera);
+            }
+            const std::string problem = tool.problem(tool.kind(), pane.world);
+            overlay_.build_hint(problem.empty() ? tool.hint(*target) : problem, *frame.pointed_at, gui_);
+        }
+    } else if (highlighted.pointed_at) {
         overlay_.build_organism(*snapshot, *highlighted.pointed_at, *frame.pointed_at, gui_);
     }
 }

@@ -57,11 +57,13 @@ class WindowRenderer {
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
-    /// Selects the organism at a point of the chosen island, at the positions drawn in the last frame, and shows the
-    /// organism panel. If no organism is there, clears the selection.
-    void select_at(Pane& pane, Point screen);
+    /// Uses the mouse tool at a point of the chosen island, at the positions drawn in the last frame. Without another
+    /// tool, selects the organism there and shows the organism panel; if no organism is there, clears the selection.
+    void click_at(Pane& pane, Point screen);
 
   private:
+    void select_at(Pane& pane, Point screen);
+    void drop_at_mouse(Panes& panes);
     void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
 
     Gui gui_;

@@ -155,6 +155,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         "vivid: filled bodies, leaves and stars; classic: hollow circles and dots on grey;\ndefault: the skin "
         "used last, or vivid; for images and films: vivid");
     app.add_option("--background", &background, "background of the skin vivid: dark or light; default: dark");
+    app.add_option("--freezer", &options.freezer,
+                   "folder with frozen organisms and populations; default: ~/.local/share/evod/freezer");
     const auto start = app.add_flag("--start", &options.start, "show the start screen first");
     const auto tour = app.add_flag("--tour", &options.tour,
                                    "show the tour of the window; default: once, at the first start without --script");

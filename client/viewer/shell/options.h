@@ -35,6 +35,7 @@ struct Options {
     bool tour = false;         // show the tour, even if it was shown before or a script runs
     std::optional<Script> script;
     std::string script_path;
+    std::string freezer; // folder with frozen organisms
 
     /// Options for saving one frame instead of opening a window.
     struct Screenshot {

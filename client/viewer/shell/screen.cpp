@@ -58,6 +58,7 @@ class Screen::ScriptHost : public Script::Host {
         const Point screen = pane->camera().to_screen(at);
         return pane->camera().viewport().contains(screen) ? std::optional{screen} : std::nullopt;
     }
+    bool selects() const override { return screen_.renderer_.panels().tool().kind() == MouseTool::Kind::Select; }
     std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const override {
         const Pane* pane = pane_of(half);
         return pane == nullptr ? std::nullopt : pane->world.feed.selected();
@@ -122,6 +123,8 @@ Screen::Screen(const Options& options)
     , tour_wanted_{wants_tour(options, renderer_.panels().settings().tour_seen)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
+    renderer_.panels().set_freezer(options.freezer.empty() ? default_freezer_folder()
+                                                           : std::filesystem::path{options.freezer});
     place(window_);
     window_.setVerticalSyncEnabled(true);
 }

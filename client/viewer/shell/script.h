@@ -70,6 +70,8 @@ class Script {
         virtual std::string key_problem() const = 0;
         /// Returns the place of an island in the window; nullopt if it is not visible.
         virtual std::optional<Point> locate(const IslandPlace& place) const = 0;
+        /// Returns whether a click on an organism selects it; false while a tool for placing or removing is chosen.
+        virtual bool selects() const { return true; }
         /// Returns the organism selected in a half of the window.
         virtual std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const = 0;
         /// Returns the viewed world; null while the start screen is shown.

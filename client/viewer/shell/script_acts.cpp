@@ -286,7 +286,7 @@ Acts click(const Script::IslandPlace& place) {
             },
             [place](Run& run) -> Waits {
                 const auto selected = run.host.selected(place.half);
-                if (place.organism && selected != place.organism) {
+                if (place.organism && run.host.selects() && selected != place.organism) {
                     return usage("the click has selected " +
                                  (selected ? "organism " + std::to_string(*selected) : "no organism"));
                 }

@@ -45,7 +45,7 @@ Acts type(const std::string& text);
 /// Clicks on a widget as soon as it is visible and enabled.
 Acts click(const std::string& widget, sf::Mouse::Button button = sf::Mouse::Left);
 
-/// Clicks on a place of an island. If the place is an organism, the click must select it.
+/// Clicks on a place of an island. If the place is an organism and clicks select, the click must select it.
 Acts click(const Script::IslandPlace& place);
 
 /// Parses a place such as "organism 12" or "left/at 0.4,0.6". Returns nullopt if `kind` does not begin a place; returns

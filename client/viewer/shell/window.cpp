@@ -100,7 +100,7 @@ void Window::handle_events() {
             screen_.report_key(used ? problem : "this key has no effect");
         }
         if (const auto click = input_.take_click()) {
-            renderer_.select_at(panes_.focused(), *click);
+            renderer_.click_at(panes_.focused(), *click);
         }
     }
 }
@@ -210,8 +210,11 @@ void Window::close_front() {
     if (renderer_.gui().close_popup()) {
         return;
     }
+    MouseTool& tool = renderer_.panels().tool();
     if (renderer_.overlay().help()) {
         renderer_.overlay().toggle_help();
+    } else if (tool.kind() != MouseTool::Kind::Select) {
+        tool.choose(MouseTool::Kind::Select);
     } else if (renderer_.panels().close_front()) {
         return;
     } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {

@@ -10,6 +10,8 @@ namespace evod::viewer {
 
 namespace {
 
+constexpr std::uint32_t no_founder = ~std::uint32_t{0}; // the ancestor is an organism that a user placed
+
 std::uint32_t number_at(std::string_view bytes, std::size_t index) {
     std::uint32_t number = 0;
     for (unsigned i = 0; i < 4; ++i) {
@@ -129,7 +131,9 @@ void Population::finish() {
     }
     std::unordered_map<std::uint32_t, std::size_t> sizes;
     for (const std::uint32_t founder : founders_) {
-        ++sizes[founder];
+        if (founder != no_founder) {
+            ++sizes[founder];
+        }
     }
     for (const auto& [founder, size] : sizes) {
         families_.push_back({founder, size});

@@ -171,10 +171,10 @@ TEST_F(IslandViewTest, DrawsTheMinimapWhenPartIsOutOfSight) {
 
 TEST_F(IslandViewTest, AClickSelectsAndHighlightsAnOrganism) {
     draw_when([&] { return world().feed.snapshot() != nullptr; });
-    renderer.select_at(panes->focused(), camera().to_screen({502, 300}));
+    renderer.click_at(panes->focused(), camera().to_screen({502, 300}));
     EXPECT_EQ(world().feed.selected(), 4u);
     EXPECT_GT(count(draw(), palette::selected), 20u);
-    renderer.select_at(panes->focused(), camera().to_screen({400, 50}));
+    renderer.click_at(panes->focused(), camera().to_screen({400, 50}));
     EXPECT_EQ(world().feed.selected(), std::nullopt);
 }
 

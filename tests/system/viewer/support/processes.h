@@ -198,9 +198,9 @@ class RealServer {
         EXPECT_TRUE(wait_until([&] { return state(world).state() == evod::v1::RUN_STATE_WAITING; }));
     }
 
-    evod::v1::ParameterSet parameters() {
+    evod::v1::ParameterSet parameters(const std::string& world = "") {
         evod::v1::Request request;
-        request.mutable_get_parameters();
+        request.mutable_get_parameters()->set_world(world);
         return connection->request(request, hang).value().parameters();
     }
     /// Ends evod. Returns its output since it began to listen.

@@ -40,6 +40,13 @@ TEST_F(IslandRendererTest, ThreePixelsBesideIsAHitAtAnyZoom) {
     EXPECT_EQ(at(600, 620.31), std::nullopt);
 }
 
+TEST_F(IslandRendererTest, FindsTheItemUnderTheMouse) {
+    const auto item = [&](double x, double y) { return item_at(camera.to_screen({x, y}), organisms, 14, camera); };
+    EXPECT_EQ(item(107, 100), 1u) << "the nearest centre, whatever the radius in the columns";
+    EXPECT_EQ(item(600, 616.9), 2u);
+    EXPECT_EQ(item(600, 617.1), std::nullopt);
+}
+
 TEST_F(IslandRendererTest, NothingIsFoundUnderTheStripsOfText) {
     camera.set_viewport({0, 40, 1024, 900});
     EXPECT_EQ(organism_at({512, 20}, {.entities = &organisms}, camera), std::nullopt);

@@ -35,6 +35,11 @@ TEST(ViewerOptions, ContainTheWantedWorld) {
     EXPECT_EQ(wanted.rate_hz, 60);
 }
 
+TEST(ViewerOptions, ContainTheFreezer) {
+    EXPECT_EQ(parsed({}).freezer, "") << "the default folder";
+    EXPECT_EQ(parsed({"--freezer", "class/8b"}).freezer, "class/8b");
+}
+
 TEST(ViewerOptions, SizeIsInPixelsOrFollowsTheScale) {
     const Options::Size given = size_of(parsed({"--size", "640x400"}), 2);
     EXPECT_EQ(given.width, 640u);

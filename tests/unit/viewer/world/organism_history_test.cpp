@@ -75,6 +75,9 @@ TEST(OrganismHistory, ReportsItsDeath) {
     story.add(last);
     EXPECT_TRUE(story.dead());
     EXPECT_EQ(shown_fate(story), "died of poison after 12.3 s");
+    last.set_cause_of_death(evod::v1::CAUSE_OF_DEATH_REMOVED);
+    story.add(last);
+    EXPECT_EQ(shown_fate(story), "removed by a user after 12.3 s");
 }
 
 TEST(OrganismHistory, ChildrenAreInTheNextGeneration) {
@@ -113,6 +116,9 @@ TEST(Parents, NameTwoOrOneOrNone) {
     evod::v1::OrganismInfo info;
     info.set_generation(1);
     EXPECT_EQ(shown_parents(info), "No parents: founder of generation 1, or loaded from a file");
+    info.set_placed_tick(1234);
+    EXPECT_EQ(shown_parents(info), "No parents: placed by a user after tick 1,234 of the generation");
+    info.clear_placed_tick();
     info.set_generation(36);
     info.add_parents(45);
     EXPECT_EQ(shown_parents(info), "Parent: 45 (generation 35)") << "a survivor";
