@@ -36,7 +36,8 @@ Message message_of(const simulation::EntityIds& ids) {
 
 simulation::PlaceEntities command_of(const v1::Place& request, Violations& violations) {
     simulation::PlaceEntities command{.world = lookup_name(request.world()), .island = request.island()};
-    const auto count = static_cast<std::size_t>(request.items_size()) + static_cast<std::size_t>(request.organisms_size());
+    const auto count =
+        static_cast<std::size_t>(request.items_size()) + static_cast<std::size_t>(request.organisms_size());
     if (!has_entries("place.items", count, violations)) {
         return command;
     }

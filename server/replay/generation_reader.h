@@ -52,7 +52,7 @@ class GenerationReader {
     base::Executor& executor_;
     std::stop_token stop_;
     std::optional<std::vector<WorldChange>> changes_; // changes of the run; read at the first use
-    std::optional<Rerun> rerun_;                          // a world in the generation that was simulated last
+    std::optional<Rerun> rerun_;                      // a world in the generation that was simulated last
 };
 
 } // namespace evod::replay

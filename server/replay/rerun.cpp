@@ -48,7 +48,7 @@ Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uin
 }
 
 Result<std::vector<WorldChange>> world_changes(const std::string& path,
-                                                       std::span<const run_file::JournalEntry> journal) {
+                                               std::span<const run_file::JournalEntry> journal) {
     std::vector<WorldChange> changes;
     std::uint64_t tick = 0;
     for (const run_file::JournalEntry& entry : journal) {
@@ -69,10 +69,12 @@ Result<std::vector<WorldChange>> world_changes(const std::string& path,
             changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
         }
         if (auto* place = std::get_if<simulation::PlaceEntities>(&*command)) {
-            changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*place)});
+            changes.push_back(
+                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*place)});
         }
         if (auto* remove = std::get_if<simulation::RemoveEntities>(&*command)) {
-            changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*remove)});
+            changes.push_back(
+                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*remove)});
         }
     }
     return changes;
@@ -131,8 +133,7 @@ Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t tick, base::E
 }
 
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                            std::span<const WorldChange> changes, std::size_t history_count,
-                            base::Executor& executor) {
+                            std::span<const WorldChange> changes, std::size_t history_count, base::Executor& executor) {
     const std::uint64_t retained = file.retention().at_or_before(generation);
     const auto checkpoint = file.checkpoints().last(tick);
     if (!checkpoint) {
@@ -292,9 +293,9 @@ bool ComingChanges::apply(const WorldChange& change, simulation::World& world) {
     }
     if (change.entities) {
         const auto can_be = [&](const auto& command) { return check(world, command).has_value(); };
-        const auto carry_out = base::Overloaded{
-            [&](const simulation::PlaceEntities& command) { (void)world.place(command); },
-            [&](const simulation::RemoveEntities& command) { (void)world.remove(command); }};
+        const auto carry_out =
+            base::Overloaded{[&](const simulation::PlaceEntities& command) { (void)world.place(command); },
+                             [&](const simulation::RemoveEntities& command) { (void)world.remove(command); }};
         if (!std::visit(can_be, *change.entities)) {
             return false;
         }

@@ -35,7 +35,7 @@ base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, st
 ///
 /// path  path of the file that contains the entries, for error messages.
 base::Result<std::vector<WorldChange>> world_changes(const std::string& path,
-                                                             std::span<const run_file::JournalEntry> journal);
+                                                     std::span<const run_file::JournalEntry> journal);
 
 /// The changes that a world will get at later ticks.
 class ComingChanges {
@@ -110,9 +110,8 @@ class Rerun {
     /// checkpoint  a checkpoint of this generation, to start from; nullptr: its first tick.
     /// changes     in order of ticks. Changes that `begun` or `checkpoint` already contains are skipped.
     static base::Result<Rerun> from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
-                                    const run_file::StoredCheckpoint* checkpoint,
-                                    std::span<const WorldChange> changes, simulation::World::History history,
-                                    base::Executor& executor);
+                                    const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
+                                    simulation::World::History history, base::Executor& executor);
 
     const simulation::World& world() const { return world_; }
     const ComingChanges& changes() const { return changes_; }

@@ -111,7 +111,7 @@ struct PlaceEntities {
 struct RemoveEntities {
     std::string world;
     std::uint32_t island = 0;
-    std::optional<std::uint64_t> generation = {};                 // the ids belong to it; nullopt: the current one
+    std::optional<std::uint64_t> generation = {};                      // the ids belong to it; nullopt: the current one
     std::vector<std::uint32_t> food = {}, poison = {}, organisms = {}; // ids; together 1 to place_entries_max entries
 };
 /// The ids of items and organisms of one island.

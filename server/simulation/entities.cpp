@@ -124,10 +124,10 @@ class PlaceCheck {
         }
         for (const auto& [place, index] : places_) {
             if (overlapped[index] != none) {
-                violations.push_back({entry("place.organisms", index),
-                                      "a place clear of organisms (organism " + std::to_string(overlapped[index]) +
-                                          " is there)",
-                                      text_of(physics::to_px(place.x), physics::to_px(place.y))});
+                violations.push_back(
+                    {entry("place.organisms", index),
+                     "a place clear of organisms (organism " + std::to_string(overlapped[index]) + " is there)",
+                     text_of(physics::to_px(place.x), physics::to_px(place.y))});
             }
         }
     }
@@ -150,7 +150,8 @@ class PlaceCheck {
         return false;
     }
     static bool touching(Place a, float radius_a, Place b, float radius_b) {
-        const float dx = physics::distance_px(a.x, b.x), dy = physics::distance_px(a.y, b.y), touch = radius_a + radius_b;
+        const float dx = physics::distance_px(a.x, b.x), dy = physics::distance_px(a.y, b.y),
+                    touch = radius_a + radius_b;
         return dx * dx + dy * dy <= touch * touch;
     }
     /// The greatest distance, along either axis, between a circle and an added one that it touches; a few units more,
@@ -170,8 +171,8 @@ class PlaceCheck {
 
 /// Returns why an island cannot get this many more placed entities; nullopt if it can.
 std::optional<Refusal> refusal_of_counts(const Island& island, const PlaceEntities& command) {
-    const auto food = static_cast<std::size_t>(
-        std::ranges::count(command.items, ItemKind::Food, &PlaceEntities::Item::kind));
+    const auto food =
+        static_cast<std::size_t>(std::ranges::count(command.items, ItemKind::Food, &PlaceEntities::Item::kind));
     const auto is_too_many = [](std::size_t placed, std::size_t more) { return placed + more > placed_max; };
     const auto placed_of = [](const Items& items) { return std::size_t{items.size() - items.first_count()}; };
     if (is_too_many(placed_of(island.food()), food) ||
@@ -304,11 +305,9 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         placed_.push_back(organism.tick);
         fate_.add();
         body_of_.push_back(static_cast<std::uint32_t>(bodies + i));
-        bodies_.put(bodies + i, {.id = id,
-                                 .x = organism.place.x,
-                                 .y = organism.place.y,
-                                 .radius = shape.radius_px,
-                                 .mass = shape.mass_kg});
+        bodies_.put(
+            bodies + i,
+            {.id = id, .x = organism.place.x, .y = organism.place.y, .radius = shape.radius_px, .mass = shape.mass_kg});
         living_.put(bodies + i, organism.genes, parameters);
         born_hash_ += hash_of_birth(id);
     }

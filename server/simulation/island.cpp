@@ -520,7 +520,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     }
     if (state.food.size() != std::size_t{own.food} + state.placed_food ||
         state.poison.size() != std::size_t{own.poison} + state.placed_poison) {
-        return wrong("number of items");
+        return wrong("number of food or poison items");
     }
     if (!own.has_bodies) {
         return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("items without bodies");
@@ -555,13 +555,16 @@ bool differ_only_by_commands(const IslandState& begun, const IslandState& state)
            std::ranges::none_of(state.fate.poison_eaten, has_eaten);
 }
 
-void Island::restore(const IslandState& state, const parameters::Parameters& parameters,
+void Island::restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
                      base::Executor& executor) {
     counts_ = state.counts;
     if (!has_bodies()) {
         fate_ = state.fate;
         return;
     }
+    // Before the first tick, hash_ covers only the chromosomes and what commands have changed.
+    base::StateHash uncovered = whole_hash();
+    uncovered -= hash_;
     std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
     for (const IslandState::Placed& organism : state.placed) {
         placed.push_back({{}, evolution::Chromosome{organism.genes.data()}, organism.tick});
@@ -577,7 +580,6 @@ void Island::restore(const IslandState& state, const parameters::Parameters& par
     food_.restore(state.food, executor);
     poison_.restore(state.poison, executor);
     // At the beginning of a generation, the index of every organism equals its id.
-    base::StateHash organisms;
     std::vector<std::uint32_t> gone;
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
         if (fate_.cause[id] != CauseOfDeath::Alive) {
@@ -590,7 +592,6 @@ void Island::restore(const IslandState& state, const parameters::Parameters& par
         bodies_.velocity_x[id] = organism.velocity_x;
         bodies_.velocity_y[id] = organism.velocity_y;
         living_.health[id] = organism.health;
-        organisms += hash_of_organism(bodies_, living_, id);
     }
     perception_.begin(bodies_, living_, food_, poison_);
     for (const std::uint32_t id : gone) {
@@ -600,7 +601,20 @@ void Island::restore(const IslandState& state, const parameters::Parameters& par
         living_.health[id] = -std::numeric_limits<float>::infinity();
     }
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    hash_ = whole_hash();
+    if (tick == 0) {
+        hash_ -= uncovered;
+    }
+}
+
+base::StateHash Island::whole_hash() const {
+    base::StateHash hash = born_hash_ + food_.hash() + poison_.hash() + hash_of_boxes();
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        if (!bodies_.is_void(body)) {
+            hash += hash_of_organism(bodies_, living_, body);
+        }
+    }
+    return hash;
 }
 
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -611,10 +625,9 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
                 const std::uint32_t placed = placed_tick(static_cast<std::uint32_t>(id));
-                fitness[id] =
-                    body_of_[id] == no_body
-                        ? fate_.lived_ticks[id] * parameters.tick_s
-                        : (tick - placed) * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
+                fitness[id] = body_of_[id] == no_body ? fate_.lived_ticks[id] * parameters.tick_s
+                                                      : (tick - placed) * parameters.tick_s +
+                                                            static_cast<double>(living_.health[body_of_[id]]);
             }
         });
         return fitness;

@@ -73,7 +73,8 @@ class Island {
     /// generation.
     base::Result<void> check(const IslandState& state, std::uint32_t tick) const;
     /// Sets the island to a state that check() has accepted. `parameters` are those of the generation.
-    void restore(const IslandState& state, const parameters::Parameters& parameters, base::Executor& executor);
+    void restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
+                 base::Executor& executor);
 
     /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: seconds lived + health, or
     /// a function of the chromosome alone.
@@ -144,6 +145,7 @@ class Island {
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
     base::StateHash hash_of_boxes() const;
+    base::StateHash whole_hash() const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 

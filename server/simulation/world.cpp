@@ -59,7 +59,8 @@ World World::at_its_opening(base::Executor& executor, bool keep_requests) const 
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation) {
         before.pop_back();
     }
-    return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_of_bred(), schedule_};
+    return {seed_,    opening,           std::move(born),    std::move(before),
+            executor, first_population_, founders_of_bred(), schedule_};
 }
 
 void World::become_fork() {
@@ -264,13 +265,13 @@ EntityIds World::place(const PlaceEntities& command) {
     }
     std::vector<Island::NewOrganism> organisms;
     for (const PlaceEntities::Organism& organism : command.organisms) {
-        organisms.push_back({{physics::to_units(organism.x_px), physics::to_units(organism.y_px)}, organism.genes,
+        organisms.push_back({{physics::to_units(organism.x_px), physics::to_units(organism.y_px)},
+                             organism.genes,
                              static_cast<std::uint32_t>(moment_.generation_tick)});
     }
     if (!organisms.empty()) {
         ids.organisms.resize(organisms.size());
-        std::iota(ids.organisms.begin(), ids.organisms.end(),
-                  island.place(organisms, parameters_.active));
+        std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters_.active));
         if (!founders_.empty()) {
             founders_[command.island].resize(founders_[command.island].size() + organisms.size(), no_founder);
         }
@@ -543,7 +544,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
 
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            islands_[i].restore(state.islands[i], parameters_.active, executor);
+            islands_[i].restore(state.islands[i], tick, parameters_.active, executor);
         }
     });
     for (std::size_t i = 0; i < founders_.size(); ++i) {

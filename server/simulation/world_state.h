@@ -71,7 +71,7 @@ struct IslandState {
     IslandCounts counts;
     std::vector<Placed> placed;                       // in order of id
     std::uint32_t placed_food = 0, placed_poison = 0; // numbers of placed items; they come last in food and poison
-    base::Column<Organism> organisms; // all zeros for dead organisms; empty if there are no bodies
+    base::Column<Organism> organisms;                 // all zeros for dead organisms; empty if there are no bodies
     std::vector<Crate> crates;
     base::Column<Items::Item> food, poison;
 
