@@ -26,24 +26,27 @@ struct Due {
 
 } // namespace
 
-simulation::Changes past_changes(run_file::RunFile& file, std::span<const ParameterChange> changes,
+simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldChange> changes,
                                  std::uint64_t after_entry, const simulation::Moment& moment) {
     const run_file::RunIdentity& identity = file.identity();
-    changes = {changes.begin(), std::ranges::upper_bound(changes, after_entry, {}, &ParameterChange::entry)};
+    changes = {changes.begin(), std::ranges::upper_bound(changes, after_entry, {}, &WorldChange::entry)};
     std::set<std::uint64_t> cancelled; // ids of planned changes
-    for (const ParameterChange& change : changes) {
+    for (const WorldChange& change : changes) {
         if (change.cancels) {
             cancelled.insert(*change.cancels);
         }
     }
     const std::string no_client;
     std::vector<Due> due; // commands and planned changes in order of the journal
-    const auto add_at_tick = [&](const ParameterChange& change, std::uint64_t tick, Due::Kind kind) {
+    const auto add_at_tick = [&](const WorldChange& change, std::uint64_t tick, Due::Kind kind) {
         due.push_back({file.generations().at_tick(tick), std::max<std::uint64_t>(tick, 1), kind,
                        file.generations().at_tick(tick + 1), &change.assignments, &change.by});
     };
     std::uint64_t planned_count = 0;
-    for (const ParameterChange& change : changes) {
+    for (const WorldChange& change : changes) {
+        if (change.entities) {
+            continue;
+        }
         if (!change.at) {
             add_at_tick(change, change.tick, Due::Command);
         } else if (cancelled.contains(++planned_count)) {

@@ -15,9 +15,9 @@ namespace evod::replay {
 
 /// Returns the changes of a run up to `moment`. For a fork, these are the changes since the fork.
 ///
-/// changes      all changes in the file's journal, as parameter_changes() returns them.
+/// changes      all changes in the file's journal, as world_changes() returns them.
 /// after_entry  the last journal entry that was applied before `moment`.
-simulation::Changes past_changes(run_file::RunFile& file, std::span<const ParameterChange> changes,
+simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldChange> changes,
                                  std::uint64_t after_entry, const simulation::Moment& moment);
 
 } // namespace evod::replay
