@@ -75,21 +75,29 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count) {
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera, double scale) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
     const Point world = camera.to_world(screen);
-    const double slack = 3 / camera.zoom();
+    const double target_min = 12 * scale / camera.zoom(), slack = 3 * scale / camera.zoom();
     std::optional<std::size_t> found;
-    double nearest = 0; // squared distance of the nearest organism so far
+    bool found_inside = false;
+    double nearest = 0; // distance to the found organism: to its centre if it contains the point, otherwise to its edge
     for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
         const auto [x_px, y_px] = organisms[i];
-        const double x = x_px - world.x, y = y_px - world.y, distance = x * x + y * y;
-        const double reach = organisms.entities->radius_px(i) + slack;
-        if (distance <= reach * reach && (!found || distance < nearest)) {
+        const double radius = organisms.entities->radius_px(i);
+        const double x = x_px - world.x, y = y_px - world.y, reach = std::max(radius + slack, target_min);
+        if (x * x + y * y > reach * reach) {
+            continue;
+        }
+        const double distance = std::sqrt(x * x + y * y);
+        const bool inside = distance <= radius;
+        const double measure = inside ? distance : distance - radius;
+        if (!found || (inside && !found_inside) || (inside == found_inside && measure < nearest)) {
             found = i;
-            nearest = distance;
+            found_inside = inside;
+            nearest = measure;
         }
     }
     return found;

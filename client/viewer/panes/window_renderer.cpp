@@ -23,14 +23,21 @@ void clear(Colour colour, const WindowRenderer::Frame& frame) {
 
 } // namespace
 
-void WindowRenderer::select_at(Pane& pane, Point screen) {
-    ViewedWorld& world = pane.world;
-    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
-        const auto index = organism_at(screen, world.feed.view().organisms_at(pane.blend), pane.camera());
-        world.feed.select(index ? std::optional{snapshot->entities->organisms.id[*index]} : std::nullopt);
-        if (index) {
-            panels_.show(OrganismPanel::name);
-        }
+std::optional<std::uint32_t> WindowRenderer::organism_drawn_at(Pane& pane, Point screen) const {
+    const codec::ReceivedSnapshot* snapshot = pane.world.feed.snapshot();
+    if (snapshot == nullptr) {
+        return std::nullopt;
+    }
+    const core::SnapshotInterpolator& view = pane.world.feed.view();
+    const double blend = interpolated_ ? view.blend_at(drawn_) : 1;
+    const auto index = organism_at(screen, view.organisms_at(blend), pane.camera(), gui_.scale());
+    return index ? std::optional{snapshot->entities->organisms.id[*index]} : std::nullopt;
+}
+
+void WindowRenderer::select(Pane& pane, std::optional<std::uint32_t> organism) {
+    pane.world.feed.select(organism);
+    if (organism) {
+        panels_.show(OrganismPanel::name);
     }
 }
 
@@ -46,6 +53,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& frame) {
     panes.lay_out(worlds, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
+    interpolated_ = frame.interpolate;
     clear(palette::strip_edge, frame); // visible between panes and tiles
     std::size_t renderer_index = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -80,7 +88,6 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
     const codec::ReceivedSnapshot* snapshot = tile.view.latest().get();
     IslandRenderer::Highlighted highlighted;
     if (snapshot != nullptr && chosen) {
-        pane.blend = blend;
         pane.island_view.update(pane.world, tile.camera, frame.now);
         pane.island_view.follow(pane.world, tile.camera, blend);
         if (const auto selected = pane.world.feed.selected()) {
@@ -88,7 +95,8 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
         }
     }
     if (snapshot != nullptr && frame.pointed_at) {
-        highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
+        highlighted.pointed_at =
+            organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera, gui_.scale());
     }
     const IslandView& island_view = pane.island_view_of(tile);
     renderer.draw(tile.view, blend, tile.camera, frame.width_pixels, frame.height_pixels, island_view, highlighted);

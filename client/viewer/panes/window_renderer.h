@@ -13,6 +13,7 @@
 
 #include <SFML/Graphics/Image.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -56,9 +57,10 @@ class WindowRenderer {
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
-    /// Selects the organism at a point of the chosen island, at the positions drawn in the last frame, and shows the
-    /// organism panel. If no organism is there, clears the selection.
-    void select_at(Pane& pane, Point screen);
+    /// Returns the id of the organism at a point of the chosen island, at the positions drawn in the last frame.
+    std::optional<std::uint32_t> organism_drawn_at(Pane& pane, Point screen) const;
+    /// Selects an organism and shows the organism panel; nullopt: clears the selection.
+    void select(Pane& pane, std::optional<std::uint32_t> organism);
 
   private:
     void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
@@ -68,6 +70,7 @@ class WindowRenderer {
     Overlay overlay_;
     Panels panels_;
     Clock::time_point drawn_{};
+    bool interpolated_ = false; // whether the last frame was interpolated
 };
 
 } // namespace evod::viewer

@@ -58,7 +58,10 @@ void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
         const Captured captured = renderer_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
-            panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
+            const Point place{double(event.mouseButton.x), double(event.mouseButton.y)};
+            panes_.focus_at(place);
+            // A running organism moves on before the button is released.
+            pressed_organism_ = renderer_.organism_drawn_at(panes_.focused(), place);
         }
         Camera& camera = event.type == sf::Event::MouseWheelScrolled
                              ? panes_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})
@@ -68,8 +71,8 @@ void Window::handle_events() {
         if (action) {
             carry_out(*action);
         }
-        if (const auto click = input_.take_click()) {
-            renderer_.select_at(panes_.focused(), *click);
+        if (input_.take_click()) {
+            renderer_.select(panes_.focused(), pressed_organism_);
         }
     }
 }

@@ -9,7 +9,9 @@
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/screen.h"
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace evod::viewer {
@@ -40,6 +42,7 @@ class Window {
     WindowRenderer& renderer_;
     Panes panes_;
     Input input_;
+    std::optional<std::uint32_t> pressed_organism_; // the organism under the mouse when the button was pressed
     core::SnapshotInterpolator::Clock::time_point now_{};
     core::SnapshotInterpolator::Clock::time_point
         asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits

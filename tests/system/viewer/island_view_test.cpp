@@ -164,10 +164,13 @@ TEST_F(IslandViewTest, DrawsTheMinimapWhenPartIsOutOfSight) {
 
 TEST_F(IslandViewTest, AClickSelectsAndHighlightsAnOrganism) {
     draw_when([&] { return world().feed.snapshot() != nullptr; });
-    renderer.select_at(panes->focused(), camera().to_screen({502, 300}));
+    const auto click = [&](Point place) {
+        renderer.select(panes->focused(), renderer.organism_drawn_at(panes->focused(), camera().to_screen(place)));
+    };
+    click({502, 300});
     EXPECT_EQ(world().feed.selected(), 4u);
     EXPECT_GT(count(draw(), palette::selected), 20u);
-    renderer.select_at(panes->focused(), camera().to_screen({400, 50}));
+    click({400, 50});
     EXPECT_EQ(world().feed.selected(), std::nullopt);
 }
 
