@@ -30,8 +30,8 @@ class Camera {
     static constexpr double wall_pixels = 6;   // thickness of the walls in pixels at scale 1, at any zoom
     static constexpr double margin_pixels = 6; // space around the walls when the whole island is shown, at scale 1
 
-    /// Sets the viewport, and the factor for sizes given in pixels at scale 1. If the whole island was fitted into the old viewport, it is fitted into the new one;
-    /// otherwise the centre and the zoom do not change.
+    /// Sets the viewport, and the factor for sizes given in pixels at scale 1. If the whole island was fitted into the
+    /// old viewport, it is fitted into the new one; otherwise the centre and the zoom do not change.
     void set_viewport(Rectangle screen, double scale = 1);
 
     /// Sets the size of the island, in px of the world. If the size has changed, fits the whole island into the

@@ -57,7 +57,7 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
 
 namespace {
 
-/// Returns the circle at a point of the screen whose centre is nearest.
+/// Returns the circle at a point of the screen, as organism_at() does.
 ///
 /// radius_px  a function that returns the radius of a circle, by its index
 template <class Radius>
@@ -66,16 +66,24 @@ std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Rad
         return std::nullopt;
     }
     const Point world = camera.to_world(screen);
-    const double slack = 3 / camera.zoom();
+    const double pixel = camera.scale() / camera.zoom(), target_min = 12 * pixel, slack = 3 * pixel;
     std::optional<std::size_t> found;
-    double nearest = 0; // squared distance of the nearest circle so far
+    bool found_inside = false;
+    double nearest = 0; // distance to the found circle: to its centre if it contains the point, otherwise to its edge
     for (std::size_t i = 0, size = circles.size(); i < size; ++i) {
         const auto [x_px, y_px] = circles[i];
-        const double x = x_px - world.x, y = y_px - world.y, distance = x * x + y * y;
-        const double reach = radius_px(i) + slack;
-        if (distance <= reach * reach && (!found || distance < nearest)) {
+        const double radius = radius_px(i);
+        const double x = x_px - world.x, y = y_px - world.y, reach = std::max(radius + slack, target_min);
+        if (x * x + y * y > reach * reach) {
+            continue;
+        }
+        const double distance = std::sqrt(x * x + y * y);
+        const bool inside = distance <= radius;
+        const double measure = inside ? distance : distance - radius;
+        if (!found || (inside && !found_inside) || (inside == found_inside && measure < nearest)) {
             found = i;
-            nearest = distance;
+            found_inside = inside;
+            nearest = measure;
         }
     }
     return found;

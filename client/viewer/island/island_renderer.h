@@ -37,8 +37,9 @@ unsigned shown_health(float health);
 /// zoom_min  at scale 1
 bool labels_are_readable(const Camera& camera, std::size_t visible_count, double zoom_min);
 
-/// Returns the organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If
-/// several organisms are hit, returns the one whose centre is nearest.
+/// Returns the organism at a point of the screen. The target of a small organism has a radius of 12 pixels, that of a
+/// large one extends 3 pixels beyond its edge; both grow with the scale. Of several organisms that contain the point,
+/// the one whose centre is nearest is hit. If none contains it, the one whose edge is nearest is hit.
 ///
 /// returns  an index in `organisms`; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);

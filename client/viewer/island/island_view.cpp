@@ -120,11 +120,71 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
     });
 }
 
+void IslandView::request_picks(ViewedWorld& world, Clock::time_point now) {
+    const evod::v1::Replay* replay = world.replay.info();
+    const std::uint64_t newest = replay != nullptr ? replay->last_generation() : generation_;
+    auto wanted = organism_history_->wanted_picks(organism_history_->generation() < newest);
+    if (!wanted || picks_poll_.is_unsupported() || !picks_poll_.due(world, now)) {
+        return;
+    }
+    wanted->set_world(world.feed.world());
+    wanted->set_island(world.feed.island());
+    evod::v1::Request request;
+    *request.mutable_get_breeding() = *wanted;
+    picks_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
+        if (response != nullptr && organism_history_) {
+            organism_history_->add(wanted, response->breeding());
+        }
+    });
+}
+
+// ---- the selection in other generations --------------------------------------------------------------------------
+
+void IslandView::go_to(ViewedWorld& world, const OrganismPlace& organism) {
+    kept_ = Kept{.run_id = shown_.run_id, .organism = organism, .followed = true, .out_of_sight = true};
+    world.feed.select(std::nullopt);
+    const bool shown = organism.island == world.feed.island() && organism.generation == generation_ && snapshot_ &&
+                       snapshot_->entities->organisms.index_of(organism.id).has_value();
+    if (shown) {
+        return;
+    }
+    world.feed.choose_island(organism.island);
+    evod::v1::RunMoment at;
+    at.set_generation(organism.generation);
+    if (world.replay.info() != nullptr) {
+        world.replay.seek(std::move(at));
+    } else {
+        world.replay.open(std::move(at));
+    }
+}
+
+/// Remembers the selection, or restores it when its generation is on the screen again.
+void IslandView::keep_selection(ViewedWorld& world) {
+    if (const auto selected = world.feed.selected()) {
+        kept_ = Kept{.run_id = shown_.run_id,
+                     .organism = {world.feed.island(), generation_, *selected},
+                     .followed = followed_.has_value()};
+    } else if (kept_ && !kept_->out_of_sight) { // the user cleared the selection
+        kept_.reset();
+    } else if (kept_ && kept_->run_id == shown_.run_id && kept_->organism.island == world.feed.island() &&
+               kept_->organism.generation == generation_ && world.replay.target() == nullptr) {
+        kept_->out_of_sight = false;
+        world.feed.select(kept_->organism.id);
+        if (kept_->followed) {
+            followed_ = Followed{.id = kept_->organism.id};
+        }
+    }
+}
+
 // ---- snapshots -------------------------------------------------------------------------------------------------
 
 void IslandView::forget() {
     IslandView fresh;
     fresh.options = options;
+    fresh.kept_ = std::move(kept_);
+    if (fresh.kept_) {
+        fresh.kept_->out_of_sight = true;
+    }
     *this = std::move(fresh);
 }
 
@@ -136,6 +196,7 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
             world.feed.select(std::nullopt);
             world.feed.set_view(std::nullopt);
             forget();
+            kept_.reset();
         }
         shown_ = {world.feed.place_number(), about.run_id()};
     }
@@ -146,6 +207,9 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
         organism_history_->add(*snapshot);
         if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
             world.feed.select(std::nullopt); // the id now belongs to another organism
+            if (kept_) {
+                kept_->out_of_sight = true;
+            }
         }
     }
     trails_.add(snapshot);
@@ -171,11 +235,13 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     if (gene_names_ != world.feed.gene_names()) {
         gene_names_ = world.feed.gene_names();
     }
+    keep_selection(world);
     if (const auto selected = world.feed.selected();
         selected && (!organism_history_ || organism_history_->id() != *selected || organism_history_->ended())) {
         organism_history_.emplace(*selected, generation_);
         organism_history_->add(*snapshot);
         organism_poll_.reset();
+        picks_poll_.reset();
         organism_tick_ = ~std::uint64_t{0};
     }
     take_population();
@@ -185,6 +251,9 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();
     if (organism_poll_.due(world, now) && alive && organism_tick_ != tick_) {
         request_organism(world, now);
+    }
+    if (organism_history_) {
+        request_picks(world, now);
     }
     update_stream(world, camera, now);
 }

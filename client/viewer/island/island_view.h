@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evod::viewer {
@@ -54,6 +55,13 @@ class StreamedRegion {
     Clock::time_point changed_{};
 };
 
+/// Identifies an organism of a run. Every generation uses the same ids.
+struct OrganismPlace {
+    std::uint32_t island = 0;
+    std::uint64_t generation = 0;
+    std::uint32_t id = 0;
+};
+
 class IslandView {
   public:
     using Clock = core::SnapshotInterpolator::Clock;
@@ -76,6 +84,18 @@ class IslandView {
     bool following() const { return followed_.has_value(); }
     /// Starts following the selected organism, or stops following it.
     void toggle_following(ViewedWorld& world);
+
+    /// Selects and follows an organism of any generation of the run. If it is not on the screen, shows its island, and
+    /// opens a replay at the start of its generation or seeks there. The organism is selected when its generation
+    /// appears.
+    void go_to(ViewedWorld& world, const OrganismPlace& organism);
+    /// Makes the glass box show the first pick of an organism of the chosen island.
+    void show_pick(const OrganismPlace& organism) { wanted_pick_ = organism; }
+    bool wants_pick() const { return wanted_pick_.has_value(); }
+    /// Returns the organism of the last show_pick(), once.
+    std::optional<OrganismPlace> take_wanted_pick() { return std::exchange(wanted_pick_, std::nullopt); }
+    /// Returns why the picks of the selected organism are unknown, as a sentence; empty if they are known or requested.
+    const std::string& picks_problem() const { return picks_poll_.problem(); }
 
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
@@ -111,6 +131,8 @@ class IslandView {
                        const Camera& camera);
     void take_population();
     void request_organism(ViewedWorld& world, Clock::time_point now);
+    void request_picks(ViewedWorld& world, Clock::time_point now);
+    void keep_selection(ViewedWorld& world);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
     Shown shown_;
@@ -120,6 +142,7 @@ class IslandView {
     std::vector<std::string> gene_names_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
+    Poll picks_poll_;
     std::uint64_t taken_count_ = 0;                         // complete populations received
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     FamilyColours family_colours_;
@@ -133,6 +156,16 @@ class IslandView {
         double zoom = 0;
     };
     std::optional<Followed> followed_;
+
+    /// The selection. It is restored when its generation is on the screen again, for example after a seek.
+    struct Kept {
+        std::string run_id;
+        OrganismPlace organism;
+        bool followed = false;
+        bool out_of_sight = false; // another generation, island or world is shown
+    };
+    std::optional<Kept> kept_;
+    std::optional<OrganismPlace> wanted_pick_;
     StreamedRegion region_;
     bool in_part_ = false; // whether the island is large and therefore streamed in part
 };

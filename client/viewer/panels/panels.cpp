@@ -133,7 +133,8 @@ double Panels::width(unsigned window_pixels, double scale) const {
         return std::round(sidebar_collapsed * scale);
     }
     const Place& place = places_[tab()];
-    const float wanted = place.detached ? 0 : place.panel->width_min();
+    // A panel widens the sidebar to at most a third of the window.
+    const float wanted = place.detached ? 0 : std::min(place.panel->width_min(), float(window_pixels / scale / 3));
     return sidebar_pixels(std::max(settings_.width, wanted) * scale, window_pixels, scale);
 }
 
@@ -155,6 +156,9 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
         build_sidebar(context, sidebar);
+    }
+    if (context.island_view.wants_pick()) {
+        show(BreedingPanel::name);
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
         if (places_[i].detached) {
@@ -216,7 +220,9 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     context.gui.widget_positions().begin_panel("Sidebar");
     summary_.build_title(context.world);
     build_corner(scale);
-    summary_.build(context);
+    constexpr float summary_height = 330; // with the tabs, in pixels at scale 1
+    const float wanted_height = places_[tab()].detached ? 0 : places_[tab()].panel->height_min();
+    summary_.build(context, static_cast<float>(sidebar.height) >= (wanted_height + summary_height) * scale);
     ImGui::Separator();
     context.gui.widget_positions().begin_panel("Tabs");
     build_tabs(context.gui);

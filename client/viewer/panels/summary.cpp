@@ -37,9 +37,11 @@ void Summary::build_title(const ViewedWorld& world) {
     widgets::mark("World");
 }
 
-void Summary::build(Panel::Context& context) {
-    build_experiment(context);
-    build_curve(context);
+void Summary::build(Panel::Context& context, bool complete) {
+    if (complete) {
+        build_experiment(context);
+        build_curve(context);
+    }
     build_buttons(context.world, context.gui.scale());
     build_speed(context.world);
     build_tools(context);

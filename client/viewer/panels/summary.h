@@ -21,7 +21,9 @@ class Summary {
     /// Builds one line: the name of the world that the sidebar is about.
     void build_title(const ViewedWorld& world);
     /// Builds everything below the title.
-    void build(Panel::Context& context);
+    ///
+    /// complete  false: only the run controls
+    void build(Panel::Context& context, bool complete);
 
   private:
     void build_experiment(Panel::Context& context);

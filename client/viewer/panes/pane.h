@@ -35,7 +35,6 @@ class Pane {
     IslandView island_view; // how the chosen island is shown
     Minimap minimap;
     Timeline timeline;
-    double blend = 1; // interpolation of the chosen island in the last frame: from 0 (older snapshot) to 1 (newer)
 
     /// The camera of the chosen island.
     Camera& camera() { return camera_of(world.feed.island()); }

@@ -64,24 +64,36 @@ void draw_preview(MouseTool::Kind kind, double item_radius_px, Point screen, con
 
 } // namespace
 
-void WindowRenderer::click_at(Pane& pane, Point screen) {
+void WindowRenderer::click_at(Pane& pane, Point screen, std::optional<std::uint32_t> organism) {
     const MouseTool& tool = panels_.tool();
     if (tool.kind() == MouseTool::Kind::Select) {
-        select_at(pane, screen);
-    } else if (const auto target =
-                   target_at(screen, pane.world.feed.island(), pane.world.feed.view(), pane.blend, pane.camera())) {
+        return select(pane, organism);
+    }
+    const core::SnapshotInterpolator& view = pane.world.feed.view();
+    if (auto target = target_at(screen, pane.world.feed.island(), view, drawn_blend(view), pane.camera())) {
+        target->organism = organism;
         tool.click(pane.world, *target);
     }
 }
 
-void WindowRenderer::select_at(Pane& pane, Point screen) {
-    ViewedWorld& world = pane.world;
-    if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
-        const auto index = organism_at(screen, world.feed.view().organisms_at(pane.blend), pane.camera());
-        world.feed.select(index ? std::optional{snapshot->entities->organisms.id[*index]} : std::nullopt);
-        if (index) {
-            panels_.show(OrganismPanel::name);
-        }
+double WindowRenderer::drawn_blend(const core::SnapshotInterpolator& view) const {
+    return interpolated_ ? view.blend_at(drawn_) : 1;
+}
+
+std::optional<std::uint32_t> WindowRenderer::organism_drawn_at(Pane& pane, Point screen) const {
+    const codec::ReceivedSnapshot* snapshot = pane.world.feed.snapshot();
+    if (snapshot == nullptr) {
+        return std::nullopt;
+    }
+    const core::SnapshotInterpolator& view = pane.world.feed.view();
+    const auto index = organism_at(screen, view.organisms_at(drawn_blend(view)), pane.camera());
+    return index ? std::optional{snapshot->entities->organisms.id[*index]} : std::nullopt;
+}
+
+void WindowRenderer::select(Pane& pane, std::optional<std::uint32_t> organism) {
+    pane.world.feed.select(organism);
+    if (organism) {
+        panels_.show(OrganismPanel::name);
     }
 }
 
@@ -101,6 +113,7 @@ void WindowRenderer::draw(Panes& panes, const Frame& wanted) {
     if (panels_.tool().dragging()) { // the sidebar has the mouse, but the islands show where the drag would end
         frame.pointed_at = Point{ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
     }
+    interpolated_ = frame.interpolate;
     clear(palette::strip_edge, frame); // visible between panes and tiles
     std::size_t renderer_index = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
@@ -137,7 +150,7 @@ void WindowRenderer::drop_at_mouse(Panes& panes) {
     const Point screen{mouse.x, mouse.y};
     const bool covered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AnyWindow);
     if (!covered && panes.focus_at(screen)) {
-        click_at(panes.focused(), screen);
+        click_at(panes.focused(), screen, organism_drawn_at(panes.focused(), screen));
     }
     panels_.tool().choose(MouseTool::Kind::Select);
 }
@@ -152,7 +165,6 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
         highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
     }
     if (snapshot != nullptr && chosen) {
-        pane.blend = blend;
         pane.island_view.update(pane.world, tile.camera, frame.now, highlighted.pointed_at.has_value());
         pane.island_view.follow(pane.world, tile.camera, blend);
         if (const auto selected = pane.world.feed.selected()) {

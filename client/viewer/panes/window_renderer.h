@@ -14,6 +14,7 @@
 
 #include <SFML/Graphics/Image.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -57,12 +58,18 @@ class WindowRenderer {
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
-    /// Uses the mouse tool at a point of the chosen island, at the positions drawn in the last frame. Without another
-    /// tool, selects the organism there and shows the organism panel; if no organism is there, clears the selection.
-    void click_at(Pane& pane, Point screen);
+    /// Returns the id of the organism at a point of the chosen island, at the positions drawn in the last frame.
+    std::optional<std::uint32_t> organism_drawn_at(Pane& pane, Point screen) const;
+    /// Uses the mouse tool at a point of the chosen island. Without another tool, selects `organism`.
+    ///
+    /// organism  the organism that was at this point when the button was pressed
+    void click_at(Pane& pane, Point screen, std::optional<std::uint32_t> organism);
+    /// Selects an organism and shows the organism panel; nullopt: clears the selection.
+    void select(Pane& pane, std::optional<std::uint32_t> organism);
 
   private:
-    void select_at(Pane& pane, Point screen);
+    /// The weight of the newest snapshot in the positions of the last frame.
+    double drawn_blend(const core::SnapshotInterpolator& view) const;
     void drop_at_mouse(Panes& panes);
     void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
 
@@ -72,6 +79,7 @@ class WindowRenderer {
     Overlay overlay_;
     Panels panels_;
     Clock::time_point drawn_{};
+    bool interpolated_ = false; // whether the last frame was interpolated
 };
 
 } // namespace evod::viewer

@@ -77,7 +77,10 @@ void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
         const Captured captured = renderer_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
-            panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
+            const Point place{double(event.mouseButton.x), double(event.mouseButton.y)};
+            panes_.focus_at(place);
+            // A running organism moves on before the button is released.
+            pressed_organism_ = renderer_.organism_drawn_at(panes_.focused(), place);
         }
         if (event.type == sf::Event::KeyPressed && !captured.keyboard &&
             renderer_.overlay().tour().handle(event.key.code)) {
@@ -100,7 +103,7 @@ void Window::handle_events() {
             screen_.report_key(used ? problem : "this key has no effect");
         }
         if (const auto click = input_.take_click()) {
-            renderer_.click_at(panes_.focused(), *click);
+            renderer_.click_at(panes_.focused(), *click, pressed_organism_);
         }
     }
 }

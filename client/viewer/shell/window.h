@@ -9,7 +9,9 @@
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/screen.h"
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace evod::viewer {
@@ -47,6 +49,7 @@ class Window {
     Panes panes_;
     bool stores_view_;
     Input input_;
+    std::optional<std::uint32_t> pressed_organism_; // the organism under the mouse when the button was pressed
     core::SnapshotInterpolator::Clock::time_point now_{};
     core::SnapshotInterpolator::Clock::time_point
         asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits

@@ -64,6 +64,14 @@ std::string with_unit(double number, std::string_view unit) {
     return shown_number(number) + (unit.empty() ? "" : " ") + std::string{unit};
 }
 
+std::string three_digits(double number) {
+    const double size = std::abs(number);
+    if (!std::isfinite(number) || size >= 1e12) {
+        return shown_number(number);
+    }
+    return with_separators(print(size >= 999.5 ? "%.0f" : "%.3g", number));
+}
+
 std::string shown_tenths(double number) {
     return print("%.1f", number);
 }

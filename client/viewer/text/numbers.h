@@ -25,6 +25,10 @@ std::string significant(double number);
 /// Returns the number with its unit: "1,234.5 px". If `unit` is empty, only the number.
 std::string with_unit(double number, std::string_view unit);
 
+/// Returns the number with three significant digits: "1.21", "0.0123"; 1,000 and more as a whole number: "12,346"; "–"
+/// if it is not finite.
+std::string three_digits(double number);
+
 std::string shown_tenths(double number); // 251.34 → "251.3"
 
 /// Parses a text that consists of digits only. Returns nullopt for any other text and for numbers that need more than

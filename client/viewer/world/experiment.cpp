@@ -3,6 +3,7 @@
 #include "client/viewer/text/numbers.h"
 #include "client/viewer/world/parameter_edits.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -14,14 +15,18 @@ namespace evod::viewer {
 namespace {
 
 /// Returns a sentence about how the selection method chooses parents.
-std::string selection_text(const std::string& selection) {
+std::string selection_text(const std::string& selection, bool shuffled) {
+    if (shuffled) {
+        return "Fitness is shuffled among the organisms before the selection, so fitter organisms have no more "
+               "offspring than others.";
+    }
     if (selection == "random") {
         return "Parents are chosen at random, whatever their fitness.";
     }
     if (selection == "truncation") {
         return "Only the fittest have offspring.";
     }
-    return "Fitter organisms have more offspring (" +
+    return "On average, fitter organisms have more offspring (" +
            (selection == "stochastic_universal" ? std::string{"stochastic universal"} : selection) + " selection).";
 }
 
@@ -56,9 +61,12 @@ std::string experiment_text(const evod::v1::ParameterSet& set) {
                                            weighted("fitness_per_health", "the health at the end"),
                                            weighted("fitness_per_food", "the food eaten"),
                                            weighted("fitness_per_poison", "the poison eaten")});
+    const bool has_gene_costs = std::ranges::any_of(
+        values, [](const auto& value) { return value.first.ends_with("_cost") && number_of(value.second) != 0; });
     return number("population_size") + " organisms seek food (+" + number("food_health") +
            " health) and avoid poison (−" + number("poison_harm") + "). Each loses " + number("health_loss_per_s") +
-           " health per second and dies at 0. Fitness " + fitness + ". " + selection_text(choice("selection"));
+           " health per second" + (has_gene_costs ? ", more or less with its genes," : "") + " and dies at 0. " +
+           "Fitness " + fitness + ". " + selection_text(choice("selection"), values["shuffle_fitness"].flag());
 }
 
 void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {

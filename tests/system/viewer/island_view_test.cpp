@@ -171,10 +171,14 @@ TEST_F(IslandViewTest, DrawsTheMinimapWhenPartIsOutOfSight) {
 
 TEST_F(IslandViewTest, AClickSelectsAndHighlightsAnOrganism) {
     draw_when([&] { return world().feed.snapshot() != nullptr; });
-    renderer.click_at(panes->focused(), camera().to_screen({502, 300}));
+    const auto click = [&](Point place) {
+        const Point screen = camera().to_screen(place);
+        renderer.click_at(panes->focused(), screen, renderer.organism_drawn_at(panes->focused(), screen));
+    };
+    click({502, 300});
     EXPECT_EQ(world().feed.selected(), 4u);
     EXPECT_GT(count(draw(), palette::selected), 20u);
-    renderer.click_at(panes->focused(), camera().to_screen({400, 50}));
+    click({400, 50});
     EXPECT_EQ(world().feed.selected(), std::nullopt);
 }
 

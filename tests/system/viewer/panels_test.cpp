@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -47,6 +48,69 @@ struct PanelsTest : testing::Test {
 
     TemporaryFolder folder;
 };
+
+/// Returns the answer to a request, which the server must accept.
+evod::v1::Response ask(RealServer& server, const evod::v1::Request& request) {
+    auto response = server.connection->request(request, hang).value();
+    EXPECT_TRUE(core::accepted(response)) << core::to_text(response.status());
+    return response;
+}
+
+TEST_F(PanelsTest, LeadsFromAnOrganismToThePickOfItsParent) {
+    RealServer server{{"--seed", "7", "--data", folder.file("runs")}};
+    server.run_generations("", 3);
+    evod::v1::OrganismInfo healthiest;
+    for (std::uint32_t id = 0; id < 50; ++id) {
+        evod::v1::Request request;
+        request.mutable_get_organism()->set_organism(id);
+        const auto response = ask(server, request);
+        if (response.organism().health() > healthiest.health()) {
+            healthiest = response.organism();
+        }
+    }
+    ASSERT_FALSE(healthiest.parents().empty());
+    const std::uint32_t parent = healthiest.parents(0);
+    evod::v1::Request request;
+    request.mutable_get_breeding()->set_generation(healthiest.generation() - 1);
+    const auto response = ask(server, request);
+    const auto& picks = response.breeding().picks();
+    const auto pick = std::ranges::find(picks, parent, &evod::v1::Pick::organism);
+    ASSERT_NE(pick, picks.end());
+    const std::string id = std::to_string(parent);
+    const Ran ran =
+        play(server.address(), "wait snapshot\nkey F6\nclick \"Organism " + std::to_string(healthiest.id()) +
+                                   "\"\nclick \"Why " + id + "?\"\nwait widget \"Pick " +
+                                   std::to_string(pick - picks.begin() + 1) + "\"\nkey F6\nclick \"Go to parent " + id +
+                                   "\"\nwait widget \"Back to live\"\nwait widget \"Show its picks\"\n"
+                                   "click \"Show its picks\"\nwait widget \"Pick " +
+                                   std::to_string(pick - picks.begin() + 1) +
+                                   "\"\nkey F6\nclick \"Back to live\"\nwait gone \"Back to live\"\nquit\n");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, BetsAreScoredAfterTheLastPick) {
+    RealServer server{{"--seed", "7", "--data", folder.file("runs")}};
+    server.run_generations("", 2);
+    const Ran ran = play(server.address(), R"script(
+wait snapshot
+key F8
+click "bet first"
+set Generation 1
+click "bet on 43"
+click "bet on 9"
+click Step
+wait gone score
+set steps/s 200
+click "Play the picks"
+wait widget score
+wait gone "bet on 43"
+key Home
+wait gone score
+wait gone "bet on 43"
+quit
+)script");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
 
 double chance_of(const evod::v1::ParameterSet& set) {
     for (const auto& parameter : set.parameters()) {

@@ -47,6 +47,23 @@ TEST_F(IslandRendererTest, FindsTheItemUnderTheMouse) {
     EXPECT_EQ(item(600, 617.1), std::nullopt);
 }
 
+TEST_F(IslandRendererTest, ASmallOrganismHasATargetOf24Pixels) {
+    organisms.width = codec::px_column({2, 2, 20});
+    EXPECT_EQ(at(100, 111.9), 0u);
+    EXPECT_EQ(at(100, 112.1), std::nullopt);
+    EXPECT_EQ(at(107, 100), 1u) << "of two targets, the nearest edge";
+    camera.set_viewport({0, 0, 2048, 2048}, 2); // two pixels per px
+    EXPECT_EQ(at(100, 111.9), 0u) << "at scale 2";
+    EXPECT_EQ(at(100, 112.1), std::nullopt);
+}
+
+TEST_F(IslandRendererTest, APointInsideALargeOrganismHitsIt) {
+    organisms.x = codec::px_column({100, 145, 600});
+    organisms.width = codec::px_column({40, 2, 20});
+    EXPECT_EQ(at(136, 100), 0u) << "9 px beside a small organism, but inside the large one";
+    EXPECT_EQ(at(142, 100), 1u);
+}
+
 TEST_F(IslandRendererTest, NothingIsFoundUnderTheStripsOfText) {
     camera.set_viewport({0, 40, 1024, 900});
     EXPECT_EQ(organism_at({512, 20}, {.entities = &organisms}, camera), std::nullopt);

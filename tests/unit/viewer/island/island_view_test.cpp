@@ -145,6 +145,9 @@ struct IslandViewTest : testing::Test {
     /// Shows a replay of the same run, with number 8 for snapshots.
     void show_replay() {
         world->show("default@3", 1);
+        answer_replay();
+    }
+    void answer_replay() {
         for (bool subscribed = false; !subscribed;) {
             const auto request = next_request();
             subscribed = request.subscribe_snapshots().world() == "default@3";
@@ -236,6 +239,43 @@ TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     EXPECT_THAT(island_view.problem(), HasSubstr("population.genes has 0 bytes, not 24"));
 }
 
+TEST_F(IslandViewTest, OpensAReplayToShowAParentAndSelectsIt) {
+    show(4, 100);
+    island_view.go_to(*world, {.island = 1, .generation = 3, .id = 2});
+    const auto request = next_request();
+    ASSERT_TRUE(request.has_open_replay()) << request.DebugString();
+    EXPECT_EQ(request.open_replay().world(), "default");
+    EXPECT_EQ(request.open_replay().at().generation(), 3u);
+    show(4, 101);
+    EXPECT_EQ(world->feed.selected(), std::nullopt) << "the ids of generation 4 belong to other organisms";
+    evod::v1::ServerMessage opened;
+    opened.mutable_response()->set_request_id(request.request_id());
+    opened.mutable_response()->mutable_world()->set_name("default@3");
+    opened.mutable_response()->mutable_world()->mutable_replay()->set_replay_of("default");
+    session->send(opened);
+    answer_replay();
+    show(3, 60, "\xaa", 8, 3, "default@3");
+    EXPECT_EQ(world->feed.selected(), 2u);
+    EXPECT_TRUE(island_view.following());
+}
+
+TEST_F(IslandViewTest, TheSelectionReturnsWithItsGeneration) {
+    show(4, 100);
+    world->feed.select(2);
+    until([&] { return island_view.organism_history() != nullptr; });
+    island_view.toggle_following(*world);
+    until([&] { return island_view.following(); });
+    show(5, 200);
+    EXPECT_EQ(world->feed.selected(), std::nullopt);
+    show(4, 90); // a seek to an earlier tick
+    EXPECT_EQ(world->feed.selected(), 2u);
+    EXPECT_TRUE(island_view.following());
+    world->feed.select(std::nullopt); // by a click beside all organisms
+    show(5, 201);
+    show(4, 91);
+    EXPECT_EQ(world->feed.selected(), std::nullopt);
+}
+
 TEST_F(IslandViewTest, DeselectsTheOrganismWhenItsGenerationEnds) {
     show(4, 100);
     world->feed.select(2);
@@ -262,8 +302,23 @@ TEST_F(IslandViewTest, DeselectsTheOrganismWhenItsGenerationEnds) {
     EXPECT_EQ(island_view.organism_history()->health().back().health, 70);
     show(5, 200);
     EXPECT_EQ(world->feed.selected(), std::nullopt);
-    answer_page(3, 5); // parents by page_of: of 0, 1 and 2; of 1, 2 and 3
-    until([&] { return island_view.organism_history()->children().has_value(); });
+    for (bool asked_picks = false, asked_children = false; !asked_picks || !asked_children;) {
+        const auto request = next_request();
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request.request_id());
+        if (request.has_get_breeding()) {
+            asked_picks = true;
+            EXPECT_EQ(request.get_breeding().first_contender(), 2u);
+            message.mutable_response()->mutable_breeding()->set_generation(4);
+            message.mutable_response()->mutable_breeding()->add_contenders()->set_copies(3);
+        } else {
+            asked_children = true; // parents by page_of: of 0, 1 and 2; of 1, 2 and 3
+            *message.mutable_response()->mutable_population() = page_of(0, 3, 3, 5);
+        }
+        session->send(message);
+    }
+    until([&] { return island_view.organism_history()->children() && island_view.organism_history()->picks(); });
+    EXPECT_EQ(island_view.organism_history()->picks()->count, 3u);
     EXPECT_EQ(island_view.organism_history()->children()->size(), 2u);
 }
 
