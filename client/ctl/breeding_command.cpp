@@ -149,6 +149,9 @@ std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world
         for (int gene = 0; child && gene < d.genes_size(); ++gene) {
             genes_of += (d.from_second() >> gene & 1) != 0 ? '2' : '1';
         }
+        if (d.second_share() > 0) {
+            genes_of = fixed(1 - d.second_share(), 3) + " of 1 + " + fixed(d.second_share(), 3) + " of 2";
+        }
         table.add({std::to_string(d.id()),
                    child                                   ? "child"
                    : d.kind() == v1::DESCENDANT_KIND_ELITE ? "elite"

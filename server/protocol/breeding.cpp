@@ -75,6 +75,7 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     add(descendant.first_genes, *to.mutable_first_genes());
     add(descendant.second_genes, *to.mutable_second_genes());
     to.set_from_second(descendant.from_second);
+    to.set_second_share(descendant.second_share);
     to.set_crossed(descendant.crossed);
     if (descendant.order) {
         to.mutable_order_mutation()->set_method(std::string{

@@ -115,6 +115,14 @@ const std::vector<Scenario>& all() {
          480,
          {{150, R"({"fitness_per_second": -1, "fitness_per_food": 0, "fitness_per_poison": -20})"}}},
 
+        {"blend", // also of survivors, on several islands
+         R"({"island_count": 3, "population_size": 30, "generation_s": 2, "crossover": "blend", "crossover_chance": 0.9,
+             "mutate_survivors": true, "elite_count": 2, "migration": "ring", "migration_epoch": 1,
+             "fitness_scaling": "windowing"})",
+         base::Seed{56},
+         480,
+         {}},
+
         {"crowded_migration", // more arrive than an island holds
          R"({"fitness": "gene_sum", "island_count": 4, "population_size": 5, "migration": "fully_connected",
              "migration_epoch": 2, "migrant_count": 3})",

@@ -349,6 +349,7 @@ class Descendant(_Result):
     first_genes: Genes  #: genes of the first parent
     second_genes: Genes
     from_second: int  #: bit g is set if gene g comes from the second parent
+    second_share: float  #: blend crossover: the weight of the second parent in every gene; otherwise 0
     crossed: bool  #: crossover took place
     order_mutation: OrderMutation | None
     mutations: tuple[Mutation, ...]  #: in the order in which they happened

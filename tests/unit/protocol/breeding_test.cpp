@@ -26,6 +26,7 @@ TEST(BreedingMessage, IsConvertedCompletely) {
                                       .first_genes = genes,
                                       .second_genes = genes,
                                       .from_second = 3,
+                                      .second_share = 0.25,
                                       .crossed = true,
                                       .order = {{1, 0, 2, 3, 4, 5}},
                                       .changes = {{1, evolution::ChangeKind::Creep, 2, 3},

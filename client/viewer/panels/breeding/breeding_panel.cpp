@@ -359,8 +359,8 @@ void BreedingPanel::build_stage(const Context& context) {
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
         widgets::small_text("black: elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            widgets::small_text("blue: genes of the first parent, orange: genes of the second parent, dashed: cuts, "
-                                "framed: mutated or clamped");
+            widgets::small_text("blue: genes of the first parent, orange: genes of the second parent, "
+                                "grey: blended, dashed: cuts, framed: mutated or clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
             ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }

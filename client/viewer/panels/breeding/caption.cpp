@@ -101,7 +101,10 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
         text += "a child of organisms " + std::to_string(descendant->first_parent()) + " and " +
                 std::to_string(descendant->second_parent()) +
                 (descendant->first_parent() == descendant->second_parent() ? ", the same organism twice" : "") +
-                (descendant->crossed() ? "" : ", not crossed");
+                (descendant->second_share() > 0 ? print(", blended with weights %.3f and %.3f",
+                                                        1 - descendant->second_share(), descendant->second_share())
+                 : descendant->crossed()        ? ""
+                                                : ", not crossed");
         const auto mutated = std::ranges::count_if(descendant->mutations(), [](const evod::v1::Mutation& mutation) {
             return mutation.kind() != evod::v1::MUTATION_KIND_CLAMP;
         });

@@ -15,7 +15,8 @@ namespace evod::viewer {
 
 struct GeneOrigin {
     float value = 0;
-    bool from_second = false; // false: from the first parent
+    bool from_second = false; // false: from the first parent, or blended from both parents
+    bool blended = false;     // a weighted mean of the genes of both parents
     std::uint32_t gene = 0;   // index of the gene in that parent
 };
 

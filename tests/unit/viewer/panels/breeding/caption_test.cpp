@@ -61,6 +61,10 @@ TEST(Caption, DescribesHowADescendantWasMade) {
     EXPECT_EQ(of_three(),
               "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap reordered genes, "
               "1 mutation.");
+    breeding.mutable_descendants(3)->set_second_share(0.25);
+    EXPECT_EQ(of_three(),
+              "Organism 3 of the next generation: a child of organisms 4 and 9, blended with weights 0.750 and 0.250, "
+              "swap reordered genes, 1 mutation.");
     breeding.mutable_descendants(3)->Clear();
     breeding.mutable_descendants(3)->set_kind(evod::v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(of_three(),
