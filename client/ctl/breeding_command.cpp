@@ -112,6 +112,8 @@ std::string name_of(v1::MutationKind kind) {
         return "creep";
     case v1::MUTATION_KIND_RESET:
         return "reset";
+    case v1::MUTATION_KIND_SCALE:
+        return "scale";
     case v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case v1::MUTATION_KIND_CLAMP:

@@ -151,15 +151,14 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                          WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
-            const std::optional<Mixture> drawn = descent.draw_mixture(child / 2);
-            const Mixture mixture = drawn.value_or(Mixture{});
+            Mixture mixture;
+            descendant.crossed = descent.draw_mixture(child / 2, mixture);
             const Inheritance inheritance =
-                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mixture : mixture.complement());
+                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mixture.from_second : ~mixture.from_second);
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
-            descendant.second_share = inheritance.second_share;
-            descendant.crossed = drawn.has_value();
-            descent.make_child(inheritance, place, made, WithRecord{descendant});
+            descendant.second_share = mixture.second_share;
+            descent.make_child(inheritance, mixture.second_share, place, made, WithRecord{descendant});
         }
         descendant.first_genes = chromosome(genes, descendant.parents.first);
         descendant.second_genes = chromosome(genes, descendant.parents.second);

@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace evod::evolution {
 
@@ -24,13 +23,11 @@ using GeneMask = std::uint32_t;
 
 constexpr GeneMask all_genes = (1u << gene_count) - 1;
 
-/// How a child's genes are mixed from those of a pair. The default is a copy of the first parent.
+/// How the genes of a pair are mixed into its first child. The default is a copy of the first parent. The second child
+/// has the complement of the mask and the same share.
 struct Mixture {
-    GeneMask from_second = 0; // the genes that the second parent gives
-    double second_share = 0;  // blend: the weight of the second parent in every gene, in (0, 1); other methods: 0
-
-    /// Returns the mixture of the other child of the pair.
-    Mixture complement() const { return {~from_second, second_share > 0 ? 1 - second_share : 0}; }
+    GeneMask from_second = 0; // the genes of which the second parent gives all or, with blend, the larger share
+    double second_share = 0;  // blend: the smaller of the two parents' weights, in (0, ½); other methods: 0
 };
 
 /// Returns the mask for a set of cuts. At every cut, inheritance changes to the other parent. Bit c of `cuts` (c = 1 …
@@ -41,16 +38,17 @@ class Crossover {
   public:
     explicit Crossover(const Parameters& parameters);
 
-    /// Draws the mixture of the first child of one pair, with probability crossover_chance. Otherwise returns nullopt:
-    /// the children are copies of their parents.
+    /// Draws the mixture of one pair and returns true, with probability crossover_chance. Otherwise returns false and
+    /// does not change `mixture`: the children are copies of their parents.
     ///
     /// uniform       each of the 64 masks is equally likely.
     /// single_point  each of the 5 interior cuts is equally likely.
     /// multi_point   each set of crossover_cuts different interior cuts is equally likely.
     /// blend         the weight of the second parent is (k + ½)/2^32, where each of the 2^32 values of k is equally
-    ///               likely; draws one word. The weight is never ½, and 1 − weight is exact.
-    /// none          always nullopt.
-    std::optional<Mixture> draw(base::RandomStream& random) const;
+    ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all genes
+    ///               if the weight is above ½, otherwise none.
+    /// none          always false.
+    bool draw(Mixture& mixture, base::RandomStream& random) const;
 
   private:
     CrossoverMethod method_;
@@ -69,14 +67,9 @@ inline void cross(ConstGenes first, ConstGenes second, GeneMask mask, Genes chil
 /// Gives every gene of `child` the value first + second_share · (second − first), computed in double and rounded to
 /// float. The result is between the parents' genes, ends included. If the parents of the other child are given in the
 /// opposite order and with the same share, the sum of the children's genes differs from that of the parents by rounding
-/// alone: by at most 2^-23 of the larger absolute value of the two genes (and 2^-149 for subnormal values).
+/// alone: by at most 2^-23 of the larger absolute value of the two genes.
 ///
 /// second_share  in (0, ½].
-inline void blend(ConstGenes first, ConstGenes second, double second_share, Genes child) {
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        const double from = static_cast<double>(first[gene]);
-        child[gene] = static_cast<float>(from + second_share * (static_cast<double>(second[gene]) - from));
-    }
-}
+void blend(ConstGenes first, ConstGenes second, double second_share, Genes child);
 
 } // namespace evod::evolution

@@ -1,6 +1,6 @@
 // The next generation of one island: chooses survivors and parents, and computes the genes of all organisms.
 //
-//   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, bit flip → bounds
+//   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, scale, bit flip → bounds
 //
 // Owner        World, once per generation and island.
 // Threads      none of its own; the executor processes pairs and survivors in blocks.

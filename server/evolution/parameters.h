@@ -55,6 +55,8 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
     REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation: its largest step if creep is uniform, its standard deviation if creep is gaussian.")                              \
     REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
+    REAL(scale_chance, 0, 0, 1, "chance", NextTick, "Chance per chromosome that one random gene is multiplied by a random factor; 0 means off.") \
+    REAL(scale_range, 0.1, 0, 1, "", NextTick, "Range of the factor of a scale mutation: uniform between 1 − scale_range and 1 + scale_range.") \
     REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
     COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
     REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene in the first generation.")      \

@@ -16,6 +16,8 @@ v1::MutationKind to_proto(evolution::ChangeKind kind) {
         return v1::MUTATION_KIND_CREEP;
     case evolution::ChangeKind::Reset:
         return v1::MUTATION_KIND_RESET;
+    case evolution::ChangeKind::Scale:
+        return v1::MUTATION_KIND_SCALE;
     case evolution::ChangeKind::BitFlip:
         return v1::MUTATION_KIND_BIT_FLIP;
     case evolution::ChangeKind::Clamp:

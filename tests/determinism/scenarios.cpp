@@ -123,6 +123,13 @@ const std::vector<Scenario>& all() {
          480,
          {}},
 
+        {"scale_mutation", // together with the other mutations
+         R"({"population_size": 40, "generation_s": 2, "scale_chance": 0.6, "scale_range": 0.4, "reset_chance": 0.02,
+             "bit_flip_chance": 0.01, "mutate_survivors": true, "selection": "tournament"})",
+         base::Seed{57},
+         480,
+         {}},
+
         {"crowded_migration", // more arrive than an island holds
          R"({"fitness": "gene_sum", "island_count": 4, "population_size": 5, "migration": "fully_connected",
              "migration_epoch": 2, "migrant_count": 3})",

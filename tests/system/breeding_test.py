@@ -145,7 +145,7 @@ class Breeding(export_test.Runs):
     def test_blended_genes_can_be_computed_from_the_record(self):
         server, client = self.serve()
         self.run_world(client, 4, crossover="blend", crossover_chance=0.5, mutate_survivors=True,
-                       fitness_per_second=0.0, fitness_per_food=10.0, fitness_per_poison=-5.0)
+                       fitness_per_second=0.0, fitness_per_food=10.0, fitness_per_poison=-5.0, scale_chance=0.5)
         reported = [self.breeding(client, generation=generation, island=1) for generation in range(1, 4)]
         table = self.organisms()
         for bred in reported:
@@ -153,9 +153,14 @@ class Breeding(export_test.Runs):
         children = [descendant for bred in reported for descendant in bred.descendants[bred.survivor_count:]]
         self.assertTrue(all(child.crossed == (0 < child.second_share < 0.5) for child in children))
         self.assertEqual({child.crossed for child in children}, {True, False})
+        scaled = [mutation for bred in reported for descendant in bred.descendants for mutation in descendant.mutations
+                  if mutation.kind == c.MUTATION_KIND_SCALE]
+        self.assertTrue(scaled)
+        self.assertTrue(all(0.9 - 1e-6 <= mutation.after / mutation.before <= 1.1 + 1e-6 for mutation in scaled))
         text = "".join(waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w",
                                     "breeding", "--generation", str(generation), "--island", "1", "--rows", "12"],
                                    capture_output=True, text=True).stdout for generation in range(1, 4))
+        self.assertRegex(text, r" → \d+\.\d\d scale")
         self.assertRegex(text, r"child +\d+, \d+ +0\.\d{3} of 1 \+ 0\.\d{3} of 2 ")
         server.kill()
         server, client = self.serve()  # from the file

@@ -102,6 +102,7 @@ class MutationKind(_State):
     RESET = commands_pb2.MUTATION_KIND_RESET
     BIT_FLIP = commands_pb2.MUTATION_KIND_BIT_FLIP
     CLAMP = commands_pb2.MUTATION_KIND_CLAMP  #: the value was outside its bounds and was set to the nearest bound
+    SCALE = commands_pb2.MUTATION_KIND_SCALE  #: multiplied by a random factor
 
 
 # ---- worlds ---------------------------------------------------------------------------------------------------------------

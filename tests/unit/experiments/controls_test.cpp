@@ -75,7 +75,7 @@ TEST(Controls, RemoveTheirParametersFromTheSchedule) {
     world.elite_count = 3;
     world.island_count = 2;
     world.migration = evolution::Topology::Ring;
-    world.reset_chance = world.bit_flip_chance = world.rearrange_chance = 0.1;
+    world.reset_chance = world.bit_flip_chance = world.scale_chance = world.rearrange_chance = 0.1;
     world.rearranging = evolution::OrderMutationMethod::Swap;
     world.fitness_per_poison = -10;
     for (const ControlKind kind : all_controls) {
@@ -126,9 +126,10 @@ TEST(Controls, MutationOffTurnsOffAllMutationOperators) {
     Parameters world;
     world.reset_chance = 0.1;
     world.bit_flip_chance = 0.1;
+    world.scale_chance = 0.1;
     world.rearranging = evolution::OrderMutationMethod::Swap;
     EXPECT_EQ(changes(world, ControlKind::MutationOff),
-              "rearranging=none mutation_chance=0 reset_chance=0 bit_flip_chance=0");
+              "rearranging=none mutation_chance=0 reset_chance=0 scale_chance=0 bit_flip_chance=0");
 }
 
 TEST(Controls, SayWhyTheyCannotDiffer) {

@@ -61,6 +61,8 @@ const char* shown_mutation(evod::v1::MutationKind kind) {
         return "creep";
     case evod::v1::MUTATION_KIND_RESET:
         return "reset";
+    case evod::v1::MUTATION_KIND_SCALE:
+        return "scale";
     case evod::v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case evod::v1::MUTATION_KIND_CLAMP:

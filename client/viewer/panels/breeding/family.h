@@ -46,7 +46,7 @@ struct Family {
 /// Computes the family of a descendant. Returns a family without genes if the lists in `descendant` are malformed.
 Family family_of(const evod::v1::Descendant& descendant);
 
-/// Returns the kind as text: "creep", "reset", "bit flip", "clamped".
+/// Returns the kind as text: "creep", "reset", "scale", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);
 /// Returns a difference as text, with its sign and four significant digits: "+7.31", "−0.4".
 std::string shown_delta(double delta);
