@@ -337,7 +337,7 @@ void ParametersPanel::build_row(const Row& row) {
     const EffectWords effect = words_of(about.effect());
     ImGui::PushStyleColor(
         ImGuiCol_Text,
-        ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::running : palette::text_quiet));
+        ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::text : palette::text_quiet));
     ImGui::TextUnformatted(effect.word);
     ImGui::PopStyleColor();
     widgets::explain(effect.sentence);

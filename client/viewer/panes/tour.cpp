@@ -96,8 +96,9 @@ void Tour::build(const Gui& gui, Rectangle worlds) {
     if (const auto found = gui.widget_positions().find(callout.widget); !found.empty() && found.front()->visible) {
         widget = found.front()->place;
     }
-    // Beside its widget in the sidebar, or in the middle of the worlds.
-    const Point anchor = widget ? Point{widget->left - callout_distance * scale, widget->centre().y} : worlds.centre();
+    // At the edge of the sidebar beside its widget, or in the middle of the worlds.
+    const double right = worlds.left + worlds.width - callout_distance * scale; // the sidebar stays free
+    const Point anchor = widget ? Point{std::min(widget->left, right), widget->centre().y} : worlds.centre();
     ImGui::SetNextWindowPos({static_cast<float>(anchor.x), static_cast<float>(anchor.y)}, ImGuiCond_Always,
                             widget ? ImVec2{1, 0.3f} : ImVec2{0.5f, 0.5f});
     ImGui::SetNextWindowSize({callout_width * scale, 0});

@@ -81,6 +81,7 @@ TEST(RealServer, TheWindowOpensInTheMiddleOfTheScreen) {
 }
 
 TEST(RealServer, ShowsNoRunningStateWithoutAServer) {
+    const TemporaryFolder folder; // of the settings
     RealServer server{{"--seed", "7"}};
     Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500", "--skin", "classic"}};
     Person person;
