@@ -173,7 +173,7 @@ void add_place_commands(command_line::Command& app, const Common& common) {
         app.add_command("place", "Place food, poison or organisms in the current generation").group(group);
     auto& placed = place_command.keep(PlaceOptions{});
     place_command.add_option("KIND", &placed.kind, "What to place").choices(kinds).required();
-    place_command.add_option("X,Y", &placed.positions, "Places in px from the upper left corner, such as 100,200")
+    place_command.add_option("PLACE", &placed.positions, "Places X,Y in px from the upper left corner, such as 100,200")
         .check(check_position)
         .count(1, 1000)
         .required();

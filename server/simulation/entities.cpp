@@ -284,6 +284,11 @@ std::uint32_t Island::place(std::span<const NewOrganism> organisms, const parame
         hash_ += hash_of_organism(bodies_, living_, body_of_[id]);
     }
     perception_.begin(bodies_, living_, food_, poison_);
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        if (bodies_.is_void(body)) {
+            perception_.remove(body); // begin() expects living organisms only
+        }
+    }
     stepper_.near().invalidate();
     return first;
 }
@@ -292,6 +297,9 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
     const std::size_t bodies = bodies_.size();
     const Eigen::Index first = born_.genes.cols();
     born_.genes.conservativeResize(Eigen::NoChange, first + std::ssize(organisms));
+    for (const NewOrganism& organism : organisms) {
+        placed_.push_back(organism.tick);
+    }
     bodies_.resize(bodies + organisms.size());
     living_.resize(bodies + organisms.size());
     for (std::size_t i = 0; i < organisms.size(); ++i) {
@@ -302,7 +310,6 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         if (!born_.parents.empty()) {
             born_.parents.push_back(no_parents);
         }
-        placed_.push_back(organism.tick);
         fate_.add();
         body_of_.push_back(static_cast<std::uint32_t>(bodies + i));
         bodies_.put(

@@ -37,7 +37,7 @@ TEST(Place, BecomesACommand) {
     item.set_y_px(4);
     v1::PlacedOrganism& organism = *place.add_organisms();
     organism.set_x_px(7);
-    organism.mutable_genes()->Add(6, 80.0f);
+    organism.mutable_genes()->Resize(6, 80.0f);
     const auto command = command_of(request);
     ASSERT_TRUE(command) << to_text(command.error());
     const auto& entities = std::get<simulation::PlaceEntities>(*command);
@@ -54,7 +54,7 @@ TEST(Place, NamesEveryWrongField) {
     v1::Request request;
     request.mutable_place()->add_items();
     request.mutable_place()->add_items()->set_kind(static_cast<v1::ItemKind>(3));
-    request.mutable_place()->add_organisms()->mutable_genes()->Add(5, 80.0f);
+    request.mutable_place()->add_organisms()->mutable_genes()->Resize(5, 80.0f);
     EXPECT_THAT(fields_of(command_of(request)), ElementsAre("place.items[0].kind: got 0", "place.items[1].kind: got 3",
                                                             "place.organisms[0].genes: got 5"));
 }
@@ -67,7 +67,7 @@ TEST(Place, HasABoundedNumberOfEntries) {
         many.mutable_place()->add_items()->set_kind(v1::ITEM_KIND_FOOD);
     }
     EXPECT_TRUE(command_of(many));
-    many.mutable_place()->add_organisms()->mutable_genes()->Add(6, 80.0f);
+    many.mutable_place()->add_organisms()->mutable_genes()->Resize(6, 80.0f);
     EXPECT_THAT(fields_of(command_of(many)), ElementsAre("place.items: got 1001"));
 }
 
