@@ -152,6 +152,7 @@ class Island {
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
+    static constexpr std::size_t organisms_per_block = 1024;
     /// The results of a tick in one block of organisms.
     struct Block {
         base::StateHash hash;             // hash of the living organisms
@@ -199,9 +200,5 @@ class Island {
     base::Column<std::uint32_t> spare_column_;
     std::uint32_t renewals_ = 0; // number of renewals of the near pairs in this generation
 };
-
-/// Returns whether a state of the beginning of a generation differs from `begun` only by what commands have placed and
-/// removed. check() has accepted both states.
-bool differ_only_by_commands(const IslandState& begun, const IslandState& state);
 
 } // namespace evod::simulation

@@ -85,4 +85,8 @@ struct WorldState {
     std::vector<GenerationStatistics> ended; // at the end of a generation: one per island; otherwise empty
 };
 
+/// Returns whether a state of the beginning of a generation differs from `begun` only by what commands have placed and
+/// removed. Island::check() has accepted both states.
+bool differ_only_by_commands(const IslandState& begun, const IslandState& state);
+
 } // namespace evod::simulation

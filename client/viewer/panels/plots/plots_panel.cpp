@@ -207,10 +207,12 @@ void PlotsPanel::compare_with_file(const std::string& path) {
 }
 
 void PlotsPanel::build_comparison() {
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("compare with");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
     const bool compares = other_world_ || file_;
-    const std::string chosen = compares ? "compare with " + other_name_ : "compare with nothing";
-    if (widgets::begin_drop_down("##compare", chosen.c_str(), "compare")) {
+    if (widgets::begin_drop_down("##compare", compares ? compared_.c_str() : "nothing", "compare")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
             worlds_stale_ = true;
