@@ -519,15 +519,16 @@ void BreedingPanel::build_bets(const Gui& gui) {
 }
 
 void BreedingPanel::build_score() {
-    if (bets_.organisms().empty() || !comparison_) {
+    if ((bets_.organisms().empty() && (!betting_ || bets_closed_)) || !comparison_) {
         return;
     }
-    std::string placed = "Your bets:";
+    // The line is there before the first bet, so that a bet does not move the buttons.
+    std::string placed = bets_.organisms().empty() ? "Your bets: none yet" : "Your bets:";
     for (const std::uint32_t organism : bets_.organisms()) {
         placed += " " + std::to_string(organism);
     }
     widgets::small_text(placed, palette::text);
-    if (const std::uint32_t made = picks_made(); made > 0) {
+    if (const std::uint32_t made = picks_made(); made > 0 && !bets_.organisms().empty()) {
         const bool complete = picks_complete();
         const auto copies = complete ? comparison_->copies : copies_after(*shown_, made);
         widgets::small_text(score_text(score_of(bets_, *comparison_, copies, made), complete), palette::text);

@@ -279,7 +279,9 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
     const float width = (right_end - sheet.corner.x) / static_cast<float>(columns.size()), gap = width > 5 ? 1.f : 0.f;
     const auto y_of = [&](double value) { return bottom - static_cast<float>(value / most) * (bottom - top); };
     sheet.write(sheet.corner, palette::text, "Picks by rank; line: expected");
-    sheet.write_to_the_left({right_end, sheet.corner.y}, palette::text_quiet, "up to " + three_digits(most));
+    if (right_end - sheet.corner.x > 16 * sheet.font.FontSize) {
+        sheet.write_to_the_left({right_end, sheet.corner.y}, palette::text_quiet, "up to " + three_digits(most));
+    }
 
     // The axis of the deviations ends at four standard errors; larger deviations are drawn at its end.
     constexpr double deviation_max = 4;
