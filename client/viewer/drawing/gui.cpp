@@ -74,6 +74,7 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     ImGuiStyle& style = ImGui::GetStyle();
     style.FrameBorderSize = 1; // makes white fields visible on light panels
     style.Colors[ImGuiCol_Border].w = 0.5f;
+    style.Colors[ImGuiCol_PopupBg].w = 1;
     style.Colors[ImGuiCol_SliderGrab].w = style.Colors[ImGuiCol_SliderGrabActive].w = 0.35f; // it lies under the number
     style.ScaleAllSizes(scale_);
     ImGuiIO& io = ImGui::GetIO();

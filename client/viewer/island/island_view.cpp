@@ -149,13 +149,7 @@ void IslandView::go_to(ViewedWorld& world, const OrganismPlace& organism) {
         return;
     }
     world.feed.choose_island(organism.island);
-    evod::v1::RunMoment at;
-    at.set_generation(organism.generation);
-    if (world.replay.info() != nullptr) {
-        world.replay.seek(std::move(at));
-    } else {
-        world.replay.open(std::move(at));
-    }
+    world.show_generation(organism.generation);
 }
 
 /// Remembers the selection, or restores it when its generation is on the screen again.

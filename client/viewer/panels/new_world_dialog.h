@@ -17,6 +17,10 @@
 
 namespace evod::viewer {
 
+/// Explains a button that opens the dialog.
+constexpr std::string_view new_world_text =
+    "Creates a world from an experiment, a seed, and perhaps a population of the freezer.";
+
 class NewWorldDialog {
   public:
     /// Opens the dialog in the next frame.

@@ -53,7 +53,7 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
     most = axis_end(most);
     Plot plot{.title = "Health, axis from 0 to " + shown_number(most)};
     plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
-    curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
+    curve_widget("##health", plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled(
         "%s", points.size() > 1
                   ? ("since you selected it, " + core::duration(points.back().s - points.front().s) + " ago").c_str()
@@ -225,7 +225,7 @@ void OrganismPanel::build_life(Context& context, const OrganismHistory& history)
             context.island_view.toggle_following(context.world);
         }
     }
-    build_freeze(context, *history);
+    build_freeze(context, history);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
 }

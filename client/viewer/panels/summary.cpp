@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/island/styles.h"
+#include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/world/mouse_tool.h"
@@ -42,7 +43,7 @@ void Summary::build(Panel::Context& context, bool complete) {
         build_experiment(context);
         build_curve(context);
     }
-    build_buttons(context.world, context.gui.scale());
+    build_buttons(context);
     build_speed(context.world);
     build_tools(context);
 }
@@ -92,6 +93,7 @@ void Summary::build_curve(const Panel::Context& context) {
     } else {
         plot.title = "Fitness, generation " + shown_number(generations.back());
         plot.x_label = "generation";
+        plot.note_end = "A click shows this generation in a replay.";
         plot.counted_x = true;
         plot.series = {{.name = "best",
                         .newest = significant(best.back()),
@@ -107,12 +109,18 @@ void Summary::build_curve(const Panel::Context& context) {
     }
     const Range range = joined(range_of(best), range_of(mean)).value_or(Range{0, 1});
     ImGui::PushFont(&context.gui.label());
-    curve_widget(plot, with_room({std::min(range.min, 0.0), range.max}, 0.05), curve_height * context.gui.scale());
+    const auto clicked = curve_widget("##fitness", plot, with_room({std::min(range.min, 0.0), range.max}, 0.05),
+                                      curve_height * context.gui.scale());
     ImGui::PopFont();
     widgets::mark("Fitness curve");
+    if (clicked) {
+        context.world.show_generation(static_cast<std::uint64_t>(*clicked));
+    }
 }
 
-void Summary::build_buttons(ViewedWorld& world, float scale) {
+void Summary::build_buttons(Panel::Context& context) {
+    ViewedWorld& world = context.world;
+    const float scale = context.gui.scale();
     const RunControl& control = world.feed.control();
     const std::string_view why = world.commands.read_only_reason();
     const bool over = control.state() == evod::v1::RUN_STATE_TERMINATED || world.replay.at_end();
@@ -152,6 +160,13 @@ void Summary::build_buttons(ViewedWorld& world, float scale) {
     widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
                                 : no_creation_text);
     ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!may_create);
+    if (widgets::button("New …")) {
+        context.new_world->open(false);
+    }
+    ImGui::EndDisabled();
+    widgets::explain(may_create ? new_world_text : no_creation_text);
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);
     }

@@ -29,7 +29,7 @@ class Summary {
     void build_experiment(Panel::Context& context);
     void build_marks(Look look, const Gui& gui);
     void build_curve(const Panel::Context& context);
-    void build_buttons(ViewedWorld& world, float scale);
+    void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);
     void build_tools(const Panel::Context& context);
 

@@ -52,8 +52,7 @@ void WorldsPanel::build_actions(Context& context) {
     if (widgets::button("New world …")) {
         context.new_world->open(false);
     }
-    widgets::explain(may ? "Creates a world from an experiment, a seed, and perhaps a population of the freezer."
-                         : no_creation_text);
+    widgets::explain(may ? new_world_text : no_creation_text);
     ImGui::SameLine();
     const bool live = world.feed.control().known() && world.replay.info() == nullptr;
     ImGui::BeginDisabled(!live);

@@ -58,6 +58,8 @@ class WindowRenderer {
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
+    /// The weight of the newest snapshot in the positions of the last frame.
+    double drawn_blend(const core::SnapshotInterpolator& view) const;
     /// Returns the id of the organism at a point of the chosen island, at the positions drawn in the last frame.
     std::optional<std::uint32_t> organism_drawn_at(Pane& pane, Point screen) const;
     /// Uses the mouse tool at a point of the chosen island. Without another tool, selects `organism`.
@@ -68,8 +70,6 @@ class WindowRenderer {
     void select(Pane& pane, std::optional<std::uint32_t> organism);
 
   private:
-    /// The weight of the newest snapshot in the positions of the last frame.
-    double drawn_blend(const core::SnapshotInterpolator& view) const;
     void drop_at_mouse(Panes& panes);
     void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
 

@@ -52,7 +52,8 @@ class Screen::ScriptHost : public Script::Host {
             if (!index) {
                 return std::nullopt;
             }
-            const auto [x, y] = pane->world.feed.view().organisms_at(pane->blend)[*index];
+            const core::SnapshotInterpolator& view = pane->world.feed.view();
+            const auto [x, y] = view.organisms_at(screen_.renderer_.drawn_blend(view))[*index];
             at = {x, y};
         }
         const Point screen = pane->camera().to_screen(at);

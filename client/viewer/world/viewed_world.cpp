@@ -162,4 +162,14 @@ void ViewedWorld::toggle_replay() {
     replay.open(std::move(now));
 }
 
+void ViewedWorld::show_generation(std::uint64_t generation) {
+    evod::v1::RunMoment first;
+    first.set_generation(generation);
+    if (replay.info() != nullptr) {
+        replay.seek(std::move(first));
+    } else {
+        replay.open(std::move(first));
+    }
+}
+
 } // namespace evod::viewer

@@ -53,6 +53,8 @@ class ViewedWorld {
 
     /// Opens a replay of the world at the tick shown, or returns from it to the live world.
     void toggle_replay();
+    /// Shows the first tick of a generation of the run, in a replay.
+    void show_generation(std::uint64_t generation);
 
     /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }

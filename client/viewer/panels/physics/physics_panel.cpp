@@ -25,7 +25,8 @@ void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     const std::vector<double> measure = history.curve(of);
     Plot plot{.title = std::move(title)};
     plot.series.push_back({.colour = palette::organism, .x = tick, .y = measure});
-    curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
+    curve_widget(plot.title.c_str(), plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)},
+                 4 * ImGui::GetFontSize());
 }
 
 /// Draws a collapsible header. Returns whether it is open.
@@ -163,8 +164,8 @@ void PhysicsPanel::build_demo() {
     }
     const double reach = spring_ ? 200 : 150 / rate;
     const float height = 7 * ImGui::GetFontSize();
-    curve_widget(x, {spring_ ? -reach : 0, reach}, height);
-    curve_widget(energy, {0, 3}, height);
+    curve_widget("##x", x, {spring_ ? -reach : 0, reach}, height);
+    curve_widget("##energy", energy, {0, 3}, height);
     for (std::size_t i = curves_.size(); i-- > 0;) {
         widgets::small_text(curves_[i].name, curves_[i].colour);
         if (i > 0) {

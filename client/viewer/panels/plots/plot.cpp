@@ -104,9 +104,8 @@ class Drawing {
         draw_legend();
     }
 
-    /// Draws a vertical line at the numbers nearest to the mouse. Returns these numbers, and the marks under the mouse,
-    /// as text; empty if there are none.
-    std::vector<NoteLine> draw_cursor(float mouse) {
+    /// Returns the x of the numbers nearest to a column of the screen; nullopt if there are none.
+    std::optional<double> x_near(float mouse) const {
         const double at = x_at(mouse);
         std::optional<double> found;
         for (const Series& series : plot_.series) {
@@ -115,16 +114,23 @@ class Drawing {
                 found = series.x[*index];
             }
         }
+        return found && x_.contains(*found) ? found : std::nullopt;
+    }
+
+    /// Draws a vertical line at the numbers nearest to the mouse. Returns these numbers, and the marks under the mouse,
+    /// as text; empty if there are none.
+    std::vector<NoteLine> draw_cursor(float mouse) {
         std::vector<NoteLine> lines;
-        if (!found || !x_.contains(*found)) {
+        const auto x = x_near(mouse);
+        if (!x) {
             return lines;
         }
-        const float pixels = column(*found);
+        const float pixels = column(*x);
         list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(faint(palette::text_quiet, 150)));
-        lines.push_back({plot_.x_label + " " + (plot_.counted_x ? shown_number(*found) : significant(*found))});
+        lines.push_back({plot_.x_label + " " + (plot_.counted_x ? shown_number(*x) : significant(*x))});
         for (const Series& series : plot_.series) {
-            const auto index = nearest(series.x, *found);
-            if (!index || series.name.empty() || series.x[*index] != *found || !std::isfinite(series.y[*index])) {
+            const auto index = nearest(series.x, *x);
+            if (!index || series.name.empty() || series.x[*index] != *x || !std::isfinite(series.y[*index])) {
                 continue;
             }
             if (series.kind == Series::Kind::Line || series.kind == Series::Kind::Dashes) {
@@ -133,6 +139,9 @@ class Drawing {
             lines.push_back({series.name + ": " + value_text(series, *index), series.colour});
         }
         add_marks_near(mouse, lines);
+        if (!plot_.note_end.empty()) {
+            lines.push_back({plot_.note_end});
+        }
         return lines;
     }
 
@@ -548,10 +557,10 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     }
 }
 
-void curve_widget(const Plot& plot, Range y, float height_pixels) {
+std::optional<double> curve_widget(const char* id, const Plot& plot, Range y, float height_pixels) {
     const ImVec2 place = ImGui::GetCursorScreenPos();
     const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), height_pixels};
-    ImGui::Dummy(size);
+    const bool clicked = ImGui::InvisibleButton(id, size);
     const Box box{place.x, place.y, place.x + size.x, place.y + size.y};
     Drawing drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box};
     drawing.draw_without_axes(box);
@@ -560,6 +569,7 @@ void curve_widget(const Plot& plot, Range y, float height_pixels) {
             build_note(lines, box);
         }
     }
+    return clicked ? drawing.x_near(ImGui::GetIO().MousePos.x) : std::nullopt;
 }
 
 sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {

@@ -54,6 +54,7 @@ struct Marks {
 struct Plot {
     std::string title{};              // drawn only on images and by curve_widget()
     std::string x_label{}, y_label{}; // y_label contains the unit
+    std::string note_end{};           // the last line of the note under the mouse
     std::vector<Series> series{};     // each is drawn over the ones after it, but stacks are drawn below all others
     std::vector<Marks> marks{};
     std::string solid{}, dashed{}; // what solid and dashed lines show, for the legend; empty: nothing to distinguish
@@ -77,7 +78,9 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
 
 /// Draws only the lines and marks, as wide as the window and clipped to the range `y`, with the title and the names of
 /// the series in a row at the top. A note as in plot_widget() appears if the plot has an x_label.
-void curve_widget(const Plot& plot, Range y, float height_pixels);
+///
+/// returns  the x of the numbers that the user has clicked; nullopt: there was no click, or there are no numbers
+std::optional<double> curve_widget(const char* id, const Plot& plot, Range y, float height_pixels);
 
 /// Draws the plot as plot_widget() does, with its title, and returns it as an image. Call it between Gui::begin() and
 /// Gui::draw(). Throws std::runtime_error if the graphics driver cannot draw an image of this size.
