@@ -390,7 +390,9 @@ void BreedingPanel::build_transport(const Gui& gui) {
 }
 
 void BreedingPanel::take_keys() {
-    if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) || ImGui::IsAnyItemActive()) {
+    // Enter in a field ends the input; it must not start to play as well.
+    const bool field_was_active = std::exchange(field_active_, ImGui::IsAnyItemActive());
+    if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) || field_active_ || field_was_active) {
         return;
     }
     if (pressed(ImGuiKey_LeftArrow)) {

@@ -73,6 +73,7 @@ class BreedingPanel : public Panel {
     bool betting_ = false;     // the user bets before the first pick
     bool bets_closed_ = false; // a pick of this breeding has been shown
     Bets bets_;
+    bool field_active_ = false; // a field was in use in the last frame
     bool theory_shown_ = false; // in a narrow panel: show the theory in place of the step
 
     GenerationHold hold_;
