@@ -88,7 +88,7 @@ void set(const Common& common, const SetOptions& options) {
         *command.add_parameters() = assignment;
     }
     if (options.at_generation || options.at_tick) {
-        caller.need_planned_changes();
+        caller.need("planned_changes", "plan changes of parameters");
     }
     if (options.at_generation) {
         command.set_at_generation(*options.at_generation);
@@ -177,7 +177,7 @@ void changes(const Common& common) {
 
 void cancel(const Common& common, std::uint64_t id) {
     Caller caller{common};
-    caller.need_planned_changes();
+    caller.need("planned_changes", "plan changes of parameters");
     v1::Request request;
     request.mutable_cancel_change()->set_world(common.world);
     request.mutable_cancel_change()->set_id(id);

@@ -283,13 +283,18 @@ void organism(const Common& common, const OrganismOptions& options) {
         if (info.alive()) {
             text += "alive, health " + fixed(info.health(), 1);
         } else {
-            text += info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned" : "starved";
+            text += info.cause_of_death() == v1::CAUSE_OF_DEATH_REMOVED    ? "removed"
+                    : info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned"
+                                                                           : "starved";
         }
         text += ", lived " + duration(info.lived_s()) + "\n  ate " + std::to_string(info.food_eaten()) + " food and " +
                 std::to_string(info.poison_eaten()) + " poison\n";
         if (info.alive()) {
             text += "  at " + fixed(info.x_px(), 1) + ", " + fixed(info.y_px(), 1) + " px, moving " +
                     fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s\n";
+        }
+        if (info.has_placed_tick()) {
+            text += "  placed after tick " + std::to_string(info.placed_tick()) + " of its generation\n";
         }
         text += "  radius " + fixed(info.radius_px(), 2) + " px, mass " + fixed(info.mass_kg(), 2) + " kg\n";
         if (info.parents_size() > 0) {

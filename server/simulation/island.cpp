@@ -13,12 +13,14 @@ namespace evod::simulation {
 namespace {
 
 // The kinds of entities in the state hash, except organisms. The hashes of every run depend on these numbers.
-enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
+enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5, PlacedKind = 6 };
 
 constexpr std::size_t organisms_per_block = 1024;
 /// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
 /// so large a float.
 constexpr float health_reachable = 0x1p38f;
+/// No parameter allows a gene above this value.
+constexpr float gene_reachable = 10'000;
 
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
     constexpr physics::Integrator integrators[] = {
@@ -56,6 +58,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     EVOD_ASSERT(bred.genes.rows() == evolution::gene_count);
     EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
     born_ = std::move(bred);
+    placed_.clear();
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     fate_.begin_generation(organisms);
@@ -71,12 +74,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     std::vector<base::StateHash> hash_of_block((organisms + organisms_per_block - 1) / organisms_per_block);
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
         for (std::size_t id = range.begin; id < range.end; ++id) {
-            const float* genes = born_.genes.data() + id * evolution::gene_count;
-            hash_of_block[range.begin / organisms_per_block] += base::EntityHash{ChromosomeKind, id}
-                                                                    .add(genes[0], genes[1])
-                                                                    .add(genes[2], genes[3])
-                                                                    .add(genes[4], genes[5])
-                                                                    .finish();
+            hash_of_block[range.begin / organisms_per_block] += hash_of_birth(static_cast<std::uint32_t>(id));
         }
     });
     born_hash_ = {};
@@ -85,11 +83,24 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     }
     hash_ = born_hash_;
     if (parameters.fitness == parameters::FitnessFunction::Life) {
-        place(parameters, generation, executor);
+        fill(parameters, generation, executor);
     }
 }
 
-void Island::place(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
+base::StateHash Island::hash_of_birth(std::uint32_t id) const {
+    const float* genes = born_.genes.data() + std::size_t{id} * evolution::gene_count;
+    base::StateHash hash = base::EntityHash{ChromosomeKind, id}
+                               .add(genes[0], genes[1])
+                               .add(genes[2], genes[3])
+                               .add(genes[4], genes[5])
+                               .finish();
+    if (id >= bred_count()) {
+        hash += base::EntityHash{PlacedKind, id}.add(std::uint64_t{placed_tick(id)}).finish();
+    }
+    return hash;
+}
+
+void Island::fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
     const parameters::IslandPlan plan = parameters::island_plan(parameters);
     area_ = {physics::to_units(plan.width_px), physics::to_units(plan.height_px)};
     step_parameters_ = step_parameters(parameters);
@@ -375,7 +386,7 @@ bool Island::is_dying(std::uint32_t body) const {
 void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
     const std::uint32_t id = bodies_.id[body];
     fate_.cause[id] = cause;
-    fate_.lived_ticks[id] = tick;
+    fate_.lived_ticks[id] = tick - placed_tick(id);
     block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = no_body;
     bodies_.remove(body);
@@ -396,11 +407,11 @@ base::StateHash Island::hash_of_boxes() const {
 }
 
 IslandShape Island::shape() const {
-    return {.organisms = static_cast<std::uint32_t>(fate_.cause.size()),
+    return {.organisms = bred_count(),
             .has_bodies = has_bodies(),
             .crates = has_bodies() ? crate_count_ : 0,
-            .food = has_bodies() ? food_.size() : 0,
-            .poison = has_bodies() ? poison_.size() : 0};
+            .food = has_bodies() ? food_.first_count() : 0,
+            .poison = has_bodies() ? poison_.first_count() : 0};
 }
 
 IslandState Island::state(base::Executor& executor) const {
@@ -410,6 +421,12 @@ IslandState Island::state(base::Executor& executor) const {
     if (!has_bodies()) {
         return state;
     }
+    for (std::uint32_t id = bred_count(); id < fate_.cause.size(); ++id) {
+        state.placed.push_back({.genes = {}, .tick = placed_tick(id)});
+        std::ranges::copy(evolution::column(born_.genes, id), state.placed.back().genes.begin());
+    }
+    state.placed_food = food_.size() - food_.first_count();
+    state.placed_poison = poison_.size() - poison_.first_count();
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
         state.crates.push_back({boxes_.x[i], boxes_.y[i], boxes_.velocity_x[i], boxes_.velocity_y[i]});
     }
@@ -443,10 +460,18 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     };
     const Fate& fate = state.fate;
     const IslandShape own = shape();
-    if (fate.cause.size() != own.organisms || fate.lived_ticks.size() != own.organisms ||
-        fate.food_eaten.size() != own.organisms || fate.poison_eaten.size() != own.organisms ||
-        state.organisms.size() != body_of_.size()) {
+    const std::size_t organisms = own.organisms + state.placed.size();
+    if (fate.cause.size() != organisms || fate.lived_ticks.size() != organisms || fate.food_eaten.size() != organisms ||
+        fate.poison_eaten.size() != organisms || state.organisms.size() != (own.has_bodies ? organisms : 0) ||
+        state.placed.size() > placed_max || (!own.has_bodies && !state.placed.empty())) {
         return wrong("number of organisms");
+    }
+    for (const IslandState::Placed& placed : state.placed) {
+        const auto is_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
+        if (placed.tick > tick || !std::ranges::all_of(placed.genes, is_gene) ||
+            placed.genes[evolution::BodySize] <= 0) {
+            return wrong("a placed organism");
+        }
     }
     if (state.crates.size() != own.crates) {
         return wrong("number of crates");
@@ -459,7 +484,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
                body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
     };
     std::uint32_t alive = 0, starved = 0, poisoned = 0;
-    for (std::size_t id = 0; id < own.organisms; ++id) {
+    for (std::size_t id = 0; id < organisms; ++id) {
         const auto which = [&](const char* what) { return wrong(what + (" of organism " + std::to_string(id))); };
         if (fate.cause[id] == CauseOfDeath::Alive) {
             if (fate.lived_ticks[id] != 0) {
@@ -473,14 +498,16 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
             if (!can_move(organism)) {
                 return which("position or speed");
             }
-            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0)) {
+            const bool has_lived = tick > (id < own.organisms ? 0 : state.placed[id - own.organisms].tick);
+            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && has_lived)) {
                 return which("health");
             }
             continue;
         }
         starved += fate.cause[id] == CauseOfDeath::Starved;
         poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
-        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Poisoned || fate.lived_ticks[id] == 0 ||
+        const bool removed = fate.cause[id] == CauseOfDeath::Removed;
+        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Removed || (fate.lived_ticks[id] == 0 && !removed) ||
             fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
             return which("death");
         }
@@ -491,24 +518,59 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     if (!std::ranges::all_of(state.crates, can_move)) {
         return wrong("position or speed of a crate");
     }
+    if (state.food.size() != std::size_t{own.food} + state.placed_food ||
+        state.poison.size() != std::size_t{own.poison} + state.placed_poison) {
+        return wrong("number of food or poison items");
+    }
     if (!own.has_bodies) {
         return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("items without bodies");
     }
-    if (const char* fault = food_.fault_of(state.food, tick, alive == 0)) {
+    // On an island without living organisms, due items wait until an organism is placed and the next tick begins.
+    const bool resting = alive == 0 || !state.placed.empty();
+    if (const char* fault = food_.fault_of(state.food, tick, resting)) {
         return wrong(std::string{"food: "} + fault);
     }
-    if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0)) {
+    if (const char* fault = poison_.fault_of(state.poison, tick, resting)) {
         return wrong(std::string{"poison: "} + fault);
     }
     return {};
 }
 
-void Island::restore(const IslandState& state, std::uint32_t tick, base::Executor& executor) {
-    fate_ = state.fate;
+bool differ_only_by_commands(const IslandState& begun, const IslandState& state) {
+    const auto is_kept = [](const Items::Item& before, Items::Item now) {
+        now.due_tick = now.due_tick == Items::none ? before.due_tick : now.due_tick;
+        return now == before;
+    };
+    const auto are_kept = [&](const base::Column<Items::Item>& before, const base::Column<Items::Item>& now) {
+        return std::ranges::equal(before, std::span{now}.first(before.size()), is_kept);
+    };
+    for (std::size_t id = 0; id < begun.organisms.size(); ++id) {
+        if (state.fate.cause[id] != CauseOfDeath::Removed && state.organisms[id] != begun.organisms[id]) {
+            return false;
+        }
+    }
+    const auto has_eaten = [](std::uint32_t count) { return count > 0; };
+    return state.counts == begun.counts && state.crates == begun.crates && are_kept(begun.food, state.food) &&
+           are_kept(begun.poison, state.poison) && std::ranges::none_of(state.fate.food_eaten, has_eaten) &&
+           std::ranges::none_of(state.fate.poison_eaten, has_eaten);
+}
+
+void Island::restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
+                     base::Executor& executor) {
     counts_ = state.counts;
-    if (!has_bodies() || tick == 0) {
+    if (!has_bodies()) {
+        fate_ = state.fate;
         return;
     }
+    // Before the first tick, hash_ covers only the chromosomes and what commands have changed.
+    base::StateHash uncovered = whole_hash();
+    uncovered -= hash_;
+    std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
+    for (const IslandState::Placed& organism : state.placed) {
+        placed.push_back({{}, evolution::Chromosome{organism.genes.data()}, organism.tick});
+    }
+    append(placed, parameters);
+    fate_ = state.fate;
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
         boxes_.x[i] = state.crates[i].x;
         boxes_.y[i] = state.crates[i].y;
@@ -518,7 +580,6 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     food_.restore(state.food, executor);
     poison_.restore(state.poison, executor);
     // At the beginning of a generation, the index of every organism equals its id.
-    base::StateHash organisms;
     std::vector<std::uint32_t> gone;
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
         if (fate_.cause[id] != CauseOfDeath::Alive) {
@@ -531,7 +592,6 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
         bodies_.velocity_x[id] = organism.velocity_x;
         bodies_.velocity_y[id] = organism.velocity_y;
         living_.health[id] = organism.health;
-        organisms += hash_of_organism(bodies_, living_, id);
     }
     perception_.begin(bodies_, living_, food_, poison_);
     for (const std::uint32_t id : gone) {
@@ -541,7 +601,20 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
         living_.health[id] = -std::numeric_limits<float>::infinity();
     }
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    hash_ = whole_hash();
+    if (tick == 0) {
+        hash_ -= uncovered;
+    }
+}
+
+base::StateHash Island::whole_hash() const {
+    base::StateHash hash = born_hash_ + food_.hash() + poison_.hash() + hash_of_boxes();
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        if (!bodies_.is_void(body)) {
+            hash += hash_of_organism(bodies_, living_, body);
+        }
+    }
+    return hash;
 }
 
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -551,9 +624,10 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
-                fitness[id] = body_of_[id] == no_body
-                                  ? fate_.lived_ticks[id] * parameters.tick_s
-                                  : tick * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
+                const std::uint32_t placed = placed_tick(static_cast<std::uint32_t>(id));
+                fitness[id] = body_of_[id] == no_body ? fate_.lived_ticks[id] * parameters.tick_s
+                                                      : (tick - placed) * parameters.tick_s +
+                                                            static_cast<double>(living_.health[body_of_[id]]);
             }
         });
         return fitness;

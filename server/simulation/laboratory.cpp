@@ -1,5 +1,7 @@
 #include "server/simulation/laboratory.h"
 
+#include "server/simulation/entities.h"
+
 #include <algorithm>
 #include <functional>
 #include <type_traits>
@@ -48,7 +50,8 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
 template <class C>
 std::optional<Refusal> refusal_if_replay(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
-                                          std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
+                                          std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange> ||
+                                          std::is_same_v<C, PlaceEntities> || std::is_same_v<C, RemoveEntities>;
     if (!changes_what_happens || !entry.replay) {
         return std::nullopt;
     }
@@ -419,6 +422,25 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
                        .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}},
                        .reason = base::Reason::PlannedChangeNotFound};
     }
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const PlaceEntities& command) {
+    if (auto checked = check(entry.world, command); !checked) {
+        return checked.error();
+    }
+    Applied applied = applied_now(entry);
+    applied.placed = entry.world.place(command);
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const RemoveEntities& command) {
+    if (auto checked = check(entry.world, command); !checked) {
+        return checked.error();
+    }
+    Applied applied = applied_now(entry);
+    applied.removed = entry.world.remove(command);
+    collect_events(entry);
     return applied;
 }
 

@@ -89,6 +89,8 @@ struct Applied {
     std::optional<parameters::ParameterSet> parameters;
     // SetParameters: the planned change, with id 0 after a dry run. CancelChange: the cancelled change.
     std::optional<parameters::PlannedChange> planned = std::nullopt;
+    // PlaceEntities, RemoveEntities: the entities.
+    std::optional<EntityIds> placed = std::nullopt, removed = std::nullopt;
 };
 
 class Laboratory {
@@ -140,6 +142,8 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
+    base::Result<Applied> carry_out(Entry& entry, const PlaceEntities&);
+    base::Result<Applied> carry_out(Entry& entry, const RemoveEntities&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
     /// Returns why no world with that name can be created; nullopt if one can.

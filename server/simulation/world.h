@@ -11,6 +11,7 @@
 //
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
+//              Changes are those of parameters, and entities that were placed or removed.
 #pragma once
 
 #include "server/base/executor.h"
@@ -60,8 +61,9 @@ class GenerationRows {
 
 /// For each island, the founder of each organism, by id: the ancestor in the first generation that is found by
 /// following first parents, also across islands. Founders are numbered from 0, island after island. Not part of the
-/// state; empty if unknown.
+/// state; empty if unknown. The founder of an organism that was placed is `no_founder`.
 using Founders = std::vector<std::vector<std::uint32_t>>;
+constexpr std::uint32_t no_founder = ~0U;
 
 class World {
   public:
@@ -148,18 +150,27 @@ class World {
     /// time that its Effect states.
     void request_parameters(const parameters::Parameters& requested);
 
+    /// Places entities between two ticks, or removes them. check() must have accepted the command (entities.h). Returns
+    /// the ids of the entities.
+    EntityIds place(const PlaceEntities& command);
+    EntityIds remove(const RemoveEntities& command);
+    /// Whether this is the first moment of a generation, and nothing has been placed or removed in it.
+    bool is_as_begun() const;
+
     bool generation_over() const { return generation_over_; }
     /// Returns the termination criterion that holds with the active parameters at the end of a generation; during a
     /// generation, Running.
     evolution::Outcome outcome() const;
 
-    /// The opening of the present generation. Island::born() contains its organisms.
+    /// The opening of the present generation. Island::bred() contains its organisms.
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
-    /// The founders of the present generation. Empty if this world began with a later generation and received no
+    /// The founders of the organisms in Island::born(). Empty if this world began with a later generation and received no
     /// founders.
     const Founders& founders() const { return founders_; }
+    /// The founders of the organisms in Island::bred().
+    Founders founders_of_bred() const;
     /// The founders of the organisms of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.

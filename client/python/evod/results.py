@@ -68,6 +68,7 @@ class CauseOfDeath(_State):
 
     STARVED = world_pb2.CAUSE_OF_DEATH_STARVED
     POISONED = world_pb2.CAUSE_OF_DEATH_POISONED
+    REMOVED = world_pb2.CAUSE_OF_DEATH_REMOVED  #: `World.remove` removed it
 
 
 class Choice(_State):
@@ -277,12 +278,24 @@ class OrganismInfo(_Result):
     cause_of_death: CauseOfDeath | None  #: None: the organism is alive
     food_eaten: int
     poison_eaten: int
-    parents: tuple[int, ...]  #: ids in the previous generation; () in the first generation
+    parents: tuple[int, ...]  #: ids in the previous generation; () in the first generation and for a placed organism
     choice: Choice | None  #: the action in the next tick; None: it does not act
     force_x: float  #: force in the next tick, kg px/s²
     force_y: float
     target_x_px: float  #: position of the food or poison that it seeks or flees; its own position if it wanders
     target_y_px: float
+    placed_tick: int | None  #: the tick of its generation after which it was placed; None: it was bred
+
+
+@dataclasses.dataclass(frozen=True)
+class EntityIds(_Result):
+    """The items and organisms that `World.place` has placed or `World.remove` has removed."""
+
+    island: int
+    generation: int  #: the ids belong to this generation
+    food: tuple[int, ...]  #: ids in the order of the call
+    poison: tuple[int, ...]
+    organisms: tuple[int, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -383,7 +396,7 @@ _CLASSES: Mapping[str, type[Any]] = {
     kind.__name__: kind
     for kind in (Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
-} | {"Replay": ReplayRange}  # fmt: skip
+} | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {
     kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, MutationKind, Outcome, RunState, StorageState)
 }
