@@ -175,17 +175,20 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
             draw_items(*snapshot, camera, styles);
             discs_.clear();
             add_discs(organisms, discs_);
-            Chosen chosen;
-            if (!island_view.options.of_all) {
-                chosen.emplace();
-                for (const auto& index : {highlighted.pointed_at, highlighted.selected}) {
-                    if (index && *index < discs_.size()) {
-                        chosen->push_back(*index);
+            const auto chosen = [&](Which which) {
+                Chosen indices;
+                if (which == Which::Pointed) {
+                    indices.emplace();
+                    for (const auto& index : {highlighted.pointed_at, highlighted.selected}) {
+                        if (index && *index < discs_.size()) {
+                            indices->push_back(*index);
+                        }
                     }
                 }
-            }
+                return indices;
+            };
             painter_.clip(on_screen(camera, snapshot->about));
-            draw_radii(*organisms.entities, camera, island_view, chosen);
+            draw_radii(*organisms.entities, camera, island_view, chosen(island_view.options.radii));
             draw_trails(*snapshot, camera, island_view);
             const double behind_s =
                 view.previous() ? snapshot->about.simulated_s() - view.previous()->about.simulated_s() : 0;
@@ -193,7 +196,7 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
             painter_.clip_to_viewport();
             draw_organisms(*organisms.entities, camera, island_view);
             painter_.clip(on_screen(camera, snapshot->about));
-            draw_forces(*organisms.entities, camera, island_view, chosen);
+            draw_forces(*organisms.entities, camera, island_view, chosen(island_view.options.forces));
             painter_.clip_to_viewport();
         }
         const auto highlight = [&](std::optional<std::size_t> index, Layer& layer, const ShapeStyle& style) {
@@ -289,7 +292,7 @@ void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const
 void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
                                 const Chosen& chosen) {
     const Population* population = island_view.population();
-    if (!island_view.options.radii || population == nullptr || !shows_details(camera)) {
+    if (island_view.options.radii == Which::None || population == nullptr || !shows_details(camera)) {
         return;
     }
     const Styles& styles = styles_of(island_view.options.look);
@@ -307,7 +310,7 @@ void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& 
 void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
                                  const Chosen& chosen) {
     const Population* population = island_view.population();
-    if (!island_view.options.forces || population == nullptr || !shows_details(camera)) {
+    if (island_view.options.forces == Which::None || population == nullptr || !shows_details(camera)) {
         return;
     }
     arrow_lines_.clear();

@@ -13,7 +13,7 @@ constexpr double dots_radius_pixels = 2; // organisms smaller than this are stre
 
 ViewOptions default_options(Look look) {
     const bool vivid = look.skin == Skin::Vivid;
-    return {.look = look, .trails = vivid, .flashes = vivid, .radii = vivid};
+    return {.look = look, .trails = vivid, .flashes = vivid, .radii = vivid ? Which::Pointed : Which::None};
 }
 
 // ---- the region ------------------------------------------------------------------------------------------------
@@ -50,7 +50,7 @@ void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::
     if (!in_part_) {
         return;
     }
-    const bool details_of_all = options.of_all && (options.radii || options.forces) && shows_details(camera);
+    const bool details_of_all = (options.radii == Which::All || options.forces == Which::All) && shows_details(camera);
     const bool no_single_organism_matters =
         options.colour_by == ColourBy::Nothing && !details_of_all && !world.feed.selected();
     const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
@@ -78,11 +78,12 @@ PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
 }
 
 bool IslandView::needs_population(bool points_at) const {
-    const bool any_chosen = options.of_all || points_at || (organism_history_ && !organism_history_->ended());
-    const bool forces = options.forces && any_chosen;
+    const bool any_pointed = points_at || (organism_history_ && !organism_history_->ended());
+    const auto drawn = [&](Which which) { return which == Which::All || (which == Which::Pointed && any_pointed); };
+    const bool forces = drawn(options.forces);
     const bool current_needed =
-        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage ||
-        (options.radii && any_chosen) || forces ||
+        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || drawn(options.radii) ||
+        forces ||
         (organism_history_ && (organism_history_->waits_for_children() ||
                                (!organism_history_->ended() && organism_history_->ranges().empty())));
     if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {

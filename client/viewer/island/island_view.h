@@ -11,15 +11,24 @@
 #include "client/viewer/world/population_poll.h"
 #include "client/viewer/world/viewed_world.h"
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace evod::viewer {
+
+/// The organisms of which radii or forces are drawn. Pointed: the one at the mouse and the selected one.
+enum class Which : std::uint8_t { None, Pointed, All };
+constexpr std::array<std::string_view, 3> which_names{"none", "at the mouse or selected", "all"};
+inline Which next(Which which) {
+    return static_cast<Which>((static_cast<std::size_t>(which) + 1) % which_names.size());
+}
 
 /// The settings of the View panel: which parts of an island are drawn, and how.
 struct ViewOptions {
@@ -28,8 +37,7 @@ struct ViewOptions {
     std::size_t gene = 0; // index of the gene that colours organisms, in the world's list of genes
     palette::Ramp ramp = palette::Ramp::Violet;
     bool trails = true, flashes = true;
-    bool radii = true, forces = false;
-    bool of_all = false; // radii and forces of all organisms; otherwise of the organisms pointed at and selected
+    Which radii = Which::Pointed, forces = Which::None;
     bool density = true; // draw densities in place of organisms that are too many to see
     bool minimap = true; // show the minimap while part of the island is out of sight
     friend bool operator==(const ViewOptions&, const ViewOptions&) = default;

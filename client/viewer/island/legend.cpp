@@ -65,16 +65,16 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
         break;
     }
     const bool needs_population = island_view.options.colour_by == ColourBy::Gene ||
-                                  island_view.options.colour_by == ColourBy::Lineage || island_view.options.radii ||
-                                  island_view.options.forces;
+                                  island_view.options.colour_by == ColourBy::Lineage ||
+                                  island_view.options.radii == Which::All || island_view.options.forces != Which::None;
     if (needs_population && population == nullptr && !island_view.problem().empty()) {
         legend.entries.push_back({palette::unknown, island_view.problem()});
     }
-    if (island_view.options.radii && island_view.options.of_all && population != nullptr) {
+    if (island_view.options.radii == Which::All && population != nullptr) {
         legend.entries.push_back({{}, "perception radius for food", &Styles::food_radius});
         legend.entries.push_back({{}, "perception radius for poison", &Styles::poison_radius});
     }
-    if (island_view.options.forces && population != nullptr) {
+    if (island_view.options.forces != Which::None && population != nullptr) {
         const palette::IslandColours& colours = palette::of(island_view.options.look);
         legend.entries.push_back({colours.seeks, "seeks food", &Styles::arrow});
         legend.entries.push_back({colours.flees, "flees from poison", &Styles::arrow});

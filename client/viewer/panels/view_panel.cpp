@@ -92,10 +92,8 @@ void ViewPanel::build(Context& context) {
     widgets::checkbox("trails of the last 3 simulated seconds (T)", island_view.options.trails);
     widgets::checkbox("flashes of meals and deaths", island_view.options.flashes);
     ImGui::Separator();
-    widgets::checkbox("perception radii of food and poison (V)", island_view.options.radii);
-    widgets::checkbox("forces and their targets (G)", island_view.options.forces);
-    widgets::checkbox("radii and forces of all organisms", island_view.options.of_all);
-    widgets::explain("Otherwise of the organisms that the mouse points at and that you have selected.");
+    choose("perception radii (V)", which_names, island_view.options.radii);
+    choose("forces (G)", which_names, island_view.options.forces);
     ImGui::Separator();
     widgets::checkbox("density map where organisms are too many", island_view.options.density);
     widgets::checkbox("minimap while zoomed in", island_view.options.minimap);

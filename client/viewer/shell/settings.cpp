@@ -45,8 +45,9 @@ void read_line(SidebarSettings& settings, const Field& field) {
 constexpr std::array<std::string_view, 4> colourings{"nothing", "gene", "health", "lineage"}; // by ColourBy
 
 constexpr std::pair<std::string_view, bool ViewOptions::*> switches[] = {
-    {"trails", &ViewOptions::trails},   {"flashes", &ViewOptions::flashes}, {"radii", &ViewOptions::radii},
-    {"forces", &ViewOptions::forces},   {"of_all", &ViewOptions::of_all},   {"density", &ViewOptions::density},
+    {"trails", &ViewOptions::trails},
+    {"flashes", &ViewOptions::flashes},
+    {"density", &ViewOptions::density},
     {"minimap", &ViewOptions::minimap},
 };
 
@@ -73,6 +74,10 @@ void read_line(ViewOptions& view, const Field& field) {
         read_name(colourings, field.value, view.colour_by);
     } else if (field.name == "palette") {
         read_name(ramp_names(), field.value, view.ramp);
+    } else if (field.name == "radii") {
+        read_name(which_names, field.value, view.radii);
+    } else if (field.name == "forces") {
+        read_name(which_names, field.value, view.forces);
     } else if (field.name == "gene") {
         view.gene = std::strtoul(field.value.c_str(), nullptr, 10);
     }
@@ -86,7 +91,8 @@ std::string text_of(const ViewOptions& view) {
     std::string text = "skin=" + name(skin_names, view.look.skin) +
                        "\nbackground=" + name(background_names, view.look.background) +
                        "\ncolour_by=" + name(colourings, view.colour_by) + "\ngene=" + std::to_string(view.gene) +
-                       "\npalette=" + std::string{palette::name_of(view.ramp)} + "\n";
+                       "\npalette=" + std::string{palette::name_of(view.ramp)} +
+                       "\nradii=" + name(which_names, view.radii) + "\nforces=" + name(which_names, view.forces) + "\n";
     for (const auto& [name, shown] : switches) {
         text.append(name).append(view.*shown ? "=1\n" : "=0\n");
     }

@@ -184,9 +184,11 @@ void Window::carry_out(Action action) {
     case Action::NextColouring:
         return island_view.next_colouring();
     case Action::Radii:
-        return toggle(island_view.options.radii);
+        island_view.options.radii = next(island_view.options.radii);
+        return;
     case Action::Forces:
-        return toggle(island_view.options.forces);
+        island_view.options.forces = next(island_view.options.forces);
+        return;
     case Action::Trails:
         return toggle(island_view.options.trails);
     case Action::Follow:

@@ -167,7 +167,7 @@ def instructions(bench):
 
 def drawing(bench):
     """Milliseconds of the drawing thread per frame, by number of organisms, drawn in software under Xvfb: with OpenGL when the
-    whole island is visible, and without it for a frame with a new snapshot, at the slower of two zooms."""
+    whole island is visible, and without it for a frame with a new snapshot, at the slower of two zooms; in the slower skin."""
     if not bench.program("viewer_frame_bench").exists():
         return []
     run = subprocess.run([bench.root / "tests/system/viewer/under_xvfb.sh", bench.program("viewer_frame_bench"),

@@ -115,7 +115,7 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
 TEST_F(IslandViewTest, ForceLinesLeadToTheTargets) {
     const sf::Image before = draw_when([&] { return world().feed.snapshot() != nullptr; });
     EXPECT_EQ(count(before, palette::seeks), 0u);
-    island_view().options.forces = island_view().options.of_all = true;
+    island_view().options.forces = Which::All;
     const sf::Image image = draw_with_population();
     EXPECT_GT(count(image, palette::seeks), 30u);
     // Organism 9 at (790, 590) has its target at (9, 18): a line across the island, one pixel wide.
@@ -134,7 +134,7 @@ TEST_F(IslandViewTest, ForceLinesLeadToTheTargets) {
 
 TEST_F(IslandViewTest, RadiiAreRingsOfTheGenesSize) {
     const sf::Image before = draw_when([&] { return world().feed.snapshot() != nullptr; });
-    island_view().options.radii = island_view().options.of_all = true;
+    island_view().options.radii = Which::All;
     const sf::Image image = draw_with_population();
     // Organism 4 at (500, 300.5) perceives food up to 104 px away; nothing else is drawn inside.
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {-0.6, 0.8}}) {

@@ -204,17 +204,17 @@ TEST_F(IslandViewTest, RestartsWhenTheGenerationEndsBetweenPages) {
 
 TEST_F(IslandViewTest, RequestsForcesAgainWhileTheWorldRuns) {
     show(4, 100);
-    island_view.options.forces = island_view.options.of_all = true;
+    island_view.options.forces = Which::All;
     answer_page(3, 4);
     until([&] { return island_view.population() != nullptr; });
     show(4, 110);
     answer_page(3, 4);
-    island_view.options.forces = false;
+    island_view.options.forces = Which::None;
 }
 
 TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
     show(4, 100);
-    island_view.options.of_all = true; // radii are on by default
+    island_view.options.radii = Which::All;
     session->refuse(next_request().request_id(), evod::v1::CODE_UNIMPLEMENTED, "what?");
     until([&] { return !island_view.problem().empty(); });
     EXPECT_THAT(island_view.problem(), HasSubstr("sends no genes"));
@@ -225,7 +225,7 @@ TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
 
 TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     show(4, 100);
-    island_view.options.of_all = true; // radii are on by default
+    island_view.options.radii = Which::All;
     const auto request = next_request();
     evod::v1::ServerMessage message;
     message.mutable_response()->set_request_id(request.request_id());
@@ -356,7 +356,7 @@ TEST_F(IslandViewTest, ForgetsEverythingWithAnotherRun) {
 
 TEST_F(IslandViewTest, DropsRequestsOfTheLiveWorldInAReplay) {
     show(4, 100);
-    island_view.options.of_all = true; // radii are on by default
+    island_view.options.radii = Which::All;
     const auto unanswered = next_request();
     EXPECT_EQ(unanswered.get_population().world(), "default");
     show_replay();
@@ -424,7 +424,9 @@ TEST_F(IslandViewTest, RequestsRadiiWhileTheMousePointsAtAnOrganism) {
 
 TEST(IslandView, TheClassicSkinAddsNothingByDefault) {
     const ViewOptions classic = default_options({Skin::Classic});
-    EXPECT_FALSE(classic.trails || classic.flashes || classic.radii || classic.forces);
+    EXPECT_FALSE(classic.trails || classic.flashes);
+    EXPECT_EQ(classic.radii, Which::None);
+    EXPECT_EQ(classic.forces, Which::None);
     const ViewOptions vivid = default_options({Skin::Vivid, Background::Light});
     EXPECT_EQ(vivid.look, (Look{Skin::Vivid, Background::Light}));
     EXPECT_EQ(default_options({}), ViewOptions{});

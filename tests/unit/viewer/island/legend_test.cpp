@@ -40,13 +40,13 @@ TEST(Legend, ShowsTheScaleOfDrawnDensities) {
 TEST(Legend, ExplainsNothingThatNeedsAMissingPopulation) {
     IslandView view;
     view.options.colour_by = ColourBy::Lineage;
-    view.options.radii = view.options.forces = true;
+    view.options.radii = view.options.forces = Which::All;
     EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
 }
 
 TEST(Legend, ExplainsRadiiOnlyIfTheyAreShownOfAll) {
     IslandView view;
-    EXPECT_TRUE(view.options.radii);
+    EXPECT_EQ(view.options.radii, Which::Pointed);
     EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
 }
 
