@@ -140,8 +140,9 @@ double Panels::width(unsigned window_pixels, double scale) const {
 
 void Panels::build(Panel::Context context, Rectangle sidebar) {
     keyboard_.reset();
-    history_.update(context.world, context.now);
-    context.history = &history_;
+    RunHistory& history = histories_.of(context.world);
+    history.update(context.world, context.now);
+    context.history = &history;
     context.freezer = &freezer_;
     context.new_world = &new_world_;
     context.tool = &tool_;

@@ -102,7 +102,7 @@ class Panels {
     SidebarSettings settings_;
     std::vector<Place> places_;
     std::vector<std::string_view> titles_;
-    RunHistory history_; // of the focused world
+    RunHistories histories_;
     Summary summary_;
     Freezer freezer_;
     NewWorldDialog new_world_;

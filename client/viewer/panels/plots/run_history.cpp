@@ -52,4 +52,14 @@ void RunHistory::send_query(ViewedWorld& world, Poll::Clock::time_point now) {
     }
 }
 
+RunHistory& RunHistories::of(const ViewedWorld& world) {
+    if (entries_[0].world != &world) {
+        std::swap(entries_[0], entries_[1]);
+    }
+    if (entries_[0].world != &world) {
+        entries_[0] = {&world, std::make_unique<RunHistory>()};
+    }
+    return *entries_[0].history;
+}
+
 } // namespace evod::viewer

@@ -1,14 +1,16 @@
 // RunHistory: keeps a History up to date with the server, with one query at a time.
 //
-// Owner        Panels, for the focused world; PlotsPanel, for the world it compares with.
+// Owner        RunHistories of Panels, for the worlds on the screen; PlotsPanel, for the world it compares with.
 // Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/plots/history.h"
 #include "client/viewer/world/poll.h"
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace evod::viewer {
@@ -38,6 +40,21 @@ class RunHistory {
     std::uint64_t place_ = 0; // place whose events have been processed
     std::uint64_t connected_count_ = 0;
     int frame_ = -1; // last frame number of Dear ImGui
+};
+
+/// The histories of the two worlds that had the focus last. The window shows at most two worlds, so a history is not
+/// requested again when the focus moves to the other half and back.
+class RunHistories {
+  public:
+    /// Returns the history of a world. The reference is valid until two other worlds have been passed in.
+    RunHistory& of(const ViewedWorld& world);
+
+  private:
+    struct Entry {
+        const ViewedWorld* world = nullptr; // only compared
+        std::unique_ptr<RunHistory> history;
+    };
+    std::array<Entry, 2> entries_; // the world that had the focus last is the first
 };
 
 } // namespace evod::viewer
