@@ -40,8 +40,7 @@ std::optional<simulation::Command> command_of(const std::string& request) {
 
 /// Returns the number of the last journal entry that a beginning of a generation, or a checkpoint of it, contains.
 std::uint64_t last_entry_before(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
-                                const run_file::StoredCheckpoint* checkpoint,
-                                std::span<const WorldChange> changes) {
+                                const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes) {
     if (checkpoint != nullptr) {
         // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
         // entry.

@@ -421,7 +421,7 @@ class Export(Case):
         self.assertIn(f", built from {build} |", (pathlib.Path(self.folder) / "bundle/REPEAT.md").read_text())
         folder = self.bundle(changed, "small.evod")
         self.assertEqual(self.repeat(folder), 2)
-        self.assertIn("Parameters were changed 2 times during the run", (folder / "REPEAT.md").read_text())
+        self.assertIn("The world was changed 2 times during the run", (folder / "REPEAT.md").read_text())
         self.assertIn("exists already", evod("export", plain, "--bundle", folder, status=1))
         self.assertIn("--format: got jsonl, allowed only csv with --bundle",
                       evod("export", plain, "--bundle", self.folder + "/lines", "--format", "jsonl", status=1))
