@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
-#include <unordered_set>
 #include <utility>
 
 namespace evod::simulation {
@@ -191,7 +191,7 @@ std::optional<Refusal> refusal_of_counts(const Island& island, const PlaceEntiti
 template <class Exists>
 void check_ids(const char* list, const char* allowed, std::span<const std::uint32_t> ids, Exists&& exists,
                Violations& violations) {
-    std::unordered_set<std::uint32_t> seen;
+    std::set<std::uint32_t> seen;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const char* expected = !exists(ids[i]) ? allowed : seen.insert(ids[i]).second ? nullptr : "each id once";
         if (expected != nullptr) {

@@ -3,6 +3,7 @@ that programs get wrong. Each is done, or refused with the field that is at faul
 afterwards the world is equal to an untouched one. EVOD and EVOCTL name the programs, MESSAGES the folder of the
 message classes."""
 import pathlib
+import re
 import struct
 import sys
 import unittest
@@ -189,7 +190,7 @@ class Walk(access.Access):
         if refused is not None:
             self.assertEqual(status.code != OK, refused, said)
         if status.code == INVALID and "is not a" not in status.message:  # for messages that can be parsed
-            named = [violation.field for violation in status.violations]
+            named = [re.sub(r"\[\d+\]", "", violation.field) for violation in status.violations]  # x[2].y: x.y
             # the field is named as the parameter or gene that it sets
             if ".parameters." in path or ".population." in path or ".schedule." in path:
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
