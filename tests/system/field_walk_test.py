@@ -22,6 +22,8 @@ LONG = 1 << 20  # bytes; together with the rest of the message longer than a fra
 BASE = {
     "create_world": c.CreateWorld(name="made", seed=1),
     "fork_world": c.ForkWorld(name="made"),
+    "place": c.Place(items=[c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=640, y_px=360)]),
+    "remove": c.Remove(food=[0]),
     "set_speed": c.SetSpeed(speed=plain.w.Speed(real_time_factor=1)),
     "subscribe_snapshots": c.SubscribeSnapshots(rate_hz=1),
     "seek": c.Seek(to=c.RunMoment(tick=0)),
@@ -191,8 +193,8 @@ class Walk(access.Access):
             self.assertEqual(status.code != OK, refused, said)
         if status.code == INVALID and "is not a" not in status.message:  # for messages that can be parsed
             named = [re.sub(r"\[\d+\]", "", violation.field) for violation in status.violations]  # x[2].y: x.y
-            # the field is named as the parameter or gene that it sets
-            if ".parameters." in path or ".population." in path or ".schedule." in path:
+            # the field is named as the parameter or gene that it sets; an item or organism may lack other fields
+            if re.search(r"\.(parameters|population|schedule|items|organisms)\.", path):
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
             else:
                 self.assertTrue([x for x in named if path == x or path.startswith(x + ".")], said)
