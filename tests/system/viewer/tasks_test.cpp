@@ -90,12 +90,12 @@ key Space)",
 }
 
 TEST_F(TasksTest, CompareTwoWorlds) {
-    server.make_world({.name = "second"});
+    server.make_world({.name = "second", .parameters = {}});
     play("key B", "click right/at 0.5,0.5");
 }
 
 TEST_F(TasksTest, CompareTheCurvesOfTwoWorlds) {
-    server.make_world({.name = "second"});
+    server.make_world({.name = "second", .parameters = {}});
     server.run_generations("second", 3);
     play(R"(click Tabs/Plots
 click compare
