@@ -35,6 +35,7 @@ constexpr Sentence sentences[] = {
     {"crossover", "uniform", "Each gene comes from either parent with the same chance."},
     {"crossover", "single_point", "The chromosomes of both parents are cut at one place and joined crosswise."},
     {"crossover", "multi_point", "The chromosomes of both parents are cut at several places and joined alternately."},
+    {"crossover", "blend", "Each gene is a weighted mean of both parents' genes, with one random weight per pair."},
     {"crossover", "none", "The children are copies of their parents."},
     {"rearranging", "none", "Values of genes are not exchanged."},
     {"rearranging", "swap", "Two genes exchange their values."},

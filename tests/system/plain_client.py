@@ -615,7 +615,8 @@ class Requests(WithServer):
             if "world" not in kind.DESCRIPTOR.fields_by_name:
                 continue
             extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1},
-                     "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)},
+                     "place": {"items": [c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=640, y_px=360)]},
+                     "remove": {"food": [0]}, "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)},
                      "export_run": {"table": c.RUN_TABLE_EVENTS, "format": c.TEXT_FORMAT_CSV}}
             for world in ("nowhere", "no\nwhere", "ü" * 1000):
                 request = {field.name: kind(world=world, **extra.get(field.name, {}))}

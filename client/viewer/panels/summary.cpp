@@ -19,6 +19,7 @@ namespace evod::viewer {
 namespace {
 
 constexpr float curve_height = 84; // pixels at scale 1
+constexpr float text_lines = 5;    // room for the sentences, so that the widgets below them stay in place
 
 /// What a click in an island does, by MouseTool::Kind.
 constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
@@ -52,11 +53,13 @@ void Summary::build_experiment(Panel::Context& context) {
     ViewedWorld& world = context.world;
     experiment_.update(world, context.now);
     ImGui::PushFont(&context.gui.label());
+    const float end = ImGui::GetCursorPosY() + text_lines * ImGui::GetTextLineHeight();
     if (experiment_.text().empty()) {
         widgets::small_text(world.feed.control().known() ? "Loading the experiment …" : "No world is open yet.");
     } else {
         widgets::small_text(experiment_.text(), palette::text);
     }
+    ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), end));
     build_marks(context.island_view.options.look, context.gui);
     ImGui::PopFont();
 }

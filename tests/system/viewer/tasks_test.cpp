@@ -62,7 +62,7 @@ struct TasksTest : testing::Test {
 
 TEST_F(TasksTest, ChangeTheSelection) {
     play(R"(click Selection
-click "Selection: tournament"
+click "selection: tournament"
 click Apply)",
          "wait widget \"Revision 2\"");
     const auto set = server.parameters("default");
