@@ -221,7 +221,7 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     context.gui.widget_positions().begin_panel("Sidebar");
     summary_.build_title(context.world);
     build_corner(scale);
-    constexpr float summary_height = 330; // with the tabs, in pixels at scale 1
+    constexpr float summary_height = 345; // with the tabs, in pixels at scale 1
     const float wanted_height = places_[tab()].detached ? 0 : places_[tab()].panel->height_min();
     summary_.build(context, static_cast<float>(sidebar.height) >= (wanted_height + summary_height) * scale);
     ImGui::Separator();
