@@ -24,6 +24,7 @@ struct Legend {
         std::string text;
     };
     std::optional<Ramp> ramp;
+    std::string title; // of the entries; may be empty
     std::vector<Entry> entries;
     bool empty() const { return !ramp && entries.empty(); }
 };

@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
+#include "client/viewer/panels/family_tree/family_tree_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
 #include "client/viewer/panels/physics/physics_panel.h"
@@ -47,6 +48,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<PlotsPanel>()});
     places_.push_back({std::make_unique<BreedingPanel>()});
     places_.push_back({std::make_unique<PhysicsPanel>()});
+    places_.push_back({std::make_unique<FamilyTreePanel>()});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }
@@ -240,7 +242,7 @@ void Panels::build_tabs(const Gui& gui) {
         ImGui::PopStyleColor(2);
         widgets::mark(titles_[i]);
         widgets::explain(std::string{titles_[i]} + " (" + panel_key(i) + ")");
-        if (i % tabs_per_row + 1 < tabs_per_row) {
+        if (i % tabs_per_row + 1 < tabs_per_row && i + 1 < places_.size()) {
             ImGui::SameLine();
         }
     }
