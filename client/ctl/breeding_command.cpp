@@ -112,6 +112,8 @@ std::string name_of(v1::MutationKind kind) {
         return "creep";
     case v1::MUTATION_KIND_RESET:
         return "reset";
+    case v1::MUTATION_KIND_SCALE:
+        return "scale";
     case v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case v1::MUTATION_KIND_CLAMP:
@@ -148,6 +150,9 @@ std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world
         std::string genes_of;
         for (int gene = 0; child && gene < d.genes_size(); ++gene) {
             genes_of += (d.from_second() >> gene & 1) != 0 ? '2' : '1';
+        }
+        if (d.second_share() > 0) {
+            genes_of = fixed(1 - d.second_share(), 3) + " of 1 + " + fixed(d.second_share(), 3) + " of 2";
         }
         table.add({std::to_string(d.id()),
                    child                                   ? "child"

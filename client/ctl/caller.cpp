@@ -138,11 +138,11 @@ v1::Storage Caller::storage() {
     return welcome_.storage(); // there is no world, so none can wait for the disk
 }
 
-void Caller::need_planned_changes() const {
+void Caller::need(const std::string& feature, const std::string& what) const {
     const auto& features = welcome_.features();
-    if (std::none_of(features.begin(), features.end(), [](const auto& name) { return name == "planned_changes"; })) {
-        throw Stop{ExitCode::Refused, "this server cannot plan changes of parameters: it is evod " +
-                                          welcome_.server_version() + ", which is older than this evoctl"};
+    if (std::find(features.begin(), features.end(), feature) == features.end()) {
+        throw Stop{ExitCode::Refused, "this server cannot " + what + ": it is evod " + welcome_.server_version() +
+                                          ", which is older than this evoctl"};
     }
 }
 

@@ -56,9 +56,10 @@ class Caller {
     /// Returns the current state of the server's storage.
     v1::Storage storage();
 
-    /// Throws Stop if the server does not support planned changes. Such a server would apply a planned change
-    /// immediately or ignore it.
-    void need_planned_changes() const;
+    /// Throws Stop if the server does not have a feature. An older server would ignore fields that it does not know.
+    ///
+    /// what  what the server cannot do without the feature: "plan changes of parameters".
+    void need(const std::string& feature, const std::string& what) const;
 
     core::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
@@ -107,6 +108,7 @@ inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1
 /// Each of these functions adds a group of subcommands to `app`.
 void add_query_commands(command_line::Command& app, const Common& common);
 void add_parameter_commands(command_line::Command& app, const Common& common);
+void add_place_commands(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
 void add_breeding_command(command_line::Command& app, const Common& common);
 void add_export_command(command_line::Command& app, const Common& common);

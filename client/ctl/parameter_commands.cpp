@@ -4,6 +4,8 @@
 #include "client/ctl/text.h"
 #include "proto/command_line/command.h"
 
+#include <algorithm>
+
 namespace evod::ctl {
 
 namespace {
@@ -88,7 +90,7 @@ void set(const Common& common, const SetOptions& options) {
         *command.add_parameters() = assignment;
     }
     if (options.at_generation || options.at_tick) {
-        caller.need_planned_changes();
+        caller.need("planned_changes", "plan changes of parameters");
     }
     if (options.at_generation) {
         command.set_at_generation(*options.at_generation);
@@ -177,7 +179,7 @@ void changes(const Common& common) {
 
 void cancel(const Common& common, std::uint64_t id) {
     Caller caller{common};
-    caller.need_planned_changes();
+    caller.need("planned_changes", "plan changes of parameters");
     v1::Request request;
     request.mutable_cancel_change()->set_world(common.world);
     request.mutable_cancel_change()->set_id(id);
@@ -195,10 +197,14 @@ void describe_one(const Common& common, const Registry& registry, const std::str
                                  : parameter->kind() == v1::PARAMETER_KIND_COUNT ? "a whole number"
                                  : parameter->kind() == v1::PARAMETER_KIND_FLAG  ? "true or false"
                                                                                  : "a choice";
+        std::string choices;
+        for (int i = 0; i < std::min(parameter->choices_size(), parameter->choice_help_size()); ++i) {
+            choices += "\n  " + parameter->choices(i) + ": " + parameter->choice_help(i);
+        }
         return parameter->name() + ": " + kind + "\n  " + parameter->help() + "\n  allowed       " +
                allowed(*parameter) + "\n  default       " + to_text(parameter->default_value()) +
                (parameter->unit().empty() ? "" : "\n  unit          " + parameter->unit()) + "\n  takes effect  " +
-               effect_of(*parameter) + "\n";
+               effect_of(*parameter) + choices + "\n";
     });
 }
 

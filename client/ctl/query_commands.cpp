@@ -1,4 +1,5 @@
 // Commands that only read: status, worlds, stats, history, organism, describe.
+#include "client/core/change_text.h"
 #include "client/core/history_csv.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
@@ -228,6 +229,7 @@ v1::History history_of(Caller& caller, const Common& common, const HistoryOption
                        "the server's history does not continue after generation " + std::to_string(*before)};
         }
         all.mutable_generations()->MergeFrom(history.generations());
+        all.mutable_changes()->MergeFrom(history.changes());
     } while (next);
     return all;
 }
@@ -255,8 +257,13 @@ void history(const Common& common, const HistoryOptions& options) {
         for (const auto& generation : all.generations()) {
             add_generation(table, generation);
         }
-        return all.generations().empty() ? std::string{"no such generation has ended, or its statistics were purged\n"}
-                                         : table.to_text();
+        std::string text = all.generations().empty()
+                               ? std::string{"no such generation has ended, or its statistics were purged\n"}
+                               : table.to_text();
+        for (const v1::AppliedChange& change : all.changes()) {
+            text += core::to_text(change) + "\n";
+        }
+        return text;
     });
 }
 
@@ -283,13 +290,18 @@ void organism(const Common& common, const OrganismOptions& options) {
         if (info.alive()) {
             text += "alive, health " + fixed(info.health(), 1);
         } else {
-            text += info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned" : "starved";
+            text += info.cause_of_death() == v1::CAUSE_OF_DEATH_REMOVED    ? "removed"
+                    : info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned"
+                                                                           : "starved";
         }
         text += ", lived " + duration(info.lived_s()) + "\n  ate " + std::to_string(info.food_eaten()) + " food and " +
                 std::to_string(info.poison_eaten()) + " poison\n";
         if (info.alive()) {
             text += "  at " + fixed(info.x_px(), 1) + ", " + fixed(info.y_px(), 1) + " px, moving " +
                     fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s\n";
+        }
+        if (info.has_placed_tick()) {
+            text += "  placed after tick " + std::to_string(info.placed_tick()) + " of its generation\n";
         }
         text += "  radius " + fixed(info.radius_px(), 2) + " px, mass " + fixed(info.mass_kg(), 2) + " kg\n";
         if (info.parents_size() > 0) {
@@ -354,7 +366,9 @@ void add_query_commands(command_line::Command& app, const Common& common) {
     stats.footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
     stats.action([&] { statistics(common, moment); });
 
-    auto& history_command = app.add_command("history", "Show the statistics of ended generations").group(group);
+    auto& history_command =
+        app.add_command("history", "Show the statistics of ended generations, and the changes of parameters")
+            .group(group);
     auto& options = history_command.keep(HistoryOptions{});
     history_command.add_flag("--csv", &options.csv, "Comma-separated values, with every column and the genes");
     history_command.add_option("--from", &options.from, "First generation; default: the oldest available generation")

@@ -1,6 +1,7 @@
 #include "client/ctl/refusal.h"
 
 #include "proto/command_line/command.h"
+#include "proto/text/violation_text.h"
 
 #include <algorithm>
 #include <array>
@@ -72,15 +73,8 @@ std::string name_of(std::string_view path, const command_line::Command* command)
 std::string refusal_text(const v1::Status& status, const command_line::Command* command) {
     std::string text;
     for (const v1::Violation& violation : status.violations()) {
-        text += (text.empty() ? "" : "\n") + name_of(violation.field(), command) + ": ";
-        const std::size_t suggestion = violation.allowed().find("; did you mean");
-        if (suggestion != std::string::npos) {
-            text += "unknown name" + violation.allowed().substr(suggestion) + "?";
-        } else if (violation.got() == "an unknown name") {
-            text += "unknown name, allowed " + violation.allowed();
-        } else {
-            text += "got " + violation.got() + ", allowed " + violation.allowed();
-        }
+        text += (text.empty() ? "" : "\n") + name_of(violation.field(), command) + ": " +
+                text::violation_text(violation.got(), violation.allowed());
     }
     // If the request is invalid, the message repeats the violations; otherwise it says what was looked for.
     return status.code() == v1::CODE_INVALID_ARGUMENT ? text : text + " (" + status.message() + ")";

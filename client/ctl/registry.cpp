@@ -1,7 +1,7 @@
 #include "client/ctl/registry.h"
 
 #include "client/ctl/text.h"
-#include "proto/command_line/suggestion.h"
+#include "proto/text/suggestion.h"
 
 #include <boost/throw_exception.hpp>
 
@@ -64,7 +64,7 @@ std::vector<std::string> Registry::names() const {
 }
 
 std::string Registry::unknown(std::string_view name) const {
-    return std::string{name} + ": unknown parameter" + command_line::did_you_mean(name, names());
+    return std::string{name} + ": unknown parameter" + text::did_you_mean(name, names());
 }
 
 Checked<std::vector<v1::ParameterAssignment>> Registry::assignments(const std::vector<std::string>& words) const {
@@ -126,28 +126,13 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_CHOICE: {
         const std::vector<std::string> choices{parameter.choices().begin(), parameter.choices().end()};
         if (std::ranges::find(choices, word) == choices.end()) {
-            return wrong(command_line::did_you_mean(word, choices));
+            return wrong(text::did_you_mean(word, choices));
         }
         value.set_choice(std::string{word});
         return value;
     }
     default:
         return Mistakes{{parameter.name() + " has a kind unknown to this evoctl, which is older than the server"}};
-    }
-}
-
-std::string to_text(const v1::ParameterValue& value) {
-    switch (value.kind_case()) {
-    case v1::ParameterValue::kReal:
-        return number_text(value.real(), text::Exponent::IfLong);
-    case v1::ParameterValue::kCount:
-        return std::to_string(value.count());
-    case v1::ParameterValue::kFlag:
-        return value.flag() ? "true" : "false";
-    case v1::ParameterValue::kChoice:
-        return value.choice();
-    default:
-        return "-";
     }
 }
 

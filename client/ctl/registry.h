@@ -1,6 +1,7 @@
 // Registry: the server's descriptions of its parameters. Also converts words of the command line into parameter values.
 #pragma once
 
+#include "client/core/change_text.h"
 #include "evod/v1/commands.pb.h"
 
 #include <boost/system/result.hpp>
@@ -45,8 +46,7 @@ class Registry {
 /// or false, off, no or 0. A choice is given by its name.
 Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& parameter, std::string_view word);
 
-/// Formats a value as a user types it: "0.15", "true", "roulette"; "-" if there is no value.
-std::string to_text(const v1::ParameterValue& value);
+using core::to_text; // formats a value as a user types it
 /// Returns the allowed values: "0 to 1", "true or false", "roulette, tournament".
 std::string allowed(const v1::ParameterDescription& parameter);
 /// Returns when a change of the parameter takes effect: "next tick", "next generation", "reset".

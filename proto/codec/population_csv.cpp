@@ -78,4 +78,21 @@ Result<std::vector<std::vector<float>>> read_population(std::istream& in) {
     return islands;
 }
 
+std::string population_text(const std::vector<std::vector<float>>& islands) {
+    std::string text = std::string{population_heading} + "\n";
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        const std::vector<float>& genes = islands[island];
+        for (std::size_t first = 0; first < genes.size(); first += population_genes) {
+            text += std::to_string(island) + "," + std::to_string(first / population_genes);
+            for (std::size_t gene = first; gene < first + population_genes; ++gene) {
+                std::array<char, 32> digits; // the longest float has 15 characters
+                text += ",";
+                text.append(digits.data(), std::to_chars(digits.begin(), digits.end(), genes[gene]).ptr);
+            }
+            text += "\n";
+        }
+    }
+    return text;
+}
+
 } // namespace evod::codec

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <istream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,5 +23,8 @@ constexpr std::size_t population_genes = 6;
 /// Reads the genes. The shape of the result is (islands, organisms · population_genes); the genes of an organism are
 /// adjacent. Does not check whether a world can start with them. Damage reads "line 3: got …, allowed …".
 Result<std::vector<std::vector<float>>> read_population(std::istream& in);
+
+/// Returns the text of a file with these genes, in the shape that read_population() returns.
+std::string population_text(const std::vector<std::vector<float>>& islands);
 
 } // namespace evod::codec

@@ -1,8 +1,8 @@
 #include "proto/command_line/completion.h"
 
 #include "proto/command_line/manual.h"
-#include "proto/command_line/suggestion.h"
 #include "proto/command_line/words.h"
+#include "proto/text/suggestion.h"
 
 #include <algorithm>
 #include <iostream>
@@ -198,7 +198,8 @@ int print_help(const Command& program, const std::vector<std::string>& words) {
             for (const Command& subcommand : command->commands()) {
                 names.push_back(subcommand.name());
             }
-            return program.reject("COMMAND: got " + word + ", allowed " + joined(names) + did_you_mean(word, names));
+            return program.reject("COMMAND: got " + word + ", allowed " + joined(names) +
+                                  text::did_you_mean(word, names));
         }
         command = next;
     }

@@ -1,7 +1,7 @@
 #include "proto/command_line/usage_error.h"
 
-#include "proto/command_line/suggestion.h"
 #include "proto/command_line/words.h"
+#include "proto/text/suggestion.h"
 
 #include <CLI/CLI.hpp>
 
@@ -35,13 +35,13 @@ std::vector<std::string> option_names(const CLI::App& command) {
 std::string unexpected(const std::string& word, const CLI::App& command) {
     if (word.starts_with('-')) {
         const std::string name = word.substr(0, word.find('='));
-        return name + ": unknown option" + did_you_mean(name, option_names(command));
+        return name + ": unknown option" + text::did_you_mean(name, option_names(command));
     }
     const std::vector<std::string> commands = subcommand_names(command);
     if (commands.empty() || !command.get_subcommands().empty()) {
         return word + ": unexpected argument";
     }
-    const std::string similar = did_you_mean(word, commands);
+    const std::string similar = text::did_you_mean(word, commands);
     return word + ": unknown command" + (similar.empty() ? "; commands are " + joined(commands) : similar);
 }
 

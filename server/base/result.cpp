@@ -51,13 +51,7 @@ std::string visible(std::string utf8) {
 } // namespace
 
 std::string to_text(const Violation& violation) {
-    if (violation.got == unknown_name) {
-        const std::size_t suggestion = violation.allowed.find("; did you mean");
-        return visible(violation.field + ": unknown name" +
-                       (suggestion == std::string::npos ? ", allowed " + violation.allowed
-                                                        : violation.allowed.substr(suggestion) + "?"));
-    }
-    return visible(violation.field + ": got " + violation.got + ", allowed " + violation.allowed);
+    return visible(violation.field + ": " + text::violation_text(violation.got, violation.allowed));
 }
 
 std::string to_text(const Refusal& refusal) {

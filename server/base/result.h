@@ -2,6 +2,8 @@
 // converted.
 #pragma once
 
+#include "proto/text/violation_text.h"
+
 #include <boost/system/result.hpp>
 
 #include <string>
@@ -54,6 +56,10 @@ enum class Reason {
     ResetImpossible = 41,
     IslandNotFound = 42,
     OrganismNotFound = 43,
+    GenerationOver = 44,
+    GenerationChanged = 45,
+    NoBodies = 46,
+    PlacedMax = 47,
     RunsNotKept = 50,
     MomentNotFound = 51,
     SeekSuperseded = 52,
@@ -92,7 +98,7 @@ struct Violation {
 };
 
 /// What Violation::got contains if `field` is a name that does not exist.
-inline constexpr const char* unknown_name = "an unknown name";
+using text::unknown_name;
 
 /// The error that is returned for a refused request. A refused request has changed nothing.
 struct Refusal {

@@ -115,12 +115,15 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
                     [&](std::ostream& out) { experiments::write_curves(out, plan, courses); })) {
         return false;
     }
-    const bool lives = plan.arms[0].parameters.fitness == parameters::FitnessFunction::Life;
+    const parameters::Parameters& world = plan.arms[0].parameters;
+    const bool by_default = world.fitness == parameters::FitnessFunction::Life && world.fitness_per_second == 1 &&
+                            world.fitness_per_health == 1 && world.fitness_per_food == 0 &&
+                            world.fitness_per_poison == 0;
     const auto drawn =
         draw_curves(curves.path(), plan.arms[0].name + (plan.controls.empty() ? " and others" : " and its controls"),
                     "mean fitness of " + std::to_string(courses[0].size()) +
                         " runs with the same seeds; bands: 95 % confidence interval of that mean",
-                    lives ? "mean fitness (seconds lived + health at the end)" : "mean fitness", path);
+                    by_default ? "mean fitness (seconds lived + health at the end)" : "mean fitness", path);
     if (!drawn) {
         fail("--plot: " + to_text(drawn.error()));
     }

@@ -47,6 +47,8 @@ constexpr Question questions[] = {
     {"mutation_chance", always},
     {"mutation_step", always},
     {"reset_chance", always},
+    {"scale_chance", always},
+    {"scale_range", [](const Parameters& p) { return p.scale_chance > 0; }},
     {"bit_flip_chance", always},
     {"island_count", always},
     {"migration", [](const Parameters& p) { return p.island_count > 1; }},

@@ -4,9 +4,12 @@
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/network/limits.h"
+#include "server/parameters/choice_help.h"
 
 #include <iostream>
 #include <string>
+#include <string_view>
+#include <variant>
 
 namespace evod::commands {
 namespace {
@@ -42,6 +45,15 @@ std::string parameter_list() {
         text += "| `" + std::string{description.name} + "` | " + parameters::to_text(description.default_value()) +
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
                 effect_text(description.effect) + " | " + std::string{description.help} + " |\n";
+    }
+    text += "\n## Choices\n\n| parameter | choice | meaning |\n|---|---|---|\n";
+    for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+        if (const auto* choice = std::get_if<parameters::ChoiceParameter>(&description.kind)) {
+            for (const std::string_view name : choice->names) {
+                text += "| `" + std::string{description.name} + "` | " + std::string{name} + " | " +
+                        std::string{parameters::choice_help(description.name, name)} + " |\n";
+            }
+        }
     }
     return text;
 }

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <optional>
 
 namespace evod::evolution {
 
@@ -44,13 +43,13 @@ Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t want
 
 /// Which parent each gene of a child comes from.
 struct Inheritance {
-    Parents parents;          // first: the parent that gave more of the genes
+    Parents parents;          // first: the parent that gave more of the genes, or whose weight is larger
     GeneMask from_second = 0; // the genes that parents.second gave; at most half of all genes
 };
 
 /// Orders the parents of one child by how many genes each gave it; on a tie the pair's first parent stays first.
 ///
-/// mask  the genes that the child takes from pair.second; bits beyond the genes are ignored.
+/// mask  Mixture::from_second of the child; bits beyond the genes are ignored.
 inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
     mask &= all_genes;
     if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count) {
@@ -101,20 +100,24 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Draws the mask of the first child of a pair; the second child has the complement. Returns nullopt if there is no
-    /// crossover.
-    std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
+    /// Draws the mixture of the children of a pair. Returns false and does not change `mixture` if there is no crossover.
+    bool draw_mixture(std::uint32_t pair_index, Mixture& mixture) const {
         base::RandomStream random{crossover_key_, pair_index};
-        return crossover_.draw(random);
+        return crossover_.draw(mixture, random);
     }
 
-    /// Writes the genes of a child to `child`. `place` is its index in the next generation. Returns the number of
-    /// clamped genes.
+    /// Writes the genes of a child to `child`. `second_share` is that of the pair's mixture; `place` is the child's index
+    /// in the next generation. Returns the number of clamped genes.
     template <class By>
-    unsigned make_child(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
+    unsigned make_child(const Inheritance& of, double second_share, std::uint32_t place, Genes child, By&& by) const {
         EVOD_ASSERT(of.parents.first < static_cast<std::size_t>(present_.cols()));
         EVOD_ASSERT(of.parents.second < static_cast<std::size_t>(present_.cols()));
-        cross(column(present_, of.parents.first), column(present_, of.parents.second), of.from_second, child);
+        const ConstGenes first = column(present_, of.parents.first), second = column(present_, of.parents.second);
+        if (second_share > 0) {
+            blend(first, second, second_share, child);
+        } else {
+            cross(first, second, of.from_second, child);
+        }
         base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
         by.mutate_order(order_mutation_, child, order);
         return by.mutate(mutation_, child, mutation);

@@ -151,13 +151,14 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                          WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
-            const std::optional<GeneMask> mask = descent.draw_mask(child / 2);
+            Mixture mixture;
+            descendant.crossed = descent.draw_mixture(child / 2, mixture);
             const Inheritance inheritance =
-                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0));
+                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mixture.from_second : ~mixture.from_second);
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
-            descendant.crossed = mask.has_value();
-            descent.make_child(inheritance, place, made, WithRecord{descendant});
+            descendant.second_share = mixture.second_share;
+            descent.make_child(inheritance, mixture.second_share, place, made, WithRecord{descendant});
         }
         descendant.first_genes = chromosome(genes, descendant.parents.first);
         descendant.second_genes = chromosome(genes, descendant.parents.second);

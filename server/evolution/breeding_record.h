@@ -1,5 +1,5 @@
 // Breeding record: shows how a generation was bred. It contains the wheel and its spins, the tournaments and their
-// contestants, the pairs, the crossover cuts and every changed gene. It is computed afterwards from the same inputs by
+// contestants, the pairs, the crossover of each child and every changed gene. It is computed afterwards from the same inputs by
 // the same steps (breeding.h); breeding itself records nothing.
 //
 // Threads      none of its own.
@@ -51,6 +51,7 @@ struct BreedingRecord {
         Parents parents{};
         Chromosome first_genes, second_genes; // genes of the first and of the second parent
         GeneMask from_second = 0;             // the genes that come from the second parent
+        double second_share = 0;              // blend: the weight of the second parent in every gene; otherwise 0
         bool crossed = false;
         // After an order mutation: element i is the index of the gene whose value gene i received.
         std::optional<std::array<std::uint32_t, gene_count>> order;

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace evod::evolution {
@@ -14,6 +15,7 @@ int cut_count(const Parameters& parameters) {
     case CrossoverMethod::MultiPoint:
         return static_cast<int>(parameters.crossover_cuts);
     case CrossoverMethod::Uniform:
+    case CrossoverMethod::Blend:
     case CrossoverMethod::None:
         break;
     }
@@ -46,14 +48,26 @@ Crossover::Crossover(const Parameters& parameters)
     EVOD_ASSERT(mask_count_ >= 1);
 }
 
-std::optional<GeneMask> Crossover::draw(base::RandomStream& random) const {
+bool Crossover::draw(Mixture& mixture, base::RandomStream& random) const {
     if (method_ == CrossoverMethod::None || !chance_.draw(random)) {
-        return {};
+        return false;
     }
     if (method_ == CrossoverMethod::Uniform) {
-        return random.word() & all_genes;
+        mixture.from_second = random.word() & all_genes;
+    } else if (method_ == CrossoverMethod::Blend) {
+        const double weight = (random.word() + 0.5) * 0x1p-32;
+        mixture = {.from_second = weight > 0.5 ? all_genes : 0, .second_share = std::min(weight, 1 - weight)};
+    } else {
+        mixture.from_second = masks_[random.below(mask_count_)];
     }
-    return masks_[random.below(mask_count_)];
+    return true;
+}
+
+void blend(ConstGenes first, ConstGenes second, double second_share, Genes child) {
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
+        const double from = static_cast<double>(first[gene]);
+        child[gene] = static_cast<float>(from + second_share * (static_cast<double>(second[gene]) - from));
+    }
 }
 
 } // namespace evod::evolution

@@ -115,6 +115,8 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , creep_chance_{parameters.mutation_chance}
     , step_{parameters.mutation_step}
     , reset_chance_{parameters.reset_chance}
+    , scale_chance_{parameters.scale_chance}
+    , scale_range_{parameters.scale_range}
     , bit_flip_chance_{parameters.bit_flip_chance}
     , bits_{parameters.bit_flip_bits} {
     EVOD_ASSERT(bits_ >= 1);
@@ -167,11 +169,26 @@ unsigned ValueMutation::mutate(ConstGenes genes, base::RandomStream& random, con
             change(gene, ChangeKind::Reset, static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene])));
         });
     }
+    if (!scale_chance_.is_never()) {
+        if (const std::optional<GeneChange> scaled = draw_scale(genes, random)) {
+            change(scaled->gene, scaled->kind, scaled->after);
+        }
+    }
     const unsigned clamped = clamp_all();
     if (!bit_flip_chance_.is_never()) {
         flip_bits(genes, random, change);
     }
     return clamped;
+}
+
+std::optional<GeneChange> ValueMutation::draw_scale(ConstGenes genes, base::RandomStream& random) const {
+    if (!scale_chance_.draw(random)) {
+        return std::nullopt;
+    }
+    const unsigned gene = random.below(gene_count);
+    const double factor = 1 + scale_range_ * symmetric_uniform(random);
+    const float before = genes[gene];
+    return GeneChange{gene, ChangeKind::Scale, before, static_cast<float>(static_cast<double>(before) * factor)};
 }
 
 template <class Change>

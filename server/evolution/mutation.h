@@ -1,4 +1,4 @@
-// Value mutation: creep, random reset and bit flip give genes new values; then genes are clamped to their bounds.
+// Value mutation: creep, random reset, scaling and bit flip give genes new values. Genes are clamped to their bounds.
 //
 // Determinism  the caller passes one stream per chromosome. The number of words drawn depends on which genes mutate.
 // Source       Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.3.1 (bit flip), 4.4.1 (creep, random
@@ -28,7 +28,7 @@ struct BinaryView {
     float to_value(std::uint32_t code) const;
 };
 
-enum class ChangeKind { Creep, Reset, BitFlip, Clamp };
+enum class ChangeKind { Creep, Reset, Scale, BitFlip, Clamp };
 
 /// One change of a gene.
 struct GeneChange {
@@ -50,6 +50,8 @@ class ValueMutation {
     /// creep     adds mutation_step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or
     ///           standard normal.
     /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
+    /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1). Each
+    ///           gene is equally likely. Draws the chance, the gene and one word.
     /// bounds    moves each gene that is outside its bounds to the nearer bound, and counts it.
     /// bit flip  flips each bit of each gene's BinaryView with probability bit_flip_chance. A gene without a flipped
     ///           bit keeps its exact value. A gene with one gets the value of its new code.
@@ -63,6 +65,7 @@ class ValueMutation {
     /// Mutates a chromosome. change(gene, kind, value) must set a gene.
     template <class Change, class Clamp>
     unsigned mutate(ConstGenes genes, base::RandomStream& random, const Change& change, const Clamp& clamp_all) const;
+    std::optional<GeneChange> draw_scale(ConstGenes genes, base::RandomStream& random) const;
     template <class Change>
     void flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const;
 
@@ -71,6 +74,8 @@ class ValueMutation {
     Chance creep_chance_;
     double step_;
     Chance reset_chance_;
+    Chance scale_chance_;
+    double scale_range_;
     Chance bit_flip_chance_;
     unsigned bits_;
     std::optional<RareEvents> rare_flips_; // over the bits of a chromosome, if flips are rare

@@ -39,13 +39,16 @@ class Breeding {
                 prefetch(pairs[i + pairs_prefetched].second);
             }
             const Parents pair = pairs[i];
-            GeneMask mask = descent_.draw_mask(static_cast<std::uint32_t>(i)).value_or(0);
+            Mixture mixture;
+            descent_.draw_mixture(static_cast<std::uint32_t>(i), mixture);
+            GeneMask mask = mixture.from_second;
             unsigned clamped = 0;
             const auto begin = first + 2 * static_cast<std::uint32_t>(i);
             for (std::uint32_t place = begin; place < std::min(begin + 2, organisms); ++place, mask = ~mask) {
                 const Inheritance inheritance = inheritance_of(pair, mask);
                 next.parents[place] = inheritance.parents;
-                clamped += descent_.make_child(inheritance, place, column(next.genes, place), WithoutRecord{});
+                clamped += descent_.make_child(inheritance, mixture.second_share, place, column(next.genes, place),
+                                               WithoutRecord{});
             }
             return clamped;
         });

@@ -1,6 +1,6 @@
 // The next generation of one island: chooses survivors and parents, and computes the genes of all organisms.
 //
-//   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, bit flip → bounds
+//   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, scale, bit flip → bounds
 //
 // Owner        World, once per generation and island.
 // Threads      none of its own; the executor processes pairs and survivors in blocks.
@@ -33,7 +33,7 @@ struct BreedingKey {
 
 struct NextGeneration {
     GeneMatrix genes;              // shape (gene_count, organisms): the elite, the other survivors, the children
-    std::vector<Parents> parents;  // shape (organisms); first the parent that gave more of the genes
+    std::vector<Parents> parents;  // shape (organisms); first the parent that gave more
     std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the previous generation, best first
     std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1, with the elite; the rest are children
     std::uint64_t clamped_count = 0;  // genes that were out of bounds and were clamped

@@ -10,7 +10,7 @@ namespace evod::evolution {
 enum class PopulationModel { Hybrid, Generational, SteadyState };
 enum class FitnessScaling { None, Windowing, LinearRanking, ExponentialRanking };
 enum class SelectionMethod { Roulette, StochasticUniversal, Tournament, Random, Truncation };
-enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, None };
+enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, Blend, None };
 enum class OrderMutationMethod { None, Swap, Scramble, Inversion };
 enum class Creep { Uniform, Gaussian };
 enum class Topology { None, Ring, FullyConnected, Random };
@@ -23,7 +23,7 @@ EVOD_CHOICE_NAMES(evod::evolution::PopulationModel, "hybrid", "generational", "s
 EVOD_CHOICE_NAMES(evod::evolution::FitnessScaling, "none", "windowing", "linear_ranking", "exponential_ranking")
 EVOD_CHOICE_NAMES(evod::evolution::SelectionMethod, "roulette", "stochastic_universal", "tournament", "random",
                   "truncation")
-EVOD_CHOICE_NAMES(evod::evolution::CrossoverMethod, "uniform", "single_point", "multi_point", "none")
+EVOD_CHOICE_NAMES(evod::evolution::CrossoverMethod, "uniform", "single_point", "multi_point", "blend", "none")
 EVOD_CHOICE_NAMES(evod::evolution::OrderMutationMethod, "none", "swap", "scramble", "inversion")
 EVOD_CHOICE_NAMES(evod::evolution::Creep, "uniform", "gaussian")
 EVOD_CHOICE_NAMES(evod::evolution::Topology, "none", "ring", "fully_connected", "random")
@@ -46,7 +46,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Number of contestants per tournament; without tournament_replacement, at most population_size.") \
     COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "Number of winners per tournament; at most tournament_size.") \
     FLAG(tournament_replacement, true, NextTick, "Whether an organism can be drawn more than once into the same tournament.") \
-    CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed.")                   \
+    CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents.")                   \
     REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
     COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
     CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how the values of genes are exchanged within a chromosome.") \
@@ -55,6 +55,8 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
     REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation: its largest step if creep is uniform, its standard deviation if creep is gaussian.")                              \
     REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
+    REAL(scale_chance, 0, 0, 1, "chance", NextTick, "Chance per chromosome that one random gene is multiplied by a random factor; 0 means off.") \
+    REAL(scale_range, 0.1, 0, 1, "", NextTick, "Range of the factor of a scale mutation: uniform between 1 − scale_range and 1 + scale_range.") \
     REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
     COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
     REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene in the first generation.")      \

@@ -89,7 +89,7 @@ Result<void> write_checksums(const fs::path& folder) {
 /// Instructions to repeat the run with `evod run`, or the reason why that is impossible.
 Result<std::string> rerun_text(run_file::RunFile& file) {
     const run_file::RunIdentity& identity = file.identity();
-    const auto changes = replay::parameter_changes(file);
+    const auto changes = replay::world_changes(file);
     if (!changes) {
         return changes.error();
     }
@@ -103,7 +103,7 @@ Result<std::string> rerun_text(run_file::RunFile& file) {
         return std::string{"No generation has ended, so there are no numbers to compare.\n"};
     }
     if (!changes->empty()) {
-        return "Parameters were changed " + std::to_string(changes->size()) +
+        return "The world was changed " + std::to_string(changes->size()) +
                (changes->size() == 1 ? " time" : " times") +
                " during the run (events.csv). `evod verify` applies the same changes at the same ticks.\n";
     }

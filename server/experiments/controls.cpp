@@ -32,13 +32,15 @@ Parameters with_random_selection(Parameters p) {
 }
 
 bool mutates(const Parameters& p) {
-    return (p.mutation_chance > 0 && p.mutation_step > 0) || p.reset_chance > 0 || p.bit_flip_chance > 0 ||
+    return (p.mutation_chance > 0 && p.mutation_step > 0) || p.reset_chance > 0 ||
+           (p.scale_chance > 0 && p.scale_range > 0) || p.bit_flip_chance > 0 ||
            (p.rearranging != OrderMutationMethod::None && p.rearrange_chance > 0);
 }
 
 Parameters without_mutation(Parameters p) {
     p.mutation_chance = 0;
     p.reset_chance = 0;
+    p.scale_chance = 0;
     p.bit_flip_chance = 0;
     p.rearranging = OrderMutationMethod::None;
     return p;
@@ -51,7 +53,7 @@ std::string why_poison_has_no_effect(const Parameters& p) {
     if (parameters::island_plan(p).poison_count == 0) {
         return "there is no poison";
     }
-    return p.poison_harm == 0 ? "poison_harm is already 0" : "";
+    return p.poison_harm == 0 && p.fitness_per_poison == 0 ? "poison_harm is already 0" : "";
 }
 
 std::string why_nothing_is_selected(const Parameters& p) {
@@ -62,10 +64,11 @@ using Names = std::span<const std::string_view>;
 
 constexpr std::string_view random_selection[] = {"selection",      "elite_count", "population_model",  "survivors",
                                                  "replaced_count", "emigrants",   "immigrants_replace"};
-constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "bit_flip_chance", "rearranging"};
-constexpr std::string_view harmless_poison[] = {"poison_harm"};
+constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "scale_chance", "bit_flip_chance",
+                                             "rearranging"};
+constexpr std::string_view harmless_poison[] = {"poison_harm", "fitness_per_poison"};
 constexpr std::string_view shuffled_fitness[] = {"shuffle_fitness"};
-constexpr std::string_view mutation_conditions[] = {"mutation_step", "rearrange_chance"};
+constexpr std::string_view mutation_conditions[] = {"mutation_step", "scale_range", "rearrange_chance"};
 constexpr std::string_view poison_conditions[] = {"poison_count", "population_size", "scale_with_population"};
 
 struct NamesOfControl {
@@ -117,6 +120,7 @@ Control control_of(const Parameters& world, ControlKind kind) {
     case ControlKind::HarmlessPoison:
         control.name = "harmless_poison";
         control.parameters.poison_harm = 0;
+        control.parameters.fitness_per_poison = 0;
         control.cannot_differ = why_poison_has_no_effect(world);
         break;
     case ControlKind::ShuffledFitness:

@@ -16,7 +16,7 @@ namespace evod::experiments {
 enum class ControlKind {
     RandomSelection, // parents, survivors and migrants are drawn at random
     MutationOff,     // no gene gets a new value; selection acts only on the genes of the first generation
-    HarmlessPoison,  // poison does not reduce health
+    HarmlessPoison,  // poison reduces neither health nor fitness
     ShuffledFitness, // the same selection pressure, but each organism gets the fitness of another one
 };
 constexpr ControlKind all_controls[] = {ControlKind::RandomSelection, ControlKind::MutationOff,

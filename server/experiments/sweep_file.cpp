@@ -1,5 +1,6 @@
 #include "server/experiments/sweep_file.h"
 
+#include "proto/text/suggestion.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/sweep_design.h"
 
@@ -55,8 +56,8 @@ std::string members_instead_of(const std::string& name) {
     } else if (parameters::find_parameter(name) != nullptr) {
         meant = "grid." + name;
     }
-    for (const std::string_view member : parameters::similar_names(name, members)) {
-        meant += (meant.empty() ? "" : ", ") + std::string{member};
+    for (const std::string& member : text::nearest(name, members)) {
+        meant += (meant.empty() ? "" : ", ") + member;
     }
     return allowed + (meant.empty() ? "" : "; did you mean " + meant);
 }

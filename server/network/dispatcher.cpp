@@ -362,6 +362,8 @@ void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusa
     log_refusal(mail.session, mail.origin.client, mail.origin.request_id, why);
     if (why.reason == base::Reason::PlannedChangesMax) {
         limit_counters_.met(Limit::PlannedChanges);
+    } else if (why.reason == base::Reason::PlacedMax) {
+        limit_counters_.met(Limit::Placed);
     } else if (why.reason == base::Reason::WorldsMax) {
         limit_counters_.met(Limit::Worlds);
     }

@@ -70,6 +70,8 @@ enum class Limit : std::uint8_t {
     Tiles,
     Worlds,
     PlannedChanges,
+    PlaceEntries,
+    Placed,
     Replays,
     Lease,
     Exports,

@@ -1,6 +1,7 @@
 #include "server/parameters/parameters.h"
 
 #include "proto/text/number_text.h"
+#include "proto/text/suggestion.h"
 #include "server/base/elementary.h"
 #include "server/base/overloaded.h"
 
@@ -8,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -95,19 +95,6 @@ std::optional<base::Violation> set_value(const ParameterDescription& description
     return base::Violation{std::move(field), description.allowed(), to_text(value)};
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & Fischer 1974
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-        }
-    }
-    return row.back();
-}
-
 /// Returns an upper bound on the share of an island in which the centre of a new body cannot be placed, if every
 /// organism has the maximum size. Bodies of the same kind as the new body count only with their own area.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
@@ -181,30 +168,12 @@ const ParameterDescription* find_parameter(std::string_view name) {
     return found == registry.end() ? nullptr : &*found;
 }
 
-std::vector<std::string_view> similar_names(std::string_view name, std::span<const std::string_view> existing) {
-    name = name.substr(0, 64);
-    std::vector<std::pair<std::size_t, std::string_view>> near;
-    for (const std::string_view other : existing) {
-        const std::size_t distance = edit_distance(name, other);
-        const bool part = name.size() >= 3 && other.find(name) != std::string_view::npos;
-        if (part || distance <= 1 + other.size() / 4) {
-            near.emplace_back(part ? 0 : distance, other);
-        }
-    }
-    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<std::string_view> names;
-    for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 3); ++i) {
-        names.push_back(near[i].second);
-    }
-    return names;
-}
-
-std::vector<std::string_view> similar_parameter_names(std::string_view name) {
+std::vector<std::string> similar_parameter_names(std::string_view name) {
     std::vector<std::string_view> names;
     for (const ParameterDescription& description : parameter_registry()) {
         names.push_back(description.name);
     }
-    return similar_names(name, names);
+    return text::nearest(name, names);
 }
 
 namespace {
@@ -217,8 +186,8 @@ std::optional<base::Violation> assign_one(const Assignment& assignment, std::str
         return set_value(*description, assignment.value, parameters, std::move(field));
     }
     std::string allowed = "a parameter of the registry";
-    for (const std::string_view name : similar_parameter_names(assignment.name)) {
-        allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
+    for (const std::string& name : similar_parameter_names(assignment.name)) {
+        allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + name;
     }
     return base::Violation{std::move(field), std::move(allowed), base::unknown_name};
 }

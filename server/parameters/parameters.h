@@ -31,7 +31,11 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
 
 // clang-format off
 #define EVOD_MODEL_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                               \
-    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
+    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
+    REAL(fitness_per_second, 1, -1000, 1000, "fitness/s", NextGeneration, "Weight of each second lived in the fitness function life.") \
+    REAL(fitness_per_health, 1, -1000, 1000, "fitness/health", NextGeneration, "Weight of each unit of health at the end in the fitness function life; the health of dead organisms is 0.") \
+    REAL(fitness_per_food, 0, -1000, 1000, "fitness/item", NextGeneration, "Weight of each food item eaten in the fitness function life.") \
+    REAL(fitness_per_poison, 0, -1000, 1000, "fitness/item", NextGeneration, "Weight of each poison item eaten in the fitness function life; negative values punish eating poison.") \
     REAL(generation_s, 40, 0.001, 86'400, "s", NextGeneration, "Length of a generation; it ends earlier if every organism dies.") \
     REAL(tick_s, 1.0 / 60, 0.001, 1, "s", NextGeneration, "Simulated time per tick.")                                  \
     COUNT(island_count, 1, 1, 4096, "islands", Reset, "Number of islands; they are independent except for migration.") \
@@ -124,11 +128,8 @@ std::vector<const ParameterDescription*> parameters_that_differ(const Parameters
 /// Returns the parameter with this name; nullptr if there is none.
 const ParameterDescription* find_parameter(std::string_view name);
 
-/// Returns at most three of the existing names that are most similar to `name`, the most similar first: for "did you
-/// mean".
-std::vector<std::string_view> similar_names(std::string_view name, std::span<const std::string_view> existing);
 /// Returns the parameter names that are most similar to `name`.
-std::vector<std::string_view> similar_parameter_names(std::string_view name);
+std::vector<std::string> similar_parameter_names(std::string_view name);
 
 struct Assignment {
     std::string name;

@@ -2,6 +2,7 @@
 
 #include "evod/v1/session.pb.h"
 #include "proto/codec/framing.h"
+#include "server/protocol/entities.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
@@ -22,6 +23,10 @@ v1::Response answer_of(std::uint64_t request_id, const std::string& request_name
         *response.mutable_planned_change() = to_proto(*applied->planned);
     } else if (applied->parameters) {
         *response.mutable_parameters() = to_proto(*applied->parameters);
+    } else if (applied->placed) {
+        *response.mutable_placed() = placed_message(*applied->placed);
+    } else if (applied->removed) {
+        *response.mutable_removed() = removed_message(*applied->removed);
     } else if (const auto entry = laboratory.find(applied->world)) { // a deleted world is not found
         *response.mutable_world() = to_proto(**entry);
     }

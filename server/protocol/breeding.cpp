@@ -16,6 +16,8 @@ v1::MutationKind to_proto(evolution::ChangeKind kind) {
         return v1::MUTATION_KIND_CREEP;
     case evolution::ChangeKind::Reset:
         return v1::MUTATION_KIND_RESET;
+    case evolution::ChangeKind::Scale:
+        return v1::MUTATION_KIND_SCALE;
     case evolution::ChangeKind::BitFlip:
         return v1::MUTATION_KIND_BIT_FLIP;
     case evolution::ChangeKind::Clamp:
@@ -75,6 +77,7 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     add(descendant.first_genes, *to.mutable_first_genes());
     add(descendant.second_genes, *to.mutable_second_genes());
     to.set_from_second(descendant.from_second);
+    to.set_second_share(descendant.second_share);
     to.set_crossed(descendant.crossed);
     if (descendant.order) {
         to.mutable_order_mutation()->set_method(std::string{

@@ -1,6 +1,7 @@
 #include "server/protocol/commands.h"
 
 #include "proto/text/number_text.h"
+#include "server/protocol/entities.h"
 #include "server/protocol/experiments.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
@@ -300,6 +301,10 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.set_parameters(), draws, violations);
         case RequestCase::kCancelChange:
             return command_of(request.cancel_change(), draws, violations);
+        case RequestCase::kPlace:
+            return command_of(request.place(), violations);
+        case RequestCase::kRemove:
+            return command_of(request.remove(), violations);
         case RequestCase::kForkWorld:
             return command_of(request.fork_world(), draws, violations);
         default:

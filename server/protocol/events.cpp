@@ -2,6 +2,7 @@
 
 #include "server/base/overloaded.h"
 #include "server/protocol/actors.h"
+#include "server/protocol/entities.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
@@ -132,6 +133,14 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                 if (applied.planned) {
                     *to.mutable_change() = to_proto(*applied.planned);
                 }
+            },
+            [&](const simulation::PlaceEntities&) {
+                *message.mutable_placed() = placed_message(*applied.placed);
+                *message.mutable_placed()->mutable_by() = actor_of(by);
+            },
+            [&](const simulation::RemoveEntities&) {
+                *message.mutable_removed() = removed_message(*applied.removed);
+                *message.mutable_removed()->mutable_by() = actor_of(by);
             },
             [&](const auto&) { set_world(*message.mutable_run_control_changed()); },
         },

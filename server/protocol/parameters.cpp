@@ -1,5 +1,6 @@
 #include "server/protocol/parameters.h"
 
+#include "server/parameters/choice_help.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
 
@@ -72,6 +73,7 @@ v1::ParameterDescription to_proto(const parameters::ParameterDescription& descri
         to.set_kind(v1::PARAMETER_KIND_CHOICE);
         for (const std::string_view name : choice->names) {
             to.add_choices(std::string{name});
+            to.add_choice_help(std::string{parameters::choice_help(description.name, name)});
         }
     } else {
         to.set_kind(v1::PARAMETER_KIND_FLAG);
@@ -128,6 +130,19 @@ v1::PlannedChange to_proto(const parameters::PlannedChange& change) {
         *assigned.mutable_value() = to_proto(assignment.value);
     }
     *to.mutable_by() = actor_of(change.by);
+    return to;
+}
+
+v1::AppliedChange to_proto(const simulation::Change& change) {
+    v1::AppliedChange to;
+    to.set_generation(change.generation);
+    *to.mutable_by() = change.by.empty() ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(change.by);
+    for (const simulation::ChangedValue& value : change.values) {
+        v1::ChangedValue& changed = *to.add_values();
+        changed.set_name(value.name);
+        *changed.mutable_before() = to_proto(value.before);
+        *changed.mutable_after() = to_proto(value.after);
+    }
     return to;
 }
 

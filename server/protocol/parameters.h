@@ -6,6 +6,7 @@
 #include "server/base/result.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
+#include "server/simulation/changes.h"
 
 #include <google/protobuf/repeated_ptr_field.h>
 
@@ -23,6 +24,7 @@ google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters
                                                                 std::uint64_t after_generation);
 
 v1::PlannedChange to_proto(const parameters::PlannedChange& change);
+v1::AppliedChange to_proto(const simulation::Change& change);
 
 /// Returns the current and the pending value of one parameter.
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);

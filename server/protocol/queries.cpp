@@ -118,7 +118,8 @@ base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& labora
     return organism_info(found->world, found->island, query.organism());
 }
 
-base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query) {
+base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query,
+                                      bool users_only) {
     const auto entry = laboratory.find(lookup_name(query.world()));
     if (!entry) {
         return entry.error();
@@ -130,6 +131,7 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
     }
 
     HistoryPart answer;
+    answer.users_only = users_only;
     if (query.has_island()) {
         answer.island = query.island();
     }
@@ -150,6 +152,12 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
         }
         answer.generations.push_back(*generation);
     }
+    const std::uint64_t end = answer.next_generation.value_or(std::numeric_limits<std::uint64_t>::max());
+    for (const simulation::Change& change : world.changes().all()) {
+        if (change.generation >= first && change.generation <= last && change.generation < end) {
+            answer.changes.push_back(change);
+        }
+    }
     return answer;
 }
 
@@ -164,6 +172,12 @@ v1::History to_proto(const HistoryPart& part) {
     }
     if (part.next_generation) {
         history.set_next_generation(*part.next_generation);
+    }
+    for (const simulation::Change& change : part.changes) {
+        *history.add_changes() = to_proto(change);
+    }
+    if (part.users_only) {
+        keep_users_only(history);
     }
     return history;
 }
@@ -308,7 +322,7 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
         put(get_motion(laboratory, request.get_motion()), &v1::Response::mutable_motion);
         break;
     case v1::Request::kGetHistory:
-        return later(get_history(laboratory, request.get_history()));
+        return later(get_history(laboratory, request.get_history(), users_only));
     case v1::Request::kGetPopulation:
         return later(get_population(laboratory, request.get_population()));
     case v1::Request::kSubscribeSnapshots:
@@ -337,7 +351,8 @@ void add_rows(const QueryResult& result, v1::Response& response) {
 std::size_t row_bytes_max(const v1::Request& request) {
     switch (request.kind_case()) {
     case v1::Request::kGetHistory:
-        return history_statistics_max * sizeof(simulation::GenerationStatistics);
+        return history_statistics_max * sizeof(simulation::GenerationStatistics) +
+               simulation::Changes::values_kept * sizeof(simulation::ChangedValue);
     case v1::Request::kGetPopulation:
         return population_rows_max * population_row_bytes;
     default:

@@ -33,9 +33,13 @@ struct HistoryPart {
     std::vector<simulation::GenerationRows> generations;
     std::optional<std::uint32_t> island; // nullopt: all islands
     std::optional<std::uint64_t> next_generation;
+    std::vector<simulation::Change> changes;
+    bool users_only = false;  // the client must not see the programs and addresses of other clients
     bool begins_late = false; // some of the requested generations are no longer stored
 };
-base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
+/// users_only  whether the client may see only the users among the causes of changes
+base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query,
+                                      bool users_only);
 v1::History to_proto(const HistoryPart& part);
 
 /// A copy of the columns of an island's organisms, so the simulation does not wait for the conversion.

@@ -174,7 +174,10 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
         to.add_genes(born.genes(gene, id));
     }
-    if (id < born.parents.size()) {
+    const bool is_placed = id >= island.bred_count();
+    if (is_placed) {
+        to.set_placed_tick(island.placed_tick(id));
+    } else if (!born.parents.empty()) {
         to.add_parents(born.parents[id].first);
         if (born.parents[id].second != born.parents[id].first) {
             to.add_parents(born.parents[id].second);
@@ -205,11 +208,11 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
         to.set_velocity_x_px_s(bodies.velocity_x[*body]);
         to.set_velocity_y_px_s(bodies.velocity_y[*body]);
         to.set_health(island.living().health[*body]);
-        to.set_lived_s(static_cast<double>(world.moment().generation_tick) * parameters.tick_s);
+        to.set_lived_s(static_cast<double>(world.moment().generation_tick - island.placed_tick(id)) *
+                       parameters.tick_s);
     } else {
         to.set_lived_s(static_cast<double>(fate.lived_ticks[id]) * parameters.tick_s);
-        to.set_cause_of_death(fate.cause[id] == simulation::CauseOfDeath::Poisoned ? v1::CAUSE_OF_DEATH_POISONED
-                                                                                   : v1::CAUSE_OF_DEATH_STARVED);
+        to.set_cause_of_death(static_cast<v1::CauseOfDeath>(fate.cause[id]));
     }
     return to;
 }

@@ -147,9 +147,8 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     run.news_.seen(entry.world.moment().tick); // the file of the origin contains the state hash of that tick
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
-    // Within a generation, the fork needs a checkpoint: its file lacks the commands since the beginning of the
-    // generation.
-    if (entry.world.moment().generation_tick > 0) {
+    // After the beginning of a generation, the fork needs a checkpoint: its file lacks the commands since then.
+    if (!entry.world.is_as_begun()) {
         first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
     }
     run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity), std::move(first));

@@ -50,9 +50,8 @@ base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<s
     run_file::Inherited inherited = run_file::inherited_by(*world);
     const std::uint64_t inherited_generations = inherited.history.size();
     std::vector<run_file::RunFile::Record> first{run_file::beginning_of(*world)};
-    // Within a generation, the fork needs a checkpoint: its file lacks the commands since the beginning of the
-    // generation.
-    if (moment.generation_tick > 0) {
+    // After the beginning of a generation, the fork needs a checkpoint: its file lacks the commands since then.
+    if (!world->is_as_begun()) {
         first.emplace_back(run_file::checkpoint_of(*world, 0, executor));
     }
     first.emplace_back(std::move(inherited));

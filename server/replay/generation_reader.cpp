@@ -8,6 +8,7 @@ namespace evod::replay {
 
 using base::Refusal;
 using base::Result;
+using evolution::NextGeneration;
 
 Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& what) const {
     return {.code = base::RefusalCode::DataLoss,
@@ -16,9 +17,28 @@ Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& w
 }
 
 Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
-    if (file_.retention().at_or_before(generation) != generation) {
-        return simulate(generation);
+    const bool retained = file_.retention().at_or_before(generation) == generation;
+    auto whole = retained ? read_stored(generation) : simulate(generation);
+    if (!whole) {
+        return whole;
     }
+    if (auto added = add_placed(generation, *whole); !added) {
+        return added.error();
+    }
+    if (whole->ended) {
+        bool matches = whole->ended->outcomes.size() == whole->begun.born.size();
+        for (std::size_t i = 0; matches && i < whole->begun.born.size(); ++i) {
+            matches =
+                whole->ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole->begun.born[i].genes.cols());
+        }
+        if (!matches) {
+            return damaged(generation, "has an outcome for another number of organisms");
+        }
+    }
+    return whole;
+}
+
+Result<WholeGeneration> GenerationReader::read_stored(std::uint64_t generation) {
     auto begun = file_.generations().beginning_of(generation);
     if (!begun) {
         return begun.error();
@@ -30,18 +50,62 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
     if (!*begun) {
         return damaged(generation, "is missing");
     }
-    WholeGeneration whole{*std::move(*begun), *std::move(ended)};
-    if (whole.ended) {
-        bool matches = whole.ended->outcomes.size() == whole.begun.born.size();
-        for (std::size_t i = 0; matches && i < whole.begun.born.size(); ++i) {
-            matches =
-                whole.ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole.begun.born[i].genes.cols());
+    return WholeGeneration{*std::move(*begun), *std::move(ended)};
+}
+
+Result<void> GenerationReader::read_changes() {
+    if (!changes_) {
+        auto changes = world_changes(file_);
+        if (!changes) {
+            return changes.error();
         }
-        if (!matches) {
-            return damaged(generation, "has an outcome for another number of organisms");
+        changes_ = *std::move(changes);
+    }
+    return {};
+}
+
+Result<void> GenerationReader::add_placed(std::uint64_t generation, WholeGeneration& whole) {
+    if (auto read = read_changes(); !read) {
+        return read;
+    }
+    std::vector<NextGeneration>& born = whole.begun.born;
+    whole.placed.resize(born.size());
+    const auto add = [&](std::size_t island, const evolution::Chromosome& genes, std::uint64_t tick) {
+        born[island].genes.conservativeResize(Eigen::NoChange, born[island].genes.cols() + 1);
+        born[island].genes.rightCols<1>() = genes;
+        whole.placed[island].push_back(static_cast<std::uint32_t>(tick));
+    };
+    const run_file::RunIdentity& identity = file_.identity();
+    if (generation == identity.first_generation && identity.forked_from && !file_.other_model()) {
+        // Organisms that were placed before the fork are in the checkpoint with which the fork begins.
+        const auto fork = Rerun::begun_at(file_, generation, nullptr, {}, 0, executor_);
+        if (!fork) {
+            return fork.error();
+        }
+        for (const simulation::Island& island : fork->world().islands()) {
+            for (std::uint32_t id = island.bred_count(); id < island.born().genes.cols(); ++id) {
+                add(island.index(), island.born().genes.col(id), island.placed_tick(id));
+            }
         }
     }
-    return whole;
+    // No command places anything between the end of a generation and the first tick of the next one.
+    const std::uint64_t first_tick = whole.begun.opening.moment.tick;
+    const std::uint64_t end_tick = whole.ended ? whole.ended->statistics.front().end_tick : ~std::uint64_t{0};
+    for (const WorldChange& change : *changes_) {
+        if (change.tick < first_tick || change.tick >= end_tick || !change.entities) {
+            continue;
+        }
+        if (const auto* place = std::get_if<simulation::PlaceEntities>(&*change.entities)) {
+            if (place->island >= born.size()) {
+                return damaged(generation, "has no island on which entry " + std::to_string(change.entry) +
+                                               " of the journal placed organisms");
+            }
+            for (const auto& organism : place->organisms) {
+                add(place->island, organism.genes, change.tick - first_tick);
+            }
+        }
+    }
+    return {};
 }
 
 Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
@@ -88,12 +152,8 @@ Result<void> GenerationReader::advance_to_generation(std::uint64_t generation) {
         if (auto refused = file_.other_model()) {
             return *refused;
         }
-        if (!changes_) {
-            auto changes = parameter_changes(file_);
-            if (!changes) {
-                return changes.error();
-            }
-            changes_ = *std::move(changes);
+        if (auto read = read_changes(); !read) {
+            return read;
         }
         auto rerun = Rerun::begun_at(file_, retained, nullptr, *changes_, 0, executor_);
         if (!rerun) {

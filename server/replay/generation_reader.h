@@ -15,8 +15,11 @@
 namespace evod::replay {
 
 struct WholeGeneration {
+    // born includes the organisms that were placed during the generation. They come last and have no `parents`.
     run_file::GenerationBegun begun;
     std::optional<run_file::GenerationEnded> ended; // nullopt if the generation has not ended
+    // Per island: the ticks of the generation after which the placed organisms were placed, in order of id.
+    std::vector<std::vector<std::uint32_t>> placed = {};
 };
 
 /// Whether a generation that has begun can be read: it is retained, or this program can simulate it again.
@@ -36,7 +39,11 @@ class GenerationReader {
     base::Result<WholeGeneration> read(std::uint64_t generation);
 
   private:
+    base::Result<WholeGeneration> read_stored(std::uint64_t generation);
     base::Result<WholeGeneration> simulate(std::uint64_t generation);
+    /// Adds the organisms that were placed during the generation.
+    base::Result<void> add_placed(std::uint64_t generation, WholeGeneration& whole);
+    base::Result<void> read_changes();
     base::Result<void> advance_to_generation(std::uint64_t generation);
     base::Result<void> advance_tick();
     base::Refusal damaged(std::uint64_t generation, const std::string& what) const;
@@ -44,8 +51,8 @@ class GenerationReader {
     run_file::RunFile& file_;
     base::Executor& executor_;
     std::stop_token stop_;
-    std::optional<std::vector<ParameterChange>> changes_; // changes of the run; read at the first use
-    std::optional<Rerun> rerun_;                          // a world in the generation that was simulated last
+    std::optional<std::vector<WorldChange>> changes_; // changes of the run; read at the first use
+    std::optional<Rerun> rerun_;                      // a world in the generation that was simulated last
 };
 
 } // namespace evod::replay

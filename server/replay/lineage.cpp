@@ -23,6 +23,8 @@ struct Births {
     parameters::Parameters parameters; // the parameters with which the generation was bred
     struct Island {
         std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
+        bool initial = false;           // its organisms were not bred
+        std::uint32_t placed_count = 0; // organisms that were placed; they come last
         std::vector<evolution::Parents> parents;
         std::vector<double> fitness;
     };
@@ -38,6 +40,8 @@ Births births_of(WholeGeneration whole) {
             {.organism_count = static_cast<std::uint32_t>(born.genes.cols()),
              .elite_count = born.elite_count,
              .survivor_count = born.survivor_count,
+             .initial = born.parents.empty(),
+             .placed_count = static_cast<std::uint32_t>(whole.placed[i].size()),
              .parents = std::move(born.parents),
              .fitness = whole.ended ? std::move(whole.ended->outcomes[i].fitness) : std::vector<double>{}});
     }
@@ -106,7 +110,8 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
         const std::size_t counted = next_parents.empty() ? 0 : island.organism_count;
         families.push_back({.organism_count = island.organism_count,
                             .parents = parents.empty() ? std::vector<std::array<Place, 2>>{} : std::move(parents[i]),
-                            .initial = island.parents.empty(),
+                            .initial = island.initial,
+                            .placed_count = island.placed_count,
                             .elite_count = island.elite_count,
                             .survivor_count = island.survivor_count,
                             .fitness = island.fitness,

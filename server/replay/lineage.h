@@ -24,8 +24,10 @@ struct Place {
 /// One island's part of a generation. Every vector is indexed by organism.
 struct Family {
     std::uint32_t organism_count = 0;
-    std::vector<std::array<Place, 2>> parents; // in the previous generation; empty if unknown
-    bool initial = false;                      // the organisms have no parents
+    // In the previous generation; empty if unknown. The organisms that were placed have none: they come last.
+    std::vector<std::array<Place, 2>> parents;
+    bool initial = false;           // the organisms have no parents
+    std::uint32_t placed_count = 0; // organisms that were placed
     std::uint32_t elite_count = 0, survivor_count = 0;
     std::vector<double> fitness; // empty if the generation has not ended
     // For each organism: the number of its children in the next generation, and the number of survivors there that are

@@ -226,6 +226,14 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
     if (auto found = compare_each<Items::Item>("the position of poison", of_island, stored.poison, simulated.poison)) {
         return found;
     }
+    if (stored.placed != simulated.placed || stored.placed_food != simulated.placed_food ||
+        stored.placed_poison != simulated.placed_poison) {
+        const auto text = [](const IslandState& island) {
+            return std::to_string(island.placed.size()) + " organisms, " + std::to_string(island.placed_food) +
+                   " food, " + std::to_string(island.placed_poison) + " poison";
+        };
+        return Mismatch{"the placed entities" + of_island, text(stored), text(simulated)};
+    }
     if (stored.counts == simulated.counts) {
         return std::nullopt;
     }

@@ -29,7 +29,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     if (!journal) {
         return journal.error();
     }
-    const auto changes = parameter_changes(file.path(), *journal);
+    const auto changes = world_changes(file.path(), *journal);
     if (!changes) {
         return changes.error();
     }
@@ -46,7 +46,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     }
     for (const run_file::HashRecord& hash : *hashes) {
         rerun->advance_to(hash.tick, executor);
-        if (rerun->world().moment().tick != hash.tick || rerun->world().hash() != hash.hash) {
+        if (rerun->world().moment().tick != hash.tick || rerun->hash_of_tick() != hash.hash) {
             return not_recovered(file, "the stored state hash of tick " + std::to_string(hash.tick) +
                                            " differs from that of a new simulation");
         }

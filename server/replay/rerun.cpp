@@ -1,7 +1,10 @@
 #include "server/replay/rerun.h"
 
+#include "server/base/overloaded.h"
 #include "server/protocol/commands.h"
+#include "server/replay/past_changes.h"
 #include "server/run_file/checkpoint.h"
+#include "server/simulation/entities.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,7 +23,7 @@ Refusal damaged(const run_file::RunFile& file, const std::string& what) {
     return damaged(file.path(), what);
 }
 
-Refusal impossible_change(const std::string& path, const ParameterChange& change) {
+Refusal impossible_change(const std::string& path, const WorldChange& change) {
     return damaged(path, "entry " + std::to_string(change.entry) +
                              " of its journal is a change that no server could have accepted");
 }
@@ -35,19 +38,37 @@ std::optional<simulation::Command> command_of(const std::string& request) {
     return command ? std::optional{*std::move(command)} : std::nullopt;
 }
 
+/// Returns the number of the last journal entry that a beginning of a generation, or a checkpoint of it, contains.
+std::uint64_t last_entry_before(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
+                                const run_file::StoredCheckpoint* checkpoint,
+                                std::span<const WorldChange> changes) {
+    if (checkpoint != nullptr) {
+        // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
+        // entry.
+        return checkpoint->journal_entries;
+    }
+    // The stored beginning of a generation already contains the changes between the end of the previous generation and
+    // the first tick.
+    const simulation::Moment& opening = begun.opening.moment;
+    const auto first = opening.generation == file.identity().first_generation
+                           ? changes.begin()
+                           : std::ranges::upper_bound(changes, opening.tick, {}, &WorldChange::tick);
+    return first == changes.begin() ? 0 : std::prev(first)->entry;
+}
+
 } // namespace
 
-Result<std::vector<ParameterChange>> parameter_changes(run_file::RunFile& file, std::uint64_t after_entry) {
+Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry) {
     const auto journal = file.journal().read(after_entry + 1);
     if (!journal) {
         return journal.error();
     }
-    return parameter_changes(file.path(), *journal);
+    return world_changes(file.path(), *journal);
 }
 
-Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
-                                                       std::span<const run_file::JournalEntry> journal) {
-    std::vector<ParameterChange> changes;
+Result<std::vector<WorldChange>> world_changes(const std::string& path,
+                                               std::span<const run_file::JournalEntry> journal) {
+    std::vector<WorldChange> changes;
     std::uint64_t tick = 0;
     for (const run_file::JournalEntry& entry : journal) {
         auto command = command_of(entry.origin.request);
@@ -66,15 +87,23 @@ Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
         if (const auto* cancel = std::get_if<simulation::CancelChange>(&*command)) {
             changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
         }
+        if (auto* place = std::get_if<simulation::PlaceEntities>(&*command)) {
+            changes.push_back(
+                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*place)});
+        }
+        if (auto* remove = std::get_if<simulation::RemoveEntities>(&*command)) {
+            changes.push_back(
+                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*remove)});
+        }
     }
     return changes;
 }
 
-Result<std::vector<ParameterChange>> Rerun::changes_of(run_file::RunFile& file) {
+Result<std::vector<WorldChange>> Rerun::changes_of(run_file::RunFile& file) {
     if (auto refused = file.other_model()) {
         return *refused;
     }
-    return parameter_changes(file);
+    return world_changes(file);
 }
 
 Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor) {
@@ -123,8 +152,7 @@ Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t tick, base::E
 }
 
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                            std::span<const ParameterChange> changes, std::size_t history_count,
-                            base::Executor& executor) {
+                            std::span<const WorldChange> changes, std::size_t history_count, base::Executor& executor) {
     const std::uint64_t retained = file.retention().at_or_before(generation);
     const auto checkpoint = file.checkpoints().last(tick);
     if (!checkpoint) {
@@ -139,7 +167,7 @@ Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, s
 }
 
 Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
-                              const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
+                              const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
                               std::size_t history_count, base::Executor& executor) {
     const run_file::RunIdentity& identity = file.identity();
     const auto begun = file.generations().beginning_of(generation);
@@ -157,18 +185,20 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
             file, simulation::World{identity.parameters, identity.seed, identity.first_population, identity.schedule},
             changes, 0);
     }
-    // A run that begins within a generation starts from the checkpoint at its first tick.
+    // A fork that begins within a generation, or after entities were placed or removed before its first tick, starts
+    // from the checkpoint at its first tick.
     std::optional<run_file::StoredCheckpoint> first;
-    if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
+    if (checkpoint == nullptr && generation == identity.first_generation && identity.forked_from) {
         auto found = file.checkpoints().last(identity.first_tick);
         if (!found) {
             return found.error();
         }
-        if (!*found || (*found)->moment.tick != identity.first_tick) {
+        if (*found && (*found)->moment.tick == identity.first_tick) {
+            first = *std::move(found);
+            checkpoint = &*first;
+        } else if ((*begun)->opening.moment.tick < identity.first_tick) {
             return damaged(file, "the checkpoint with which the run begins is missing");
         }
-        first = *std::move(found);
-        checkpoint = &*first;
     }
     const std::size_t islands = (*begun)->born.size();
     auto history = file.generations().history(
@@ -177,13 +207,17 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
     if (!history) {
         return history.error();
     }
-    return from(file, **begun, checkpoint, changes, *std::move(history), executor);
+    simulation::Changes past;
+    if (history_count > 0) {
+        const auto& moment = checkpoint != nullptr ? checkpoint->moment : (*begun)->opening.moment;
+        past = past_changes(file, changes, last_entry_before(file, **begun, checkpoint, changes), moment);
+    }
+    return from(file, **begun, checkpoint, changes, *std::move(history), executor, std::move(past));
 }
 
 Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
-                          const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
-                          simulation::World::History history, base::Executor& executor) {
-    const simulation::Moment& opening = begun.opening.moment;
+                          const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
+                          simulation::World::History history, base::Executor& executor, simulation::Changes past) {
     simulation::World world{file.identity().seed,
                             begun.opening,
                             begun.born,
@@ -192,13 +226,10 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
                             file.identity().first_population,
                             begun.founders,
                             file.identity().schedule};
+    world.set_past_changes(std::move(past));
+    const std::uint64_t last_entry = last_entry_before(file, begun, checkpoint, changes);
     if (checkpoint == nullptr) {
-        // The stored beginning of a generation already contains the changes between the end of the previous generation
-        // and the first tick.
-        const auto first = opening.generation == file.identity().first_generation
-                               ? changes.begin()
-                               : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
-        return with_changes(file, std::move(world), changes, first == changes.begin() ? 0 : std::prev(first)->entry);
+        return with_changes(file, std::move(world), changes, last_entry);
     }
     const auto unusable = [&](const std::string& why) {
         return damaged(file, "its checkpoint after tick " + std::to_string(checkpoint->moment.tick) +
@@ -215,13 +246,11 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
     if (world.hash() != checkpoint->hash) {
         return unusable("its state hash differs from the stored one");
     }
-    // Changes after the same tick may be older or newer than the checkpoint, so they are distinguished by journal
-    // entry.
-    return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
+    return with_changes(file, std::move(world), changes, last_entry);
 }
 
 Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::World world,
-                                  std::span<const ParameterChange> changes, std::uint64_t after_entry) {
+                                  std::span<const WorldChange> changes, std::uint64_t after_entry) {
     if (auto planned = ComingChanges::restore_planned_changes(file.path(), changes, after_entry, world); !planned) {
         return planned.error();
     }
@@ -236,9 +265,9 @@ Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::Wor
     return rerun;
 }
 
-Result<void> ComingChanges::restore_planned_changes(const std::string& path, std::span<const ParameterChange> changes,
+Result<void> ComingChanges::restore_planned_changes(const std::string& path, std::span<const WorldChange> changes,
                                                     std::uint64_t after_entry, simulation::World& world) {
-    for (const ParameterChange& change : changes) {
+    for (const WorldChange& change : changes) {
         if (change.entry > after_entry) {
             break;
         }
@@ -259,8 +288,8 @@ Result<void> ComingChanges::restore_planned_changes(const std::string& path, std
     return {};
 }
 
-Result<void> ComingChanges::extend(const std::string& path, std::span<const ParameterChange> changes) {
-    for (const ParameterChange& change : changes) {
+Result<void> ComingChanges::extend(const std::string& path, std::span<const WorldChange> changes) {
+    for (const WorldChange& change : changes) {
         if (change.entry <= last_entry_) {
             continue;
         }
@@ -276,9 +305,20 @@ Result<void> ComingChanges::extend(const std::string& path, std::span<const Para
     return {};
 }
 
-bool ComingChanges::apply(const ParameterChange& change, simulation::World& world) {
+bool ComingChanges::apply(const WorldChange& change, simulation::World& world) {
     if (change.cancels) {
         return world.cancel(*change.cancels).has_value();
+    }
+    if (change.entities) {
+        const auto can_be = [&](const auto& command) { return check(world, command).has_value(); };
+        const auto carry_out =
+            base::Overloaded{[&](const simulation::PlaceEntities& command) { (void)world.place(command); },
+                             [&](const simulation::RemoveEntities& command) { (void)world.remove(command); }};
+        if (!std::visit(can_be, *change.entities)) {
+            return false;
+        }
+        std::visit(carry_out, *change.entities);
+        return true;
     }
     if (change.at) {
         const bool can_be = world.is_in_future(*change.at) && world.planned().size() < parameters::planned_changes_max;
@@ -289,13 +329,13 @@ bool ComingChanges::apply(const ParameterChange& change, simulation::World& worl
     }
     const auto requested = request_of(world.parameters(), change.assignments);
     if (requested) {
-        world.request_parameters(*requested);
+        world.request_parameters(*requested, change.by);
     }
     return requested.has_value();
 }
 
 void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
-    const auto is_due = [&](const ParameterChange& change) {
+    const auto is_due = [&](const WorldChange& change) {
         return change.tick <= world.moment().tick && change.entry <= last;
     };
     for (; !fault_ && next_ < changes_.size() && is_due(changes_[next_]); ++next_) {
@@ -307,6 +347,7 @@ void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
 
 void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
     world_.advance_tick(executor);
+    hash_of_tick_ = world_.hash();
     apply_changes(last);
 }
 

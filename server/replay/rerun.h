@@ -9,32 +9,35 @@
 #include "server/run_file/run_file.h"
 
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace evod::replay {
 
-/// A command in the journal that changes parameters, plans such a change or cancels a planned change.
-struct ParameterChange {
+/// A command in the journal that changes a world: it changes parameters, plans such a change, cancels a planned change,
+/// or places or removes entities.
+struct WorldChange {
     std::uint64_t entry = 0; // number of the command in the journal
     std::uint64_t tick = 0;  // the command was applied after this tick
     std::vector<parameters::Assignment> assignments;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
-    std::string by = {};                                        // the user who planned the change
+    std::string by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
+    std::optional<std::variant<simulation::PlaceEntities, simulation::RemoveEntities>> entities = std::nullopt;
 };
 
-/// Reads the parameter changes in a file's journal, in order of ticks. Refused if an entry contains no command, or if
+/// Reads the changes in a file's journal, in order of ticks. Refused if an entry contains no command, or if
 /// its tick is before that of the previous entry.
 ///
 /// after_entry  the journal entries up to and including this one are skipped.
-base::Result<std::vector<ParameterChange>> parameter_changes(run_file::RunFile& file, std::uint64_t after_entry = 0);
-/// Like parameter_changes() above, for entries that have already been read.
+base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry = 0);
+/// Like world_changes() above, for entries that have already been read.
 ///
 /// path  path of the file that contains the entries, for error messages.
-base::Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
-                                                             std::span<const run_file::JournalEntry> journal);
+base::Result<std::vector<WorldChange>> world_changes(const std::string& path,
+                                                     std::span<const run_file::JournalEntry> journal);
 
-/// The parameter changes that a world will get at later ticks.
+/// The changes that a world will get at later ticks.
 class ComingChanges {
   public:
     /// after_entry  the world already contains the journal entries up to and including this one.
@@ -43,13 +46,13 @@ class ComingChanges {
     /// Restores the planned changes of a world that are not yet due. Refused if the journal contradicts itself.
     ///
     /// world  contains the journal entries up to and including `after_entry`, but no planned changes.
-    static base::Result<void> restore_planned_changes(const std::string& path, std::span<const ParameterChange> changes,
+    static base::Result<void> restore_planned_changes(const std::string& path, std::span<const WorldChange> changes,
                                                       std::uint64_t after_entry, simulation::World& world);
 
     /// Adds the changes that are new. Refused if a change has values that are invalid in every world.
     ///
     /// path  path of the file that contains the changes, for error messages.
-    base::Result<void> extend(const std::string& path, std::span<const ParameterChange> changes);
+    base::Result<void> extend(const std::string& path, std::span<const WorldChange> changes);
     /// Applies the changes up to the present tick of the world and up to journal entry `last`. After a fault, applies
     /// none.
     void apply_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
@@ -60,11 +63,11 @@ class ComingChanges {
 
   private:
     /// Applies one change, as Laboratory applied it. Returns false if Laboratory cannot have accepted the change.
-    static bool apply(const ParameterChange& change, simulation::World& world);
+    static bool apply(const WorldChange& change, simulation::World& world);
 
     std::uint64_t last_entry_; // number of the last journal entry that was added
     std::string path_;         // path of the file
-    std::vector<ParameterChange> changes_;
+    std::vector<WorldChange> changes_;
     std::size_t next_ = 0; // index of the next change in changes_
     std::optional<base::Refusal> fault_;
 };
@@ -86,30 +89,31 @@ class Rerun {
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t tick, base::Executor& executor);
     /// Like before() above, for changes that have already been read.
     ///
-    /// changes  all changes in the file, as parameter_changes() returns them. The run must follow the model of this
+    /// changes  all changes in the file, as world_changes() returns them. The run must follow the model of this
     ///          program.
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                                      std::span<const ParameterChange> changes, std::size_t history_count,
+                                      std::span<const WorldChange> changes, std::size_t history_count,
                                       base::Executor& executor);
     /// Returns a rerun at the first moment of a generation, or at one of its checkpoints.
     ///
     /// generation     its beginning must be retained.
     /// checkpoint     a checkpoint of this generation; nullptr: the beginning of the generation or of the file.
-    /// changes        all changes in the file, as parameter_changes() returns them.
-    /// history_count  as in before().
+    /// changes        all changes in the file, as world_changes() returns them.
+    /// history_count  as in before(); if it is 0, the world gets no past changes either.
     static base::Result<Rerun> begun_at(run_file::RunFile& file, std::uint64_t generation,
                                         const run_file::StoredCheckpoint* checkpoint,
-                                        std::span<const ParameterChange> changes, std::size_t history_count,
+                                        std::span<const WorldChange> changes, std::size_t history_count,
                                         base::Executor& executor);
     /// Like begun_at(), for records that have already been read. Uses only the identity from the file.
     ///
     /// begun       a valid beginning of a generation. The run must follow the model of this program.
     /// checkpoint  a checkpoint of this generation, to start from; nullptr: its first tick.
     /// changes     in order of ticks. Changes that `begun` or `checkpoint` already contains are skipped.
+    /// past        what the world then reports as its past changes.
     static base::Result<Rerun> from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                                     const run_file::StoredCheckpoint* checkpoint,
-                                    std::span<const ParameterChange> changes, simulation::World::History history,
-                                    base::Executor& executor);
+                                    std::span<const WorldChange> changes, simulation::World::History history,
+                                    base::Executor& executor, simulation::Changes past = {});
 
     const simulation::World& world() const { return world_; }
     const ComingChanges& changes() const { return changes_; }
@@ -118,7 +122,9 @@ class Rerun {
 
     /// If a generation is over, breeds the next one, as the next tick would.
     void turn_over(base::Executor& executor) { world_.turn_over(executor); }
-    /// Simulates one tick, then applies the parameter changes after it, up to journal entry `last`. The run must not be
+    /// The state hash after the last tick, before the commands that followed it. Run files contain these hashes.
+    const base::StateHash& hash_of_tick() const { return hash_of_tick_; }
+    /// Simulates one tick, then applies the changes after it, up to journal entry `last`. The run must not be
     /// over.
     void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
     /// Applies the remaining changes after the last tick, up to journal entry `last`.
@@ -127,16 +133,18 @@ class Rerun {
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
-    Rerun(simulation::World world, ComingChanges changes) : world_{std::move(world)}, changes_{std::move(changes)} {
+    Rerun(simulation::World world, ComingChanges changes)
+        : world_{std::move(world)}, hash_of_tick_{world_.hash()}, changes_{std::move(changes)} {
         apply_changes();
     }
-    /// Reads the parameter changes of a run. Refused if this program cannot simulate the run.
-    static base::Result<std::vector<ParameterChange>> changes_of(run_file::RunFile& file);
+    /// Reads the changes of a run. Refused if this program cannot simulate the run.
+    static base::Result<std::vector<WorldChange>> changes_of(run_file::RunFile& file);
     /// after_entry  the world already contains the journal entries up to and including this one.
     static base::Result<Rerun> with_changes(const run_file::RunFile& file, simulation::World world,
-                                            std::span<const ParameterChange> changes, std::uint64_t after_entry);
+                                            std::span<const WorldChange> changes, std::uint64_t after_entry);
 
     simulation::World world_;
+    base::StateHash hash_of_tick_;
     ComingChanges changes_;
 };
 

@@ -39,7 +39,12 @@ Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& ou
     return {};
 }
 
-const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, std::uint32_t survivors) {
+/// bred  number of organisms that were not placed.
+const char* origin_of(bool initial, std::size_t organism, std::size_t bred, std::uint32_t elite,
+                      std::uint32_t survivors) {
+    if (organism >= bred) {
+        return "placed";
+    }
     if (initial) {
         return "initial";
     }
@@ -54,15 +59,17 @@ struct EndedIsland {
     const run_file::IslandOutcome& outcome;
     const simulation::GenerationStatistics& statistics;
 };
-/// ended  results of the organism's island; nullopt before the end of the generation.
-void write_organism(Table& table, const evolution::NextGeneration& born, std::size_t organism, double tick_s,
-                    const std::optional<EndedIsland>& ended) {
-    if (born.parents.empty()) {
+/// placed  WholeGeneration::placed of the organism's island.
+/// ended   results of the organism's island; nullopt before the end of the generation.
+void write_organism(Table& table, const evolution::NextGeneration& born, std::span<const std::uint32_t> placed,
+                    std::size_t organism, double tick_s, const std::optional<EndedIsland>& ended) {
+    const std::size_t bred = static_cast<std::size_t>(born.genes.cols()) - placed.size();
+    if (organism >= born.parents.size()) {
         table.nothing().nothing();
     } else {
         table.number(born.parents[organism].first).number(born.parents[organism].second);
     }
-    table.text(origin_of(born.parents.empty(), organism, born.elite_count, born.survivor_count));
+    table.text(origin_of(born.parents.empty(), organism, bred, born.elite_count, born.survivor_count));
     for (const float gene : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
         table.number(gene);
     }
@@ -70,7 +77,8 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::si
         const run_file::IslandOutcome& outcome = ended->outcome;
         const bool alive = outcome.cause[organism] == simulation::CauseOfDeath::Alive;
         table.number(outcome.fitness[organism])
-            .number(alive ? ended->statistics.simulated_s : outcome.lived_ticks[organism] * tick_s)
+            .number(alive ? ended->statistics.simulated_s - (organism < bred ? 0 : placed[organism - bred] * tick_s)
+                          : outcome.lived_ticks[organism] * tick_s)
             .text(run_file::name_of(outcome.cause[organism]));
     } else {
         table.nothing().nothing().nothing();
@@ -123,14 +131,15 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<Fa
                 continue;
             }
             table.number(generation).number(island).number(organism);
-            if (family.parents.empty()) {
+            if (organism >= family.parents.size()) {
                 table.nothing().nothing().nothing().nothing().nothing().nothing();
             } else {
                 for (const Place& parent : family.parents[organism]) {
                     table.number(generation - 1).number(parent.island).number(parent.organism);
                 }
             }
-            table.text(origin_of(family.initial, organism, family.elite_count, family.survivor_count));
+            table.text(origin_of(family.initial, organism, family.organism_count - family.placed_count,
+                                 family.elite_count, family.survivor_count));
             if (family.fitness.empty()) {
                 table.nothing();
             } else {
@@ -200,7 +209,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
         if (!whole) {
             return whole.error();
         }
-        const auto& [begun, ended] = *whole;
+        const auto& [begun, ended, placed] = *whole;
         for (std::size_t i = 0; i < begun.born.size(); ++i) {
             const evolution::NextGeneration& born = begun.born[i];
             std::optional<EndedIsland> island;
@@ -209,7 +218,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
             }
             for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()); ++organism) {
                 table.number(generation).number(i).number(organism);
-                write_organism(table, born, organism, begun.opening.parameters.active.tick_s, island);
+                write_organism(table, born, placed[i], organism, begun.opening.parameters.active.tick_s, island);
             }
         }
         return {};
@@ -292,8 +301,9 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
         return whole.error();
     }
     std::vector<evolution::GeneMatrix> population;
-    for (const evolution::NextGeneration& born : whole->begun.born) {
-        population.push_back(born.genes);
+    for (std::size_t i = 0; i < whole->begun.born.size(); ++i) {
+        const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
+        population.push_back(genes.leftCols(genes.cols() - std::ssize(whole->placed[i])));
     }
     write_population(population, format, out);
     return {};

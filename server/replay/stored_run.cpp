@@ -149,7 +149,7 @@ Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry) const {
                     .after_entry = after_entry,
                     .last_entry = std::max(after_entry, (*file)->journal().last_number()),
                     .changes = {}};
-    auto changes = parameter_changes(**file, after_entry);
+    auto changes = world_changes(**file, after_entry);
     if (!changes) {
         return changes.error();
     }

@@ -46,7 +46,7 @@ struct NewRecords {
     std::string path;         // path of the run's file
     // Range of the journal entries in `changes`: from after_entry + 1 to last_entry.
     std::uint64_t after_entry = 0, last_entry = 0;
-    std::vector<ParameterChange> changes;
+    std::vector<WorldChange> changes;
 };
 
 class StoredRun {

@@ -55,7 +55,7 @@ class StretchCheck {
 
     /// changes   all changes of the run up to the last tick of the stretch.
     /// progress  called with the number of ticks since the previous call.
-    Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> progress) {
+    Result<Verified> run(std::span<const WorldChange> changes, base::FunctionRef<void(std::uint64_t)> progress) {
         const StoredGeneration& first = stretch_.front();
         agrees_with_beginning_of(first);
         if (first.opening.moment.generation == file_.identity().first_generation) {
@@ -111,11 +111,14 @@ class StretchCheck {
         agreeing_part_ = "the beginning of the generation";
     }
 
-    /// The checkpoint with which the run begins, if it begins within the first generation of the stretch; otherwise
+    /// The checkpoint with which the run begins, if it begins with one in the first generation of the stretch; otherwise
     /// nullptr.
     const run_file::StoredCheckpoint* beginning() const {
         const StoredGeneration& first = stretch_.front();
-        return first.opening.moment.tick < file_.identity().first_tick ? &first.checkpoints.front() : nullptr;
+        const bool has_one = first.opening.moment.generation == file_.identity().first_generation &&
+                             !first.checkpoints.empty() &&
+                             first.checkpoints.front().moment.tick == file_.identity().first_tick;
+        return has_one ? &first.checkpoints.front() : nullptr;
     }
 
     void check_beginning_of_run() {
@@ -175,9 +178,9 @@ class StretchCheck {
                 continue;
             }
             if (hash == stored.hashes.end() || hash->tick != now.tick) {
-                return differ(now, {"the state hash", "none", to_text(world.hash())});
+                return differ(now, {"the state hash", "none", to_text(rerun.hash_of_tick())});
             }
-            if (!same(now, compare(hash->hash, world.hash()))) {
+            if (!same(now, compare(hash->hash, rerun.hash_of_tick()))) {
                 return;
             }
             agrees_ = now;
@@ -340,7 +343,10 @@ class Reader {
             return hashes.error();
         }
         generation.hashes = *std::move(hashes);
-        auto checkpoints = file_.checkpoints().read(generation.opening.moment.tick, generation.last_tick);
+        // A fork may begin with a checkpoint at the first tick of its first generation.
+        const bool is_first = generation.opening.moment.generation == file_.identity().first_generation;
+        auto checkpoints = file_.checkpoints().read(
+            static_cast<std::int64_t>(generation.opening.moment.tick) - is_first, generation.last_tick);
         if (!checkpoints) {
             return checkpoints.error();
         }
@@ -381,7 +387,7 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
     if (auto refused = file.other_model()) {
         return *refused;
     }
-    const auto changes = parameter_changes(file);
+    const auto changes = world_changes(file);
     if (!changes) {
         return changes.error();
     }
@@ -413,7 +419,7 @@ Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
         std::vector<Result<Verified>> results(stretches->size(), Result<Verified>{Verified{}});
         const auto check = [&](std::size_t i, base::Executor& within) {
             const Stretch& stretch = (*stretches)[i];
-            const auto later = std::ranges::upper_bound(*changes, stretch.back().last_tick, {}, &ParameterChange::tick);
+            const auto later = std::ranges::upper_bound(*changes, stretch.back().last_tick, {}, &WorldChange::tick);
             const StoredGeneration* following =
                 i + 1 < stretches->size() ? &(*stretches)[i + 1].front() : reader.following();
             results[i] = StretchCheck{file, stretch, following, within}.run({changes->begin(), later}, count);

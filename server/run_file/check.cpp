@@ -97,7 +97,9 @@ Result<void> check_checkpoints(RunFile& file, const EndMark& contents) {
         if (!*opening || !file.retention().is_retained(checkpoint.moment.generation) ||
             checkpoint.moment.tick < identity.first_tick ||
             (*opening)->moment.tick + checkpoint.moment.generation_tick != checkpoint.moment.tick ||
-            checkpoint.moment.generation_tick == 0 || checkpoint.journal_entries > contents.journal_entries) {
+            (checkpoint.moment.generation_tick == 0 &&
+             !(identity.forked_from && checkpoint.moment.tick == identity.first_tick)) ||
+            checkpoint.journal_entries > contents.journal_entries) {
             return file.damaged(row_text(CheckpointRowTable::name, checkpoint.moment.tick));
         }
         begins_with_one |= checkpoint.moment.tick == identity.first_tick;

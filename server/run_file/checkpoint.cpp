@@ -75,13 +75,52 @@ void for_each_count(Counts& counts, Visit&& visit) {
     visit(counts.speed_limit_count);
 }
 
+/// The flags in the first byte of a state.
+constexpr std::uint8_t over_flag = 1, placed_flag = 2;
+
+/// The numbers of entities that were placed on an island.
+struct PlacedCounts {
+    std::uint32_t organisms = 0, food = 0, poison = 0;
+};
+
+template <class Counts, class Visit>
+void for_each_placed_count(Counts& counts, Visit&& visit) {
+    visit(counts.organisms);
+    visit(counts.food);
+    visit(counts.poison);
+}
+
+bool has_placed(const PlacedCounts& counts) {
+    return counts.organisms > 0 || counts.food > 0 || counts.poison > 0;
+}
+
+/// Returns the shapes of islands on which entities were placed.
+std::vector<IslandShape> with_placed(std::span<const IslandShape> shapes, std::span<const PlacedCounts> placed) {
+    std::vector<IslandShape> whole{shapes.begin(), shapes.end()};
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        whole[i].organisms += placed[i].organisms;
+        whole[i].food += placed[i].food;
+        whole[i].poison += placed[i].poison;
+    }
+    return whole;
+}
+
 std::size_t bytes_of_statistics() {
     std::size_t bytes = 0;
     simulation::for_each_number(GenerationStatistics{}, [&](const std::string&, auto) { bytes += 8; });
     return bytes;
 }
 
-/// The size of the uncompressed state in bytes, including its first byte.
+/// The size in bytes of the numbers of placed entities, and of the genes and ticks of placed organisms.
+std::size_t bytes_of(std::span<const PlacedCounts> placed) {
+    std::size_t bytes = 0;
+    for (const PlacedCounts& counts : placed) {
+        bytes += sizeof counts + counts.organisms * sizeof(IslandState::Placed);
+    }
+    return bytes;
+}
+
+/// The size of the uncompressed state in bytes, including its first byte, without bytes_of(placed).
 std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
     std::size_t bytes = 1;
     for (const IslandShape& shape : shapes) {
@@ -184,18 +223,35 @@ void resize(IslandState& island, const IslandShape& shape) {
 } // namespace
 
 std::string pack(const simulation::WorldState& state) {
+    // The shapes include the placed entities.
     std::vector<IslandShape> shapes;
+    std::vector<PlacedCounts> placed;
     for (const IslandState& island : state.islands) {
         shapes.push_back({.organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
                           .has_bodies = !island.organisms.empty(),
                           .crates = static_cast<std::uint32_t>(island.crates.size()),
                           .food = static_cast<std::uint32_t>(island.food.size()),
                           .poison = static_cast<std::uint32_t>(island.poison.size())});
+        placed.push_back({.organisms = static_cast<std::uint32_t>(island.placed.size()),
+                          .food = island.placed_food,
+                          .poison = island.placed_poison});
     }
     const bool over = !state.ended.empty();
+    if (std::ranges::none_of(placed, has_placed)) {
+        placed.clear();
+    }
     Packer packer;
-    packer.expect(bytes_of(shapes, over));
-    packer.value(static_cast<std::uint8_t>(over));
+    packer.expect(bytes_of(shapes, over) + bytes_of(placed));
+    packer.value(static_cast<std::uint8_t>((over ? over_flag : 0) | (placed.empty() ? 0 : placed_flag)));
+    for (const PlacedCounts& counts : placed) {
+        for_each_placed_count(counts, [&](const auto& count) { packer.value(count); });
+    }
+    for (const IslandState& island : state.islands) {
+        for (const IslandState::Placed& organism : island.placed) {
+            packer.value(organism.genes);
+            packer.value(organism.tick);
+        }
+    }
     for (const IslandState& island : state.islands) {
         for_each_count(island.counts, [&](const auto& count) { packer.value(count); });
         for_each_column(island, [&](const auto& range, auto&& part) { packer.column(range, part); });
@@ -223,7 +279,10 @@ StoredCheckpoint pack(const Checkpoint& checkpoint) {
 Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
+    const PlacedCounts most{simulation::placed_max, simulation::placed_max, simulation::placed_max};
+    const std::vector<PlacedCounts> most_placed(shapes.size(), most);
+    if (bytes < bytes_of(shapes, false) ||
+        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed)) {
         return refusal("its size differs from that of a state of this world");
     }
     std::string columns(bytes, '\0');
@@ -235,19 +294,41 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
 }
 
 Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
-    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > 1) {
-        return refusal("its first byte is neither 0 nor 1");
+    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > (over_flag | placed_flag)) {
+        return refusal("its first byte is not 0, 1, 2 or 3");
     }
-    const bool over = bytes.front() == 1;
-    if (bytes.size() != bytes_of(shapes, over)) {
+    const bool over = (static_cast<std::uint8_t>(bytes.front()) & over_flag) != 0;
+    const bool has_counts = (static_cast<std::uint8_t>(bytes.front()) & placed_flag) != 0;
+    std::vector<PlacedCounts> placed(has_counts ? shapes.size() : 0);
+    Columns columns{bytes.substr(1)};
+    if (bytes.size() < 1 + placed.size() * sizeof(PlacedCounts)) {
         return refusal("its size differs from that of a state of this world");
     }
-    Columns columns{bytes.substr(1)};
+    for (PlacedCounts& counts : placed) {
+        for_each_placed_count(counts, [&](auto& count) { columns.value(count); });
+        if (counts.organisms > simulation::placed_max || counts.food > simulation::placed_max ||
+            counts.poison > simulation::placed_max) {
+            return refusal("it has more placed items or organisms than a world can have");
+        }
+    }
+    const std::vector<IslandShape> whole = with_placed(shapes, placed);
+    if (bytes.size() != bytes_of(whole, over) + bytes_of(placed)) {
+        return refusal("its size differs from that of a state of this world");
+    }
     state.islands.assign(shapes.size(), {});
     state.ended.assign(over ? shapes.size() : 0, {});
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        state.islands[i].placed_food = placed[i].food;
+        state.islands[i].placed_poison = placed[i].poison;
+        state.islands[i].placed.resize(placed[i].organisms);
+        for (IslandState::Placed& organism : state.islands[i].placed) {
+            columns.value(organism.genes);
+            columns.value(organism.tick);
+        }
+    }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         IslandState& island = state.islands[i];
-        resize(island, shapes[i]);
+        resize(island, whole[i]);
         for_each_count(island.counts, [&](auto& count) { columns.value(count); });
         for_each_column(island, [&](auto& range, auto&& part) {
             for (auto& element : range) {

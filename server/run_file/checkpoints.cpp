@@ -9,9 +9,8 @@ namespace evod::run_file {
 
 using base::Result;
 
-Result<std::vector<StoredCheckpoint>> Checkpoints::read(std::uint64_t after, std::uint64_t until) {
-    return read_where("tick > ? AND tick <= ? ORDER BY tick",
-                      {static_cast<std::int64_t>(after), static_cast<std::int64_t>(until)});
+Result<std::vector<StoredCheckpoint>> Checkpoints::read(std::int64_t after, std::uint64_t until) {
+    return read_where("tick > ? AND tick <= ? ORDER BY tick", {after, static_cast<std::int64_t>(until)});
 }
 
 Result<std::optional<StoredCheckpoint>> Checkpoints::last(std::uint64_t until) {

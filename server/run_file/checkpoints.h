@@ -33,7 +33,7 @@ class Checkpoints {
         , part_bytes_{part_bytes} {}
 
     /// Reads the checkpoints after tick `after`, up to and including tick `until`, in order of ticks.
-    base::Result<std::vector<StoredCheckpoint>> read(std::uint64_t after, std::uint64_t until);
+    base::Result<std::vector<StoredCheckpoint>> read(std::int64_t after, std::uint64_t until);
     /// The last checkpoint at or before tick `until`; nullopt if there is none.
     base::Result<std::optional<StoredCheckpoint>> last(std::uint64_t until);
     /// The first checkpoint after tick `after`, which may be −1; nullopt if there is none.

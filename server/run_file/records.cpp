@@ -5,9 +5,9 @@
 namespace evod::run_file {
 
 GenerationBegun beginning_of(const simulation::World& world) {
-    GenerationBegun begun{.opening = world.opening(), .born = {}, .founders = world.founders()};
+    GenerationBegun begun{.opening = world.opening(), .born = {}, .founders = world.founders_of_bred()};
     for (const simulation::Island& island : world.islands()) {
-        begun.born.push_back(island.born());
+        begun.born.push_back(island.bred());
     }
     return begun;
 }
@@ -45,6 +45,8 @@ std::string_view name_of(simulation::CauseOfDeath cause) {
         return "starved";
     case simulation::CauseOfDeath::Poisoned:
         return "poisoned";
+    case simulation::CauseOfDeath::Removed:
+        return "removed";
     }
     return "unknown";
 }

@@ -90,7 +90,7 @@ struct GenerationEnded {
 };
 /// Returns the outcome of the world's current generation, which must be complete.
 GenerationEnded end_of(const simulation::World& world);
-/// "alive", "starved", "poisoned"; "unknown" for any other number.
+/// "alive", "starved", "poisoned", "removed"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);
 
 /// The state of a world right after a tick, before any command of that tick. Together with the beginning of its

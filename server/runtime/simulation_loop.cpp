@@ -322,7 +322,7 @@ void SimulationLoop::fork(CommandMail& mail) {
             return laboratory_.fork(command, origin->world.at_its_opening(executor_, with_what_was_asked_since));
         });
     };
-    if (origin && !refused && !command.at_generation && origin->world.moment().generation_tick == 0) {
+    if (origin && !refused && !command.at_generation && origin->world.is_as_begun()) {
         return answer(mail, fork_at_opening(true), before);
     }
     if (!origin || refused || !command.at_generation) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "server/base/random.h"
+#include "server/evolution/chromosome.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/first_population.h"
@@ -85,6 +86,42 @@ struct CancelChange {
     std::uint64_t id;
 };
 
+enum class ItemKind : std::uint8_t { Food, Poison };
+/// The maximum number of items and organisms in one PlaceEntities or RemoveEntities.
+constexpr std::size_t place_entries_max = 1000;
+/// The maximum number of food items, of poison items and of organisms that can be placed on an island in a generation.
+constexpr std::uint32_t placed_max = 10'000;
+
+/// Places items and organisms on an island (entities.h).
+struct PlaceEntities {
+    struct Item {
+        ItemKind kind;
+        double x_px, y_px; // any numbers
+    };
+    struct Organism {
+        double x_px, y_px; // any numbers
+        evolution::Chromosome genes;
+    };
+    std::string world;
+    std::uint32_t island = 0;
+    std::vector<Item> items = {}; // together 1 to place_entries_max entries
+    std::vector<Organism> organisms = {};
+};
+/// Removes items and organisms from an island (entities.h).
+struct RemoveEntities {
+    std::string world;
+    std::uint32_t island = 0;
+    std::optional<std::uint64_t> generation = {};                      // the ids belong to it; nullopt: the current one
+    std::vector<std::uint32_t> food = {}, poison = {}, organisms = {}; // ids; together 1 to place_entries_max entries
+};
+/// The ids of items and organisms of one island.
+struct EntityIds {
+    std::uint32_t island = 0;
+    std::uint64_t generation = 1;
+    std::vector<std::uint32_t> food = {}, poison = {}, organisms = {};
+    friend bool operator==(const EntityIds&, const EntityIds&) = default;
+};
+
 struct ForkWorld {
     std::string world; // the world to fork
     std::string name;  // name of the new world; as in CreateWorld
@@ -95,6 +132,6 @@ struct ForkWorld {
 };
 
 using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume,
-                             SetSpeed, SetParameters, CancelChange, ForkWorld>;
+                             SetSpeed, SetParameters, CancelChange, PlaceEntities, RemoveEntities, ForkWorld>;
 
 } // namespace evod::simulation

@@ -40,21 +40,26 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                               counted(static_cast<std::size_t>(genes.cols()), "organism")});
         }
         for (Eigen::Index organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism) {
-            for (Eigen::Index gene = 0; gene < genes.rows() && faults.size() < faults_max; ++gene) {
-                const float value = genes(gene, organism);
-                if (value >= bounds.min[gene] && value <= bounds.max[gene]) { // a NaN is in no range
-                    continue;
-                }
-                const std::string named{evolution::gene_names[static_cast<std::size_t>(gene)]};
-                faults.push_back({name + ".organism[" + std::to_string(organism) + "]." + named,
-                                  parameters::to_text(parameters::ParameterValue{double{bounds.min[gene]}}) + " to " +
-                                      parameters::to_text(parameters::ParameterValue{double{bounds.max[gene]}}) + " (" +
-                                      named + "_min, " + named + "_max)",
-                                  parameters::to_text(parameters::ParameterValue{double{value}})});
-            }
+            add_gene_faults(genes.col(organism), bounds, name + ".organism[" + std::to_string(organism) + "]", faults);
         }
     }
     return faults;
+}
+
+void add_gene_faults(const evolution::Chromosome& genes, const evolution::GeneBounds& bounds,
+                     const std::string& organism, std::vector<base::Violation>& faults) {
+    for (Eigen::Index gene = 0; gene < genes.rows() && faults.size() < faults_max; ++gene) {
+        const float value = genes[gene];
+        if (value >= bounds.min[gene] && value <= bounds.max[gene]) { // a NaN is in no range
+            continue;
+        }
+        const std::string named{evolution::gene_names[static_cast<std::size_t>(gene)]};
+        faults.push_back({organism + "." + named,
+                          parameters::to_text(parameters::ParameterValue{double{bounds.min[gene]}}) + " to " +
+                              parameters::to_text(parameters::ParameterValue{double{bounds.max[gene]}}) + " (" + named +
+                              "_min, " + named + "_max)",
+                          parameters::to_text(parameters::ParameterValue{double{value}})});
+    }
 }
 
 } // namespace evod::simulation

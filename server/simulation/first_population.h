@@ -28,4 +28,9 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                                        const std::string& field);
 constexpr std::size_t faults_max = 20;
 
+/// Adds a violation for every gene outside its bounds, until there are faults_max; the field of a gene is then
+/// "`organism`.body_size".
+void add_gene_faults(const evolution::Chromosome& genes, const evolution::GeneBounds& bounds,
+                     const std::string& organism, std::vector<base::Violation>& faults);
+
 } // namespace evod::simulation

@@ -13,12 +13,14 @@ namespace evod::simulation {
 namespace {
 
 // The kinds of entities in the state hash, except organisms. The hashes of every run depend on these numbers.
-enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
-
-constexpr std::size_t organisms_per_block = 1024;
-/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
-/// so large a float.
-constexpr float health_reachable = 0x1p38f;
+enum HashKind : std::uint32_t {
+    FoodKind = 2,
+    PoisonKind = 3,
+    CrateKind = 4,
+    ChromosomeKind = 5,
+    EatenKind = 6,
+    PlacedKind = 7
+};
 
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
     constexpr physics::Integrator integrators[] = {
@@ -56,10 +58,14 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     EVOD_ASSERT(bred.genes.rows() == evolution::gene_count);
     EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
     born_ = std::move(bred);
+    placed_.clear();
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     fate_.begin_generation(organisms);
     counts_ = {};
+    food_counts_ = parameters.fitness_per_food != 0;
+    poison_counts_ = parameters.fitness_per_poison != 0;
+    eaten_hash_ = {};
     living_.clear();
     bodies_.clear();
     boxes_.clear();
@@ -71,12 +77,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     std::vector<base::StateHash> hash_of_block((organisms + organisms_per_block - 1) / organisms_per_block);
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
         for (std::size_t id = range.begin; id < range.end; ++id) {
-            const float* genes = born_.genes.data() + id * evolution::gene_count;
-            hash_of_block[range.begin / organisms_per_block] += base::EntityHash{ChromosomeKind, id}
-                                                                    .add(genes[0], genes[1])
-                                                                    .add(genes[2], genes[3])
-                                                                    .add(genes[4], genes[5])
-                                                                    .finish();
+            hash_of_block[range.begin / organisms_per_block] += hash_of_birth(static_cast<std::uint32_t>(id));
         }
     });
     born_hash_ = {};
@@ -85,11 +86,24 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     }
     hash_ = born_hash_;
     if (parameters.fitness == parameters::FitnessFunction::Life) {
-        place(parameters, generation, executor);
+        fill(parameters, generation, executor);
     }
 }
 
-void Island::place(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
+base::StateHash Island::hash_of_birth(std::uint32_t id) const {
+    const float* genes = born_.genes.data() + std::size_t{id} * evolution::gene_count;
+    base::StateHash hash = base::EntityHash{ChromosomeKind, id}
+                               .add(genes[0], genes[1])
+                               .add(genes[2], genes[3])
+                               .add(genes[4], genes[5])
+                               .finish();
+    if (id >= bred_count()) {
+        hash += base::EntityHash{PlacedKind, id}.add(std::uint64_t{placed_tick(id)}).finish();
+    }
+    return hash;
+}
+
+void Island::fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
     const parameters::IslandPlan plan = parameters::island_plan(parameters);
     area_ = {physics::to_units(plan.width_px), physics::to_units(plan.height_px)};
     step_parameters_ = step_parameters(parameters);
@@ -183,7 +197,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     counts_.too_fast_count += step.too_fast;
     counts_.speed_limit_count += step.speed_limited;
     const base::StateHash organisms = feed_and_remove_dead(parameters, tick, executor);
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + eaten_hash_ + hash_of_boxes();
 }
 
 /// Processes food and poison, in parallel if that is faster.
@@ -280,6 +294,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
         organisms += block.hash;
         food_.add_to_hash(block.food_hash_change);
         poison_.add_to_hash(block.poison_hash_change);
+        eaten_hash_ += block.eaten_hash_change;
         counts_.food_eaten += block.food_eaten;
         counts_.poison_eaten += block.poison_eaten;
         counts_.starved_count += block.starved;
@@ -309,7 +324,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
 void Island::feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick,
                                            std::size_t index) {
     Block& block = blocks_[index];
-    block.food_hash_change = block.poison_hash_change = {};
+    block.food_hash_change = block.poison_hash_change = block.eaten_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
     for (const Touch& touch : food_feeding_.touches(index)) {
         food_.prefetch_item(touch.item);
@@ -332,7 +347,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return std::min(health + static_cast<float>(parameters.food_health), cap); });
         block.food_hash_change += food_.set_due(touch.item, tick);
-        ++fate_.food_eaten[touch.id];
+        count_eaten(block, touch.id, fate_.food_eaten, food_counts_);
         ++block.food_eaten;
     }
     for (const Touch& touch : poison_feeding_.touches(index)) {
@@ -342,7 +357,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return health - static_cast<float>(parameters.poison_harm); });
         block.poison_hash_change += poison_.set_due(touch.item, tick);
-        ++fate_.poison_eaten[touch.id];
+        count_eaten(block, touch.id, fate_.poison_eaten, poison_counts_);
         ++block.poison_eaten;
     }
     // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
@@ -368,6 +383,22 @@ void Island::change_health(Block& block, std::uint32_t body, Change&& change) {
     block.hash += hash_of_organism(bodies_, living_, body);
 }
 
+void Island::count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32_t>& eaten, bool counts) {
+    if (!counts) {
+        ++eaten[id];
+        return;
+    }
+    block.eaten_hash_change -= hash_of_eaten(id);
+    ++eaten[id];
+    block.eaten_hash_change += hash_of_eaten(id);
+}
+
+base::StateHash Island::hash_of_eaten(std::uint32_t id) const {
+    const std::uint32_t food = food_counts_ ? fate_.food_eaten[id] : 0;
+    const std::uint32_t poison = poison_counts_ ? fate_.poison_eaten[id] : 0;
+    return food == 0 && poison == 0 ? base::StateHash{} : base::EntityHash{EatenKind, id}.add(food, poison).finish();
+}
+
 bool Island::is_dying(std::uint32_t body) const {
     return !bodies_.is_void(body) && living_.health[body] <= 0;
 }
@@ -375,7 +406,7 @@ bool Island::is_dying(std::uint32_t body) const {
 void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
     const std::uint32_t id = bodies_.id[body];
     fate_.cause[id] = cause;
-    fate_.lived_ticks[id] = tick;
+    fate_.lived_ticks[id] = tick - placed_tick(id);
     block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = no_body;
     bodies_.remove(body);
@@ -395,153 +426,14 @@ base::StateHash Island::hash_of_boxes() const {
     return hash;
 }
 
-IslandShape Island::shape() const {
-    return {.organisms = static_cast<std::uint32_t>(fate_.cause.size()),
-            .has_bodies = has_bodies(),
-            .crates = has_bodies() ? crate_count_ : 0,
-            .food = has_bodies() ? food_.size() : 0,
-            .poison = has_bodies() ? poison_.size() : 0};
-}
-
-IslandState Island::state(base::Executor& executor) const {
-    IslandState state;
-    state.fate = fate_;
-    state.counts = counts_;
-    if (!has_bodies()) {
-        return state;
-    }
-    for (std::uint32_t i = 0; i < crate_count_; ++i) {
-        state.crates.push_back({boxes_.x[i], boxes_.y[i], boxes_.velocity_x[i], boxes_.velocity_y[i]});
-    }
-    executor.parallel_for(3, 1, [&](base::Range parts) {
-        for (std::size_t part = parts.begin; part < parts.end; ++part) {
-            if (part == 0) {
-                state.food = food_.all();
-            } else if (part == 1) {
-                state.poison = poison_.all();
-            } else {
-                state.organisms.resize(body_of_.size());
-            }
-        }
-    });
-    executor.parallel_for(bodies_.size(), organisms_per_block, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (!bodies_.is_void(i)) {
-                state.organisms[bodies_.id[i]] = {bodies_.x[i], bodies_.y[i], bodies_.velocity_x[i],
-                                                  bodies_.velocity_y[i], living_.health[i]};
-            }
-        }
-    });
-    return state;
-}
-
-base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) const {
-    const auto wrong = [this](const std::string& what) {
-        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "island " + std::to_string(index_) + ": impossible state: " + what,
-                             .violations = {}};
-    };
-    const Fate& fate = state.fate;
-    const IslandShape own = shape();
-    if (fate.cause.size() != own.organisms || fate.lived_ticks.size() != own.organisms ||
-        fate.food_eaten.size() != own.organisms || fate.poison_eaten.size() != own.organisms ||
-        state.organisms.size() != body_of_.size()) {
-        return wrong("number of organisms");
-    }
-    if (state.crates.size() != own.crates) {
-        return wrong("number of crates");
-    }
-
-    // Every tick limits the speeds at its end, so a greater speed can only be a rounding error.
-    const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
-    const auto can_move = [&](const auto& body) {
-        return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&
-               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
-    };
-    std::uint32_t alive = 0, starved = 0, poisoned = 0;
-    for (std::size_t id = 0; id < own.organisms; ++id) {
-        const auto which = [&](const char* what) { return wrong(what + (" of organism " + std::to_string(id))); };
-        if (fate.cause[id] == CauseOfDeath::Alive) {
-            if (fate.lived_ticks[id] != 0) {
-                return which("lived_ticks");
-            }
-            if (!own.has_bodies) {
-                continue;
-            }
-            ++alive;
-            const IslandState::Organism& organism = state.organisms[id];
-            if (!can_move(organism)) {
-                return which("position or speed");
-            }
-            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0)) {
-                return which("health");
-            }
-            continue;
-        }
-        starved += fate.cause[id] == CauseOfDeath::Starved;
-        poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
-        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Poisoned || fate.lived_ticks[id] == 0 ||
-            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
-            return which("death");
+base::StateHash Island::whole_hash() const {
+    base::StateHash hash = born_hash_ + food_.hash() + poison_.hash() + eaten_hash_ + hash_of_boxes();
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        if (!bodies_.is_void(body)) {
+            hash += hash_of_organism(bodies_, living_, body);
         }
     }
-    if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
-        return wrong("number of dead organisms");
-    }
-    if (!std::ranges::all_of(state.crates, can_move)) {
-        return wrong("position or speed of a crate");
-    }
-    if (!own.has_bodies) {
-        return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("items without bodies");
-    }
-    if (const char* fault = food_.fault_of(state.food, tick, alive == 0)) {
-        return wrong(std::string{"food: "} + fault);
-    }
-    if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0)) {
-        return wrong(std::string{"poison: "} + fault);
-    }
-    return {};
-}
-
-void Island::restore(const IslandState& state, std::uint32_t tick, base::Executor& executor) {
-    fate_ = state.fate;
-    counts_ = state.counts;
-    if (!has_bodies() || tick == 0) {
-        return;
-    }
-    for (std::uint32_t i = 0; i < crate_count_; ++i) {
-        boxes_.x[i] = state.crates[i].x;
-        boxes_.y[i] = state.crates[i].y;
-        boxes_.velocity_x[i] = state.crates[i].velocity_x;
-        boxes_.velocity_y[i] = state.crates[i].velocity_y;
-    }
-    food_.restore(state.food, executor);
-    poison_.restore(state.poison, executor);
-    // At the beginning of a generation, the index of every organism equals its id.
-    base::StateHash organisms;
-    std::vector<std::uint32_t> gone;
-    for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
-        if (fate_.cause[id] != CauseOfDeath::Alive) {
-            gone.push_back(id);
-            continue;
-        }
-        const IslandState::Organism& organism = state.organisms[id];
-        bodies_.x[id] = organism.x;
-        bodies_.y[id] = organism.y;
-        bodies_.velocity_x[id] = organism.velocity_x;
-        bodies_.velocity_y[id] = organism.velocity_y;
-        living_.health[id] = organism.health;
-        organisms += hash_of_organism(bodies_, living_, id);
-    }
-    perception_.begin(bodies_, living_, food_, poison_);
-    for (const std::uint32_t id : gone) {
-        body_of_[id] = no_body;
-        bodies_.remove(id);
-        perception_.remove(id);
-        living_.health[id] = -std::numeric_limits<float>::infinity();
-    }
-    alive_count_ -= static_cast<std::uint32_t>(gone.size());
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+    return hash;
 }
 
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -551,9 +443,13 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
-                fitness[id] = body_of_[id] == no_body
-                                  ? fate_.lived_ticks[id] * parameters.tick_s
-                                  : tick * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
+                const std::uint32_t placed = placed_tick(static_cast<std::uint32_t>(id));
+                const bool dead = body_of_[id] == no_body;
+                const double lived_s = (dead ? fate_.lived_ticks[id] : tick - placed) * parameters.tick_s;
+                const double health = dead ? 0 : static_cast<double>(living_.health[body_of_[id]]);
+                fitness[id] = parameters.fitness_per_second * lived_s + parameters.fitness_per_health * health +
+                              parameters.fitness_per_food * fate_.food_eaten[id] +
+                              parameters.fitness_per_poison * fate_.poison_eaten[id];
             }
         });
         return fitness;

@@ -25,6 +25,7 @@
 #include "server/physics/motion_report.h"
 #include "server/physics/step.h"
 #include "server/simulation/behaviour.h"
+#include "server/simulation/commands.h"
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
@@ -51,16 +52,32 @@ class Island {
     /// Performs one tick. `tick` is its number within the generation, from 1.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
+    /// Places an item, between two ticks. Returns its id. `place` must be inside the walls and clear of boxes.
+    std::uint32_t place(ItemKind kind, Place place);
+    /// Places organisms, between two ticks. Returns the id of the first; the others follow. Each place must be inside
+    /// the walls, and clear of boxes, organisms and the other places.
+    struct NewOrganism {
+        Place place;
+        evolution::Chromosome genes;
+        std::uint32_t tick; // it is placed after this tick of the generation
+    };
+    std::uint32_t place(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters);
+    /// Removes an item that is present, between two ticks.
+    void remove(ItemKind kind, std::uint32_t item);
+    /// Removes a living organism, between two ticks, after `tick` of the generation.
+    void remove_organism(std::uint32_t id, std::uint32_t tick);
+
     IslandShape shape() const;
     IslandState state(base::Executor& executor) const;
     /// Checks whether `state` is possible for this island after `tick`. The island must be at the beginning of its
     /// generation.
     base::Result<void> check(const IslandState& state, std::uint32_t tick) const;
-    /// Sets the island to a state that check() has accepted.
-    void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
+    /// Sets the island to a state that check() has accepted. `parameters` are those of the generation.
+    void restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
+                 base::Executor& executor);
 
-    /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: seconds lived + health, or
-    /// a function of the chromosome alone.
+    /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: a weighted sum of
+    /// seconds lived, health, food eaten and poison eaten, or a function of the chromosome alone.
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                 base::Executor& executor) const;
 
@@ -71,7 +88,7 @@ class Island {
 
     /// Returns the index in bodies() of the organism with this id; nullopt if the organism is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
-    /// The index in bodies() of every organism born in this generation, by id; no_body for the dead. Empty if there are
+    /// The index in bodies() of every organism of this generation, by id; no_body for the dead. Empty if there are
     /// no bodies.
     std::span<const std::uint32_t> bodies_by_id() const { return body_of_; }
     static constexpr std::uint32_t no_body = ~0U;
@@ -95,7 +112,18 @@ class Island {
     const Items& poison() const { return poison_; }
     const physics::Area& area() const { return area_; }
 
-    const evolution::NextGeneration& born() const { return born_; } // chromosomes, parents, clamped genes; by id
+    // The chromosomes, parents and clamped genes of the organisms, by id. Those that were placed come last. In the first
+    // generation no organism has parents; later, the parents of a placed organism are `no_parents`.
+    const evolution::NextGeneration& born() const { return born_; }
+    static constexpr evolution::Parents no_parents{~0U, ~0U};
+    /// The number of organisms at the beginning of the generation.
+    std::uint32_t bred_count() const { return static_cast<std::uint32_t>(born_.genes.cols() - std::ssize(placed_)); }
+    /// born() without the organisms that were placed.
+    evolution::NextGeneration bred() const;
+    /// The tick of the generation after which an organism was placed; 0 for an organism that was bred.
+    std::uint32_t placed_tick(std::uint32_t id) const { return id < bred_count() ? 0 : placed_[id - bred_count()]; }
+    /// Whether nothing has been placed, removed or eaten, and no organism has died.
+    bool is_as_begun() const;
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
@@ -103,7 +131,12 @@ class Island {
     LiveStatistics live_counts() const;
 
   private:
-    void place(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor);
+    void fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor);
+    /// Appends organisms, without updating hash_ and what is derived from bodies.
+    void append(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters);
+    /// The part of born_hash_ that describes one organism.
+    base::StateHash hash_of_birth(std::uint32_t id) const;
+    Items& items(ItemKind kind) { return kind == ItemKind::Food ? food_ : poison_; }
     void renew_near_pairs(base::Executor& executor);
     void reorder(base::Executor& executor);
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
@@ -112,14 +145,19 @@ class Island {
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
     base::StateHash hash_of_boxes() const;
+    /// Returns the hash of what one organism has eaten. It covers only kinds of items whose weight in the fitness is not
+    /// 0; otherwise the numbers of eaten items do not affect the run.
+    base::StateHash hash_of_eaten(std::uint32_t id) const;
+    base::StateHash whole_hash() const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
+    static constexpr std::size_t organisms_per_block = 1024;
     /// The results of a tick in one block of organisms.
     struct Block {
         base::StateHash hash;             // hash of the living organisms
         std::vector<std::uint32_t> dying; // bodies whose health was at most 0 before they ate
-        base::StateHash food_hash_change, poison_hash_change;
+        base::StateHash food_hash_change, poison_hash_change, eaten_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
     template <class OfFood, class OfPoison>
@@ -128,6 +166,8 @@ class Island {
     void feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>
     void change_health(Block& block, std::uint32_t body, Change&& change);
+    /// Adds 1 to an element of `eaten`. `counts` states whether the state hash covers these numbers.
+    void count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32_t>& eaten, bool counts);
     bool is_dying(std::uint32_t body) const;
     void record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause);
 
@@ -138,6 +178,7 @@ class Island {
     physics::StepParameters step_parameters_;
     physics::Stepper stepper_;
     evolution::NextGeneration born_;
+    std::vector<std::uint32_t> placed_; // placed_tick() of the organisms that were placed
     Living living_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
@@ -150,7 +191,9 @@ class Island {
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;
     base::Column<std::uint32_t> body_of_; // index in bodies(), by id
-    base::StateHash born_hash_;           // hash of the chromosomes, which do not change during a generation
+    base::StateHash born_hash_;           // hash of the chromosomes, which do not change while an organism lives
+    base::StateHash eaten_hash_;          // sum of hash_of_eaten() over all organisms
+    bool food_counts_ = false, poison_counts_ = false; // whether the fitness depends on the numbers of eaten items
     base::StateHash hash_;
 
     std::vector<Block> blocks_; // kept between ticks

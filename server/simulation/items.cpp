@@ -3,6 +3,7 @@
 #include "server/base/assert.h"
 #include "server/base/commutative.h"
 #include "server/base/instructions.h"
+#include "server/simulation/commands.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,18 +88,19 @@ void Items::put_all(base::Executor& executor, ItemOf&& item_of) {
 }
 
 const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const {
-    if (items.size() != all_.size()) {
+    if (items.size() < rules_.count || items.size() - rules_.count > placed_max) {
         return "number of items";
     }
     const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
-    for (const Item& item : items) {
+    for (std::size_t id = 0; id < items.size(); ++id) {
+        const Item& item = items[id];
         // Items do not touch the walls, so no item is at (0, 0), which Perception uses for void bodies.
         if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height) {
             return "position of an item";
         }
-        const bool possible =
-            rules_.respawn ? item.due_tick <= last_due && (item.due_tick > tick || resting) : item.due_tick == none;
-        if (item.due_tick != 0 && !possible) {
+        const bool reappears =
+            rules_.respawn && id < rules_.count && item.due_tick <= last_due && (item.due_tick > tick || resting);
+        if (item.due_tick != 0 && item.due_tick != none && !reappears) {
             return "due tick of an item";
         }
     }
@@ -106,13 +108,13 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
 }
 
 void Items::restore(std::span<const Item> items, base::Executor& executor) {
-    EVOD_ASSERT(items.size() == all_.size());
+    all_.resize(items.size());
     put_all(executor, [&](std::uint32_t item) { return items[item]; });
     present_count_ = 0;
     for (std::uint32_t item = 0; item < size(); ++item) {
         if (present(item)) {
             ++present_count_;
-        } else if (rules_.respawn) {
+        } else if (all_[item].due_tick != none) {
             due_.push_back({all_[item].due_tick, item});
         }
     }
@@ -242,7 +244,7 @@ void Items::take_out(std::uint32_t item, std::uint32_t place) {
         }
     }
     changes_.push_back({bucket(holder).x[slot], bucket(holder).y[slot], false});
-    if (rules_.respawn) {
+    if (all_[item].due_tick != none) {
         due_.push_back({all_[item].due_tick, item});
     }
     --present_count_;
@@ -267,9 +269,27 @@ base::StateHash Items::set_due(std::uint32_t item, std::uint32_t tick) {
     EVOD_ASSERT(present(item));
     base::StateHash change;
     change -= hash_of(item);
-    all_[item].due_tick = rules_.respawn ? tick + rules_.respawn_ticks : none;
+    all_[item].due_tick = rules_.respawn && item < rules_.count ? tick + rules_.respawn_ticks : none;
     change += hash_of(item);
     return change;
+}
+
+std::uint32_t Items::add(Place place) {
+    const std::uint32_t item = size();
+    all_.push_back({place.x, place.y, 0});
+    hash_ += hash_of(item);
+    insert(item, cell_of(item));
+    changes_.push_back({place.x, place.y, true});
+    ++present_count_;
+    return item;
+}
+
+void Items::remove(std::uint32_t item) {
+    EVOD_ASSERT(present(item));
+    hash_ -= hash_of(item);
+    all_[item].due_tick = none;
+    hash_ += hash_of(item);
+    take_out(item, cell_of(item) * slots);
 }
 
 void Items::consume(std::uint32_t item, std::uint32_t tick) {

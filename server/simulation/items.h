@@ -29,7 +29,7 @@ struct ItemRules {
     std::uint32_t kind;                       // kind of entity in the state hash
     std::uint32_t count;
     float radius_px;
-    bool respawn;
+    bool respawn;                // false: no item reappears
     std::uint32_t respawn_ticks; // >= 1; an item eaten in tick t reappears at the beginning of tick t + respawn_ticks
 };
 
@@ -48,17 +48,22 @@ class Items {
 
     struct Item {
         physics::Coordinate x, y; // position; of an absent item, its last position
-        std::uint32_t due_tick;   // 0: present; otherwise the tick at whose beginning it reappears
+        std::uint32_t due_tick;   // 0: present; `none`: never; otherwise the tick at whose beginning it reappears
         friend bool operator==(const Item&, const Item&) = default;
     };
     /// Returns why `items` cannot be the items after `tick` of the generation; nullptr if they can. If `resting` is
-    /// true, items no longer reappear, even if they are due.
+    /// true, items that are due need not have reappeared.
     const char* fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const;
     /// Sets the items; fault_of() must have accepted them.
     void restore(std::span<const Item> items, base::Executor& executor);
 
     /// Lets the items that are due at the beginning of `tick` reappear, each at a new random place.
     void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
+
+    /// Adds an item that does not reappear, between two ticks. Returns its id: the next one.
+    std::uint32_t add(Place place);
+    /// Removes an item between two ticks; it does not reappear in this generation. The item must be present.
+    void remove(std::uint32_t item);
 
     /// Removes an item that an organism eats in `tick`. The item must be present.
     void consume(std::uint32_t item, std::uint32_t tick);
@@ -137,6 +142,8 @@ class Items {
     void forget_changes() { changes_.clear(); }
 
     std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // present and absent items
+    /// Items at the beginning of the generation. They have the lowest ids; the others were added.
+    std::uint32_t first_count() const { return rules_.count; }
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
     const base::Column<Item>& all() const { return all_; } // all items, by id

@@ -1,5 +1,7 @@
 #include "server/simulation/laboratory.h"
 
+#include "server/simulation/entities.h"
+
 #include <algorithm>
 #include <functional>
 #include <type_traits>
@@ -48,7 +50,8 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
 template <class C>
 std::optional<Refusal> refusal_if_replay(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
-                                          std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
+                                          std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange> ||
+                                          std::is_same_v<C, PlaceEntities> || std::is_same_v<C, RemoveEntities>;
     if (!changes_what_happens || !entry.replay) {
         return std::nullopt;
     }
@@ -322,7 +325,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
     // A replay needs no lease, because a replay belongs to the client that opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased) {
-        ++entry.control.lease;
+        entry.control.lease = ++leases_granted_;
     }
     entry.control.paused = true;
     entry.control.until_tick.reset();
@@ -403,7 +406,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     Applied applied = applied_now(entry);
     applied.parameters = parameters::after_request(world.parameters(), *requested);
     if (!command.dry_run) {
-        world.request_parameters(*requested);
+        world.request_parameters(*requested, command.by);
     }
     return applied;
 }
@@ -419,6 +422,25 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
                        .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}},
                        .reason = base::Reason::PlannedChangeNotFound};
     }
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const PlaceEntities& command) {
+    if (auto checked = check(entry.world, command); !checked) {
+        return checked.error();
+    }
+    Applied applied = applied_now(entry);
+    applied.placed = entry.world.place(command);
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const RemoveEntities& command) {
+    if (auto checked = check(entry.world, command); !checked) {
+        return checked.error();
+    }
+    Applied applied = applied_now(entry);
+    applied.removed = entry.world.remove(command);
+    collect_events(entry);
     return applied;
 }
 

@@ -30,7 +30,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then pause
     bool paused = false;
     bool leased = false;     // the pause or step lasts only until the lease ends
-    std::uint64_t lease = 0; // incremented by each RunUntilTick that grants or extends a lease
+    std::uint64_t lease = 0; // number of the lease; each RunUntilTick that grants or extends one gives it a new number
     Speed speed = 1.0;
 };
 
@@ -89,6 +89,8 @@ struct Applied {
     std::optional<parameters::ParameterSet> parameters;
     // SetParameters: the planned change, with id 0 after a dry run. CancelChange: the cancelled change.
     std::optional<parameters::PlannedChange> planned = std::nullopt;
+    // PlaceEntities, RemoveEntities: the entities.
+    std::optional<EntityIds> placed = std::nullopt, removed = std::nullopt;
 };
 
 class Laboratory {
@@ -140,6 +142,8 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
+    base::Result<Applied> carry_out(Entry& entry, const PlaceEntities&);
+    base::Result<Applied> carry_out(Entry& entry, const RemoveEntities&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
     /// Returns why no world with that name can be created; nullopt if one can.
@@ -150,6 +154,8 @@ class Laboratory {
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Event> events_;
     std::optional<Storage> storage_;
+    std::uint64_t leases_granted_ =
+        0; // a number is never used again, also after a reset or a new world of the same name
 };
 
 } // namespace evod::simulation

@@ -87,4 +87,11 @@ void Fate::begin_generation(std::size_t organisms) {
     poison_eaten.assign(organisms, 0);
 }
 
+void Fate::add() {
+    lived_ticks.push_back(0);
+    cause.push_back(CauseOfDeath::Alive);
+    food_eaten.push_back(0);
+    poison_eaten.push_back(0);
+}
+
 } // namespace evod::simulation

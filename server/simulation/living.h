@@ -12,7 +12,7 @@
 
 namespace evod::simulation {
 
-enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
+enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned, Removed };
 
 /// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
 /// of physics::Circles, including placeholders of dead organisms (void bodies).
@@ -51,6 +51,8 @@ struct Fate {
     std::vector<std::uint32_t> food_eaten, poison_eaten;
 
     void begin_generation(std::size_t organisms);
+    /// Adds a living organism.
+    void add();
     friend bool operator==(const Fate&, const Fate&) = default;
 };
 

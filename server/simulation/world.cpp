@@ -53,18 +53,20 @@ World World::at_its_opening(base::Executor& executor, bool keep_requests) const 
     }
     std::vector<evolution::NextGeneration> born;
     for (const Island& island : islands_) {
-        born.push_back(island.born());
+        born.push_back(island.bred());
     }
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation) {
         before.pop_back();
     }
-    return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_, schedule_};
+    return {seed_,    opening,           std::move(born),    std::move(before),
+            executor, first_population_, founders_of_bred(), schedule_};
 }
 
 void World::become_fork() {
     planned_.clear();
     planned_count_ = 0;
+    changes_.clear();
     const auto is_inherited = [&](const GenerationRows& rows) {
         return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
     };
@@ -141,11 +143,24 @@ void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
     }
 }
 
+Founders World::founders_of_bred() const {
+    Founders bred = founders_;
+    for (std::size_t i = 0; i < bred.size(); ++i) {
+        bred[i].resize(islands_[i].bred_count());
+    }
+    return bred;
+}
+
 std::span<const std::uint32_t> World::founders(const Island& island) const {
     return founders_.empty() ? std::span<const std::uint32_t>{} : founders_[island.index()];
 }
 
-void World::request_parameters(const parameters::Parameters& requested) {
+void World::record_change(const parameters::Parameters& requested, const std::string& by) {
+    changes_.add(moment_.generation + (generation_over_ ? 1 : 0), by, parameters_.requested, requested);
+}
+
+void World::request_parameters(const parameters::Parameters& requested, const std::string& by) {
+    record_change(requested, by);
     parameters_ = parameters::after_request(parameters_, requested);
 }
 
@@ -241,10 +256,57 @@ void World::apply_planned(std::span<const parameters::Assignment> changes,
             .planned = id, .by = by, .names = std::move(names), .violations = requested.error().violations});
         return;
     }
+    record_change(*requested, by);
     parameters_.requested = *requested;
     ++parameters_.revision;
     events_.push_back(
         ParametersChanged{.planned = id, .by = by, .names = std::move(names), .revision = parameters_.revision});
+}
+
+EntityIds World::place(const PlaceEntities& command) {
+    Island& island = islands_[command.island];
+    EntityIds ids{.island = command.island, .generation = moment_.generation};
+    for (const PlaceEntities::Item& item : command.items) {
+        (item.kind == ItemKind::Food ? ids.food : ids.poison)
+            .push_back(island.place(item.kind, {physics::to_units(item.x_px), physics::to_units(item.y_px)}));
+    }
+    std::vector<Island::NewOrganism> organisms;
+    for (const PlaceEntities::Organism& organism : command.organisms) {
+        organisms.push_back({{physics::to_units(organism.x_px), physics::to_units(organism.y_px)},
+                             organism.genes,
+                             static_cast<std::uint32_t>(moment_.generation_tick)});
+    }
+    if (!organisms.empty()) {
+        ids.organisms.resize(organisms.size());
+        std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters_.active));
+        if (!founders_.empty()) {
+            founders_[command.island].resize(founders_[command.island].size() + organisms.size(), no_founder);
+        }
+    }
+    update_hash();
+    return ids;
+}
+
+EntityIds World::remove(const RemoveEntities& command) {
+    Island& island = islands_[command.island];
+    for (const std::uint32_t item : command.food) {
+        island.remove(ItemKind::Food, item);
+    }
+    for (const std::uint32_t item : command.poison) {
+        island.remove(ItemKind::Poison, item);
+    }
+    for (const std::uint32_t organism : command.organisms) {
+        island.remove_organism(organism, static_cast<std::uint32_t>(moment_.generation_tick));
+    }
+    if (!command.organisms.empty() && island.alive_count() == 0) {
+        events_.push_back(Extinction{.island = command.island, .generation = moment_.generation});
+    }
+    update_hash();
+    return {command.island, moment_.generation, command.food, command.poison, command.organisms};
+}
+
+bool World::is_as_begun() const {
+    return moment_.generation_tick == 0 && std::ranges::all_of(islands_, &Island::is_as_begun);
 }
 
 void World::turn_over(base::Executor& executor) {
@@ -463,17 +525,20 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         return wrong("moment");
     }
     const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
-    std::uint64_t alive = 0;
+    std::uint64_t alive = 0, removed = 0;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         if (auto checked = islands_[i].check(state.islands[i], tick); !checked) {
             return checked;
         }
-        if (tick == 0 && !(state.islands[i] == islands_[i].state(executor))) {
+        if (tick == 0 && !differ_only_by_commands(islands_[i].state(executor), state.islands[i])) {
             return wrong("beginning of the generation");
         }
         alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
+        removed += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Removed));
     }
-    const bool over = ends(tick, alive);
+    // If a command has removed the last living organism after this tick, the generation ends with the next tick.
+    const bool removed_last = alive == 0 && removed > 0 && state.ended.empty() && !ends(tick, 1);
+    const bool over = ends(tick, alive) && !removed_last;
     if (state.ended.size() != (over ? islands_.size() : 0)) {
         return wrong("end of the generation");
     }
@@ -486,9 +551,12 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
 
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            islands_[i].restore(state.islands[i], tick, executor);
+            islands_[i].restore(state.islands[i], tick, parameters_.active, executor);
         }
     });
+    for (std::size_t i = 0; i < founders_.size(); ++i) {
+        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
+    }
     moment_ = moment;
     parameters_ = set;
     if (over) {

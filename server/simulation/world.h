@@ -11,6 +11,7 @@
 //
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
+//              Changes are those of parameters, and entities that were placed or removed.
 #pragma once
 
 #include "server/base/executor.h"
@@ -20,6 +21,7 @@
 #include "server/evolution/termination.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
+#include "server/simulation/changes.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
@@ -60,8 +62,9 @@ class GenerationRows {
 
 /// For each island, the founder of each organism, by id: the ancestor in the first generation that is found by
 /// following first parents, also across islands. Founders are numbered from 0, island after island. Not part of the
-/// state; empty if unknown.
+/// state; empty if unknown. The founder of an organism that was placed is `no_founder`.
 using Founders = std::vector<std::vector<std::uint32_t>>;
+constexpr std::uint32_t no_founder = ~0U;
 
 class World {
   public:
@@ -146,20 +149,31 @@ class World {
     void drop_due_changes();
     /// Sets the requested parameters, which assign() has computed from parameters().requested. Each takes effect at the
     /// time that its Effect states.
-    void request_parameters(const parameters::Parameters& requested);
+    ///
+    /// by  the client that requested them
+    void request_parameters(const parameters::Parameters& requested, const std::string& by = {});
+
+    /// Places entities between two ticks, or removes them. check() must have accepted the command (entities.h). Returns
+    /// the ids of the entities.
+    EntityIds place(const PlaceEntities& command);
+    EntityIds remove(const RemoveEntities& command);
+    /// Whether this is the first moment of a generation, and nothing has been placed or removed in it.
+    bool is_as_begun() const;
 
     bool generation_over() const { return generation_over_; }
     /// Returns the termination criterion that holds with the active parameters at the end of a generation; during a
     /// generation, Running.
     evolution::Outcome outcome() const;
 
-    /// The opening of the present generation. Island::born() contains its organisms.
+    /// The opening of the present generation. Island::bred() contains its organisms.
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
-    /// The founders of the present generation. Empty if this world began with a later generation and received no
+    /// The founders of the organisms in Island::born(). Empty if this world began with a later generation and received no
     /// founders.
     const Founders& founders() const { return founders_; }
+    /// The founders of the organisms in Island::bred().
+    Founders founders_of_bred() const;
     /// The founders of the organisms of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.
@@ -171,7 +185,11 @@ class World {
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
-    /// Drops the statistics that a fork does not inherit, and the changes that were planned for the original.
+    /// The changes of parameters in this run, oldest first.
+    const Changes& changes() const { return changes_; }
+    /// For replays: sets the changes of the run before the present moment.
+    void set_past_changes(Changes changes) { changes_ = std::move(changes); }
+    /// Drops the statistics that a fork does not inherit, the changes of the original, and those planned for it.
     void become_fork();
     /// The fitness in the ended generation, per island, by id. Empty during a generation.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
@@ -184,6 +202,8 @@ class World {
           parameters::Schedule schedule);
     void begin_run();
     void make_islands();
+    /// Adds the requested parameters that differ from `requested` to the changes of the run.
+    void record_change(const parameters::Parameters& requested, const std::string& by);
     /// Applies the changes planned for the generation that is about to be bred.
     void apply_planned_for(std::uint64_t generation);
     /// Applies the changes planned for the tick that has just ended.
@@ -220,6 +240,7 @@ class World {
     std::vector<Island> islands_;
     Opening opening_;
     History history_;
+    Changes changes_;
     std::vector<EventKind> events_;
     Founders founders_;
     std::vector<std::vector<double>> fitness_; // fitness in the ended generation: per island, by id

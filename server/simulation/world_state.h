@@ -15,6 +15,7 @@
 #include "server/simulation/living.h"
 #include "server/simulation/statistics.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct IslandCounts {
     friend bool operator==(const IslandCounts&, const IslandCounts&) = default;
 };
 
-/// The number of entities of each kind on an island. It determines the shape of the island's state.
+/// The number of entities of each kind on an island at the beginning of a generation. It determines the shape of the
+/// island's state, together with the numbers of placed entities.
 struct IslandShape {
     std::uint32_t organisms = 0; // number of organisms that were born
     bool has_bodies = true;      // if false, the other parts are empty
@@ -59,9 +61,17 @@ struct IslandState {
         float velocity_x = 0, velocity_y = 0; // px/s
         friend bool operator==(const Crate&, const Crate&) = default;
     };
-    Fate fate;
+    /// An organism that was placed in this generation.
+    struct Placed {
+        std::array<float, evolution::gene_count> genes;
+        std::uint32_t tick; // it was placed after this tick of the generation
+        friend bool operator==(const Placed&, const Placed&) = default;
+    };
+    Fate fate; // of the organisms that were born, then of those that were placed
     IslandCounts counts;
-    base::Column<Organism> organisms; // all zeros for dead organisms; empty if there are no bodies
+    std::vector<Placed> placed;                       // in order of id
+    std::uint32_t placed_food = 0, placed_poison = 0; // numbers of placed items; they come last in food and poison
+    base::Column<Organism> organisms;                 // all zeros for dead organisms; empty if there are no bodies
     std::vector<Crate> crates;
     base::Column<Items::Item> food, poison;
 
@@ -74,5 +84,9 @@ struct WorldState {
     std::vector<IslandState> islands;
     std::vector<GenerationStatistics> ended; // at the end of a generation: one per island; otherwise empty
 };
+
+/// Returns whether a state of the beginning of a generation differs from `begun` only by what commands have placed and
+/// removed. Island::check() has accepted both states.
+bool differ_only_by_commands(const IslandState& begun, const IslandState& state);
 
 } // namespace evod::simulation

@@ -85,7 +85,7 @@ core::Options no_server() {
 
 /// Range 0: organisms; range 1: zoom relative to the fitted island; range 2: whether each frame shows a new snapshot (at 60
 /// frames and 30 snapshots per second every second one does) or interpolates between two; range 3: whether the driver's
-/// calls are made.
+/// calls are made; range 4: whether the skin is vivid or classic.
 void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
     const bool new_snapshot = state.range(2) != 0;
@@ -93,7 +93,8 @@ void draw_frame(benchmark::State& state) {
     WindowRenderer renderer;
     Options options;
     options.connection = no_server();
-    Panes panes{wanted_of(options)};
+    const Look look{state.range(4) != 0 ? Skin::Vivid : Skin::Classic};
+    Panes panes{wanted_of(options), {}, default_options(look)};
     Pane& pane = panes.focused();
     auto now = core::SnapshotInterpolator::Clock::now();
     std::uint64_t tick = 2;
@@ -122,8 +123,8 @@ void draw_frame(benchmark::State& state) {
     driver_works = true;
 }
 BENCHMARK(draw_frame)
-    ->ArgNames({"organisms", "zoom", "new_snapshot", "driver"})
-    ->ArgsProduct({{50, 10'000, 100'000}, {1, 16}, {0, 1}, {0, 1}})
+    ->ArgNames({"organisms", "zoom", "new_snapshot", "driver", "vivid"})
+    ->ArgsProduct({{50, 10'000, 100'000}, {1, 16}, {0, 1}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 
 } // namespace

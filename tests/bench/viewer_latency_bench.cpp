@@ -1,5 +1,7 @@
 // Latencies of evoview with a real evod and a real window: `under_xvfb.sh viewer_latency_bench [ORGANISMS…]`.
 //
+// first      from the start of the connection to the server until the first frame with the world is on the screen; the time
+//            includes the connection, the Hello and the subscription
 // step       from a client's command to a paused world until the frame of that one tick is on the screen
 // running    from a tick of a world at 1 or 10 times real time until the first frame with its snapshot is on the screen;
 //            and until the interpolated organisms have reached the snapshot's positions
@@ -67,6 +69,14 @@ class Viewer {
         panes_.emplace(wanted_of(options_));
     }
 
+    /// Connects again, as at the start of evoview. Returns when the connection was begun.
+    Clock::time_point connect() {
+        panes_.reset();
+        const auto begun = Clock::now();
+        panes_.emplace(wanted_of(options_));
+        return begun;
+    }
+
     /// One iteration of the window's loop. `meanwhile` is called at a uniformly random time in it.
     ///
     /// returns  when the frame was on the screen
@@ -115,8 +125,8 @@ class Viewer {
         renderer().gui().handle(event);
     }
     Point find(const std::string& widget) {
-        frames_until([&] { return renderer().gui().widget_positions().find(widget).has_value(); });
-        return *renderer().gui().widget_positions().find(widget);
+        frames_until([&] { return !renderer().gui().widget_positions().find(widget).empty(); });
+        return renderer().gui().widget_positions().find(widget).front()->centre();
     }
     void click(const std::string& widget) {
         const Point at = find(widget);
@@ -138,6 +148,16 @@ evod::v1::Request at_speed(const std::string& world, double factor) {
     request.mutable_set_speed()->set_world(world);
     request.mutable_set_speed()->mutable_speed()->set_real_time_factor(factor);
     return request;
+}
+
+void measure_first_frame(Viewer& viewer, const std::string& world) {
+    std::vector<double> ms;
+    for (int i = 0; i < 50; ++i) {
+        const auto begun = viewer.connect();
+        ms.push_back(
+            Ms{viewer.frames_until([&] { return viewer.world().feed.snapshot() != nullptr; }) - begun}.count());
+    }
+    print(world + ", first frame", ms);
 }
 
 void measure_steps(RealServer& server, Viewer& viewer, const std::string& world) {
@@ -252,7 +272,7 @@ void measure_slider(RealServer& server, Viewer& viewer, const std::string& world
         round_trips.push_back(Ms{Clock::now() - sent}.count());
     }
     viewer.renderer().panels().show("Parameters");
-    viewer.click("apply on release");
+    viewer.click("apply at once");
     viewer.click("Search");
     for (const char sign : std::string{turned}) {
         sf::Event event{};
@@ -309,6 +329,7 @@ void measure(std::uint32_t organism_count) {
     make_benchmark_world(server, world, organism_count);
     Viewer viewer{server.address(), world};
     viewer.frames_until([&] { return viewer.world().feed.snapshot() != nullptr; });
+    measure_first_frame(viewer, world);
     measure_steps(server, viewer, world);
     measure_running(server, viewer, world, 1);
     measure_running(server, viewer, world, 10);

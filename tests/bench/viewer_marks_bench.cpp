@@ -72,6 +72,17 @@ void plain(benchmark::State& state) {
     });
 }
 
+/// The bodies of the vivid skin, with their health.
+void bodies(benchmark::State& state) {
+    std::vector<Shape> shapes;
+    frames(state, [&](Setting& setting, const Positions& at) {
+        shapes.clear();
+        add_discs(at, shapes);
+        set_health(setting.latest->entities->organisms, 100, shapes);
+        benchmark::DoNotOptimize(shapes.data());
+    });
+}
+
 /// All options together: coloured by a gene, with radii, forces and trails.
 void everything(benchmark::State& state) {
     std::vector<Shape> shapes, rings;
@@ -85,9 +96,9 @@ void everything(benchmark::State& state) {
         add_discs(at, shapes);
         add_gene_colours(organisms, setting.population, 3, gene_scale(setting.population, 3, palette::Ramp::Viridis),
                          colours);
-        add_radii(organisms, shapes, setting.population, 4, seen, rings);
-        add_radii(organisms, shapes, setting.population, 5, seen, rings);
-        add_forces(organisms, shapes, setting.population, seen, arrows, targets);
+        add_radii(organisms, shapes, setting.population, 4, seen, {}, rings);
+        add_radii(organisms, shapes, setting.population, 5, seen, {}, rings);
+        add_forces(organisms, shapes, setting.population, seen, {}, palette::of({}), arrows, targets);
         add_paths(setting.before->entities->organisms, organisms, shapes, ways);
         benchmark::DoNotOptimize(shapes.data());
         benchmark::DoNotOptimize(targets.lines.data());
@@ -106,6 +117,7 @@ void density(benchmark::State& state) {
 }
 
 BENCHMARK(plain)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(bodies)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(everything)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(density)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 

@@ -35,6 +35,59 @@ INSTANTIATE_TEST_SUITE_P(Threads, SameStateOnAnyThreadCount,
                                     std::to_string(std::get<1>(test.param));
                          });
 
+/// Places items and organisms on one island and removes others.
+void change_entities(simulation::Laboratory& laboratory, std::uint64_t tick) {
+    const auto name = laboratory.entries().front()->name;
+    simulation::PlaceEntities place{.world = name, .island = static_cast<std::uint32_t>(tick % 2)};
+    simulation::RemoveEntities remove{.world = name, .island = place.island};
+    const auto px = [](std::uint64_t number) { return 60 + static_cast<double>(number % 3800); };
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        const double x = px(tick * 131 + i * 397), y = px(tick * 71 + i * 577);
+        place.items.push_back({i % 3 == 0 ? simulation::ItemKind::Poison : simulation::ItemKind::Food, x, y});
+    }
+    const simulation::Island& island = laboratory.entries().front()->world.islands()[place.island];
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        simulation::PlaceEntities organism{.world = name, .island = place.island};
+        organism.organisms.push_back({px(tick * 37 + i * 1013), px(tick * 91 + i * 211),
+                                      evolution::Chromosome::Constant(90.0f + static_cast<float>(i))});
+        (void)laboratory.apply(organism); // refused if there is no room
+        const auto id = static_cast<std::uint32_t>((tick * 29 + i * 7) % island.fate().cause.size());
+        if (island.body_of(id)) {
+            remove.organisms.push_back(id);
+        }
+    }
+    EXPECT_TRUE(laboratory.apply(place));
+    EXPECT_TRUE(remove.organisms.empty() || laboratory.apply(remove));
+}
+
+class SameStateWithPlacedEntities : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Threads, SameStateWithPlacedEntities, testing::Values(1, 2, 4, 16));
+
+TEST_P(SameStateWithPlacedEntities, TickByTick) {
+    const auto parameters = parameters_of(
+        R"({"population_size": 4500, "island_count": 2, "island_width_px": 4000, "island_height_px": 4000,
+            "food_count": 2000, "poison_count": 900, "respawn_s": 0.4, "generation_s": 1.5})");
+    simulation::Laboratory reference, subject;
+    for (simulation::Laboratory* laboratory : {&reference, &subject}) {
+        ASSERT_TRUE(laboratory->apply(simulation::CreateWorld{"w", parameters, base::Seed{5}, {}}));
+        ASSERT_TRUE(laboratory->apply(simulation::Run{"w", {}}));
+    }
+    base::InlineExecutor one;
+    support::ThreadExecutor many{GetParam()};
+    for (std::uint64_t tick = 0; tick < 130; ++tick) {
+        if (tick % 7 == 0 && !reference.entries().front()->world.generation_over()) {
+            change_entities(reference, tick);
+            change_entities(subject, tick);
+        }
+        reference.advance(*reference.entries().front(), one);
+        subject.advance(*subject.entries().front(), many);
+        ASSERT_EQ(subject.entries().front()->world.hash(), reference.entries().front()->world.hash())
+            << "states part at tick " << tick;
+    }
+    EXPECT_GT(reference.entries().front()->world.islands()[0].counts().food_eaten, 0u);
+    EXPECT_EQ(reference.entries().front()->world.moment().generation, 2u);
+}
+
 class AnyScenario : public testing::TestWithParam<Scenario> {};
 INSTANTIATE_TEST_SUITE_P(All, AnyScenario, testing::ValuesIn(all()), testing::PrintToStringParamName());
 

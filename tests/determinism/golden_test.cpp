@@ -27,6 +27,9 @@ const std::map<std::string, std::string> golden_hashes = {
     {"far_corner", "f5bba82a8a064dbfff81992f98267e52"},
     {"rastrigin", "6f8c8ba85d02b6725b8107a0c1b60946"},
     {"shuffled_fitness", "1ea6208418009bccf45b728ecac2e803"},
+    {"weighted_fitness", "69692ebaefda2e75ab517769f0388fad"},
+    {"blend", "e3054cfc0155bd87993c0afef5d4c868"},
+    {"scale_mutation", "33c1ab1d2cc139b7d9def6a91647d621"},
     {"crowded_migration", "786103d0bfe4f8d3042345471872260d"},
 };
 

@@ -108,6 +108,28 @@ const std::vector<Scenario>& all() {
          480,
          {}},
 
+        {"weighted_fitness", // eaten items are part of the state; the weights change while it runs
+         R"({"island_count": 2, "population_size": 40, "generation_s": 2, "food_count": 60, "fitness_per_second": 0,
+             "fitness_per_health": 0.5, "fitness_per_food": 10, "selection": "truncation"})",
+         base::Seed{55},
+         480,
+         {{150, R"({"fitness_per_second": -1, "fitness_per_food": 0, "fitness_per_poison": -20})"}}},
+
+        {"blend", // also of survivors, on several islands
+         R"({"island_count": 3, "population_size": 30, "generation_s": 2, "crossover": "blend", "crossover_chance": 0.9,
+             "mutate_survivors": true, "elite_count": 2, "migration": "ring", "migration_epoch": 1,
+             "fitness_scaling": "windowing"})",
+         base::Seed{56},
+         480,
+         {}},
+
+        {"scale_mutation", // together with the other mutations
+         R"({"population_size": 40, "generation_s": 2, "scale_chance": 0.6, "scale_range": 0.4, "reset_chance": 0.02,
+             "bit_flip_chance": 0.01, "mutate_survivors": true, "selection": "tournament"})",
+         base::Seed{57},
+         480,
+         {}},
+
         {"crowded_migration", // more arrive than an island holds
          R"({"fitness": "gene_sum", "island_count": 4, "population_size": 5, "migration": "fully_connected",
              "migration_epoch": 2, "migrant_count": 3})",

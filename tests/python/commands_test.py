@@ -74,6 +74,20 @@ class Commands(unittest.TestCase):
         self.assertEqual(set(refusal.violations) - set(error.violations), set())
         self.assertEqual(refusal.message, error.message)
 
+    def test_wrong_places_are_named_by_argument(self):
+        world = self.lab.create_world("places", seed=3)
+        with self.assertRaises(evod.InvalidArgument) as refused:
+            world.place(food=[(1, 40)], poison=[(30, 40), (-4, 40)])
+        self.assertEqual([v.field for v in refused.exception.violations], ["food[0].x_px", "poison[1].x_px"])
+        for wrong in ({"food": [1, 2]}, {"organisms": [(30, 40)]}, {"organisms": [(30, 40, {"impulse": 3})]}):
+            with self.assertRaises(evod.InvalidArgument):
+                world.place(**wrong)
+        world.remove(organisms=[3], generation=1)
+        self.assertEqual(world.organism(3).cause_of_death, evod.CauseOfDeath.REMOVED)
+        with self.assertRaises(evod.Aborted):
+            world.remove(organisms=[4], generation=2)
+        world.delete()
+
     def test_numpy_numbers_are_accepted(self):
         world = self.lab.world()
         parameters = world.set(mutation_chance=numpy.float32(0.5), elite_count=numpy.int64(3), respawn=numpy.True_,

@@ -69,6 +69,12 @@ async def send_every_request(lab):
     assert await result(world.cancel(planned.change)) == planned.change
     assert await result(world.cancel(later.id)) == later
 
+    # Items and organisms that are placed and removed.
+    placed = await result(world.place(food=[(30, 40), (50.5, 40)], poison=[(30, 80)]))
+    assert len(placed.food) == 2 and len(placed.poison) == 1 and placed.organisms == () and placed.generation == 1
+    removed = await result(world.remove(food=placed.food, poison=placed.poison, generation=1))
+    assert removed == placed
+
     # Snapshots, whole and in tiles.
     assert len((await result(world.snapshot())).organisms) == 10
     snapshots = await result(world.snapshots(120, region=(0, 0, 10, 10)))

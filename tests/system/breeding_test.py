@@ -19,8 +19,12 @@ def ask(**wanted):
 
 def genes_of(descendant):
     """What the record says became of the parents' genes."""
+    share = descendant.second_share
     genes = [second if descendant.from_second >> gene & 1 else first
              for gene, (first, second) in enumerate(zip(descendant.first_genes, descendant.second_genes))]
+    if share:
+        genes = [float(plain.numpy.float32(first + share * (second - first)))
+                 for first, second in zip(descendant.first_genes, descendant.second_genes)]
     if descendant.HasField("order_mutation"):
         genes = [genes[gene] for gene in descendant.order_mutation.order]
     for mutation in descendant.mutations:
@@ -129,6 +133,39 @@ class Breeding(export_test.Runs):
         server, client = self.serve()
         client.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
         for name, generations in ("w", 2), ("f", 5):
+            client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
+            client.call(run=c.Run(world=name, generations=generations))
+        plain.until(lambda: all(client.world(name).state == w.RUN_STATE_WAITING for name in "wf"), "generations")
+        self.assertEqual(client.world("w").state_hash, client.world("f").state_hash)
+        server.end()
+        for name in "wf":
+            done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
+            self.assertIn("everything agrees", done.stdout, done.stderr)
+
+    def test_blended_genes_can_be_computed_from_the_record(self):
+        server, client = self.serve()
+        self.run_world(client, 4, crossover="blend", crossover_chance=0.5, mutate_survivors=True,
+                       fitness_per_second=0.0, fitness_per_food=10.0, fitness_per_poison=-5.0, scale_chance=0.5)
+        reported = [self.breeding(client, generation=generation, island=1) for generation in range(1, 4)]
+        table = self.organisms()
+        for bred in reported:
+            self.check(bred, table)
+        children = [descendant for bred in reported for descendant in bred.descendants[bred.survivor_count:]]
+        self.assertTrue(all(child.crossed == (0 < child.second_share < 0.5) for child in children))
+        self.assertEqual({child.crossed for child in children}, {True, False})
+        scaled = [mutation for bred in reported for descendant in bred.descendants for mutation in descendant.mutations
+                  if mutation.kind == c.MUTATION_KIND_SCALE]
+        self.assertTrue(scaled)
+        self.assertTrue(all(0.9 - 1e-6 <= mutation.after / mutation.before <= 1.1 + 1e-6 for mutation in scaled))
+        text = "".join(waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w",
+                                    "breeding", "--generation", str(generation), "--island", "1", "--rows", "12"],
+                                   capture_output=True, text=True).stdout for generation in range(1, 4))
+        self.assertRegex(text, r" → \d+\.\d\d scale")
+        self.assertRegex(text, r"child +\d+, \d+ +0\.\d{3} of 1 \+ 0\.\d{3} of 2 ")
+        server.kill()
+        server, client = self.serve()  # from the file
+        client.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
+        for name, generations in ("w", 2), ("f", 4):
             client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
             client.call(run=c.Run(world=name, generations=generations))
         plain.until(lambda: all(client.world(name).state == w.RUN_STATE_WAITING for name in "wf"), "generations")

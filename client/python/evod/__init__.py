@@ -48,6 +48,7 @@ from evod.results import (
     Descendant,
     DescendantKind,
     Detail,
+    EntityIds,
     GeneAccount,
     GenerationStatistics,
     GeneStatistics,
@@ -75,8 +76,8 @@ PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunSta
 
 __all__ = [
     "Aborted", "Actor", "AlreadyExists", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
-    "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "Error", "Events",
-    "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
+    "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
+    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
     "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
     "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
     "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",

@@ -8,7 +8,8 @@ from __future__ import annotations
 import csv
 import dataclasses
 import io
-from typing import Any, Callable, Generator, Mapping, Sequence, TypeVar, Union
+import re
+from typing import Any, Callable, Generator, Iterable, Mapping, Sequence, TypeVar, Union
 
 import google.protobuf.descriptor
 import google.protobuf.message
@@ -19,17 +20,20 @@ from evod import snapshot_decoder
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import (
     DamagedData,
+    Error,
     InvalidArgument,
     NotFound,
     Unimplemented,
     Violation,
     argument_of,
+    copy_of,
     refusal,
     wrong_argument,
 )
 from evod.genes import GENE_NAMES, Genes
 from evod.generations import Generation, History, Population, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
+from evod.results import EntityIds, result
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
@@ -163,6 +167,63 @@ class LabPlans:
         if welcome is not None and "planned_changes" not in welcome.features:
             raise Unimplemented(
                 f"the server, evod {welcome.server_version}, does not support planned changes: update it"
+            )
+
+    def place(
+        self,
+        world: str,
+        island: int,
+        food: numpy.typing.ArrayLike,
+        poison: numpy.typing.ArrayLike,
+        organisms: Iterable[tuple[float, float, object]],
+    ) -> Plan[EntityIds]:
+        """Places items at positions of shape (count, 2), and organisms given as x, y and genes."""
+        yield from self.registry()
+        self._require_place()
+        positions = {"food": _positions("food", food), "poison": _positions("poison", poison)}
+        items = [
+            c.PlacedItem(kind=kind, x_px=x, y_px=y)
+            for kind, name in ((c.ITEM_KIND_FOOD, "food"), (c.ITEM_KIND_POISON, "poison"))
+            for x, y in positions[name]
+        ]
+        placed = [_placed_organism(i, organism) for i, organism in enumerate(organisms)]
+        try:
+            response = yield from request("place", world=world, island=island, items=items, organisms=placed)
+        except Error as error:
+            raise _with_lists(error, len(positions["food"])) from None
+        ids: EntityIds = result(response.placed)
+        return ids
+
+    def remove(
+        self,
+        world: str,
+        island: int,
+        generation: int | None,
+        food: Iterable[int],
+        poison: Iterable[int],
+        organisms: Iterable[int],
+    ) -> Plan[EntityIds]:
+        """Removes items and organisms by their ids."""
+        yield from self.registry()
+        self._require_place()
+        response = yield from request(
+            "remove",
+            world=world,
+            island=island,
+            generation=generation,
+            food=list(food),
+            poison=list(poison),
+            organisms=list(organisms),
+        )
+        ids: EntityIds = result(response.removed)
+        return ids
+
+    def _require_place(self) -> None:
+        """Raises Error if the server cannot place items and organisms."""
+        welcome = self.core.welcome
+        if welcome is not None and "place" not in welcome.features:
+            raise Unimplemented(
+                f"the server, evod {welcome.server_version}, cannot place or remove items and organisms: update it"
             )
 
     def create_world(
@@ -601,6 +662,45 @@ def view_message(
         part = build(c.Region, "region.", **dict(zip(names, region)))
     wanted = None if detail is None else _choice("detail", detail, DETAILS)
     return build(c.View, "", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
+
+
+def _positions(field: str, positions: numpy.typing.ArrayLike) -> list[tuple[float, float]]:
+    try:
+        array = numpy.asarray(positions, float)
+    except (TypeError, ValueError):
+        raise wrong_argument(field, "pairs of numbers: x and y in px", positions) from None
+    if array.size == 0:
+        return []
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise wrong_argument(field, "pairs of numbers: x and y in px", positions)
+    return [(float(x), float(y)) for x, y in array]
+
+
+def _placed_organism(index: int, organism: tuple[float, float, object]) -> c.PlacedOrganism:
+    allowed = "x and y in px, and the genes: 6 numbers, or numbers by gene name"
+    try:
+        x, y, genes = organism
+        values = [genes[name] for name in GENE_NAMES] if isinstance(genes, Mapping) else genes
+        numbers = numpy.asarray(values, "<f4").ravel()
+        return c.PlacedOrganism(x_px=float(x), y_px=float(y), genes=numbers)
+    except (KeyError, TypeError, ValueError):
+        raise wrong_argument(f"organisms[{index}]", allowed, organism) from None
+
+
+def _with_lists(error: Error, food_count: int) -> Error:
+    """Renames the items in a refusal of Place: the request contains the food, then the poison."""
+
+    def renamed(field: str) -> str:
+        found = re.match(r"items\[(\d+)\]", field)
+        if found is None:
+            return field
+        index = int(found[1])
+        name = f"food[{index}]" if index < food_count else f"poison[{index - food_count}]"
+        return name + field[found.end() :]
+
+    copy = copy_of(error)
+    copy.violations = tuple(Violation(renamed(v.field), v.allowed, v.got) for v in error.violations)
+    return copy
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:

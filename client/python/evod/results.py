@@ -68,6 +68,7 @@ class CauseOfDeath(_State):
 
     STARVED = world_pb2.CAUSE_OF_DEATH_STARVED
     POISONED = world_pb2.CAUSE_OF_DEATH_POISONED
+    REMOVED = world_pb2.CAUSE_OF_DEATH_REMOVED  #: `World.remove` removed it
 
 
 class Choice(_State):
@@ -101,6 +102,7 @@ class MutationKind(_State):
     RESET = commands_pb2.MUTATION_KIND_RESET
     BIT_FLIP = commands_pb2.MUTATION_KIND_BIT_FLIP
     CLAMP = commands_pb2.MUTATION_KIND_CLAMP  #: the value was outside its bounds and was set to the nearest bound
+    SCALE = commands_pb2.MUTATION_KIND_SCALE  #: multiplied by a random factor
 
 
 # ---- worlds ---------------------------------------------------------------------------------------------------------------
@@ -277,12 +279,24 @@ class OrganismInfo(_Result):
     cause_of_death: CauseOfDeath | None  #: None: the organism is alive
     food_eaten: int
     poison_eaten: int
-    parents: tuple[int, ...]  #: ids in the previous generation; () in the first generation
+    parents: tuple[int, ...]  #: ids in the previous generation; () in the first generation and for a placed organism
     choice: Choice | None  #: the action in the next tick; None: it does not act
     force_x: float  #: force in the next tick, kg px/s²
     force_y: float
     target_x_px: float  #: position of the food or poison that it seeks or flees; its own position if it wanders
     target_y_px: float
+    placed_tick: int | None  #: the tick of its generation after which it was placed; None: it was bred
+
+
+@dataclasses.dataclass(frozen=True)
+class EntityIds(_Result):
+    """The items and organisms that `World.place` has placed or `World.remove` has removed."""
+
+    island: int
+    generation: int  #: the ids belong to this generation
+    food: tuple[int, ...]  #: ids in the order of the call
+    poison: tuple[int, ...]
+    organisms: tuple[int, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -349,6 +363,7 @@ class Descendant(_Result):
     first_genes: Genes  #: genes of the first parent
     second_genes: Genes
     from_second: int  #: bit g is set if gene g comes from the second parent
+    second_share: float  #: blend crossover: the weight of the second parent in every gene; otherwise 0
     crossed: bool  #: crossover took place
     order_mutation: OrderMutation | None
     mutations: tuple[Mutation, ...]  #: in the order in which they happened
@@ -383,7 +398,7 @@ _CLASSES: Mapping[str, type[Any]] = {
     kind.__name__: kind
     for kind in (Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
-} | {"Replay": ReplayRange}  # fmt: skip
+} | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {
     kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, MutationKind, Outcome, RunState, StorageState)
 }

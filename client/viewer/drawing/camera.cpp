@@ -4,7 +4,8 @@
 
 namespace evod::viewer {
 
-void Camera::set_viewport(Rectangle screen) {
+void Camera::set_viewport(Rectangle screen, double scale) {
+    scale_ = scale;
     viewport_ = {screen.left, screen.top, std::max(screen.width, 1.0), std::max(screen.height, 1.0)};
     if (fitted_) {
         fit();
@@ -21,7 +22,7 @@ void Camera::set_island(double width, double height) {
 }
 
 double Camera::zoom_to_fit() const {
-    const double around = 2 * (wall_pixels + margin_pixels);
+    const double around = 2 * scale_ * (wall_pixels + margin_pixels);
     const double zoom =
         std::min((viewport_.width - around) / island_width_, (viewport_.height - around) / island_height_);
     return std::clamp(zoom, 1e-6, zoom_max);

@@ -27,12 +27,12 @@ struct Rectangle {
 class Camera {
   public:
     static constexpr double zoom_max = 64;     // pixels on the screen per px of the world
-    static constexpr double wall_pixels = 6;   // thickness of the walls in pixels at any zoom
-    static constexpr double margin_pixels = 6; // space around the walls when the whole island is shown
+    static constexpr double wall_pixels = 6;   // thickness of the walls in pixels at scale 1, at any zoom
+    static constexpr double margin_pixels = 6; // space around the walls when the whole island is shown, at scale 1
 
-    /// Sets the viewport. If the whole island was fitted into the old viewport, it is fitted into the new one;
-    /// otherwise the centre and the zoom do not change.
-    void set_viewport(Rectangle screen);
+    /// Sets the viewport, and the factor for sizes given in pixels at scale 1. If the whole island was fitted into the
+    /// old viewport, it is fitted into the new one; otherwise the centre and the zoom do not change.
+    void set_viewport(Rectangle screen, double scale = 1);
 
     /// Sets the size of the island, in px of the world. If the size has changed, fits the whole island into the
     /// viewport.
@@ -59,6 +59,7 @@ class Camera {
     Point to_world(Point screen) const;
 
     const Rectangle& viewport() const { return viewport_; }
+    double scale() const { return scale_; }
     Point centre() const { return centre_; } // the point of the world in the middle of the viewport
     double zoom() const { return zoom_; }    // pixels on the screen per px of the world
     double zoom_min() const;                 // half of the zoom that fit() sets
@@ -69,6 +70,7 @@ class Camera {
     void stay_on_island();
 
     Rectangle viewport_{0, 0, 1, 1};
+    double scale_ = 1;
     double island_width_ = 1, island_height_ = 1;
     Point centre_{0.5, 0.5};
     double zoom_ = 1;

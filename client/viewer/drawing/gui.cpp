@@ -1,5 +1,6 @@
 #include "client/viewer/drawing/gui.h"
 
+#include <SFML/System/Utf.hpp>
 #include <SFML/Window/Clipboard.hpp>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -72,6 +74,8 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     ImGuiStyle& style = ImGui::GetStyle();
     style.FrameBorderSize = 1; // makes white fields visible on light panels
     style.Colors[ImGuiCol_Border].w = 0.5f;
+    style.Colors[ImGuiCol_PopupBg].w = 1;
+    style.Colors[ImGuiCol_SliderGrab].w = style.Colors[ImGuiCol_SliderGrabActive].w = 0.35f; // it lies under the number
     style.ScaleAllSizes(scale_);
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // prevents Dear ImGui from writing a settings file
@@ -190,6 +194,20 @@ Captured Gui::captured() const {
     return {.keyboard = io.WantCaptureKeyboard, .mouse = io.WantCaptureMouse};
 }
 
+std::optional<std::string> Gui::typed_text() const {
+    ImGuiContext& context = *ImGui::GetCurrentContext();
+    const ImGuiInputTextState& field = context.InputTextState;
+    if (!context.IO.WantTextInput || field.ID == 0 || field.ID != context.ActiveId) {
+        return std::nullopt;
+    }
+    std::string text;
+    for (int i = 0; i < field.CurLenW; ++i) {
+        const sf::Uint32 sign = field.TextW[i];
+        sf::Utf8::encode(sign, std::back_inserter(text));
+    }
+    return text;
+}
+
 bool Gui::close_popup() {
     // Dear ImGui closes popups with Esc only if keyboard navigation is on.
     const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
@@ -210,12 +228,12 @@ void Gui::begin(unsigned width_pixels, unsigned height_pixels, double seconds) {
     while (!waiting_.empty() && pass_on(waiting_.front(), received)) {
         waiting_.pop_front();
     }
-    widget_positions_->begin_frame();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
 }
 
 void Gui::draw() {
+    widget_positions_->end_frame(ImGui::GetCurrentContext()->HoveredId);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

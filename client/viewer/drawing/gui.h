@@ -15,6 +15,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 
 struct ImFont;
@@ -39,6 +40,8 @@ class Gui {
 
     void handle(const sf::Event& event);
     Captured captured() const;
+    /// Returns the text in the field that has the keyboard focus; nullopt if no field has it.
+    std::optional<std::string> typed_text() const;
     /// Closes the topmost menu, list or dialog. Call it between two frames. Returns false if none is open.
     bool close_popup();
     /// Returns whether Dear ImGui has received every queued event.

@@ -3,6 +3,9 @@
 // Food and poison differ in lightness as well as in hue, so that red-green colour-blind users can distinguish them.
 // Ordered numbers use a ramp of rising lightness. Categories use the colours of Okabe and Ito.
 //
+// The colours of an island depend on its skin. Bodies are violet in both skins. Violet differs from green and from red
+// for every kind of colour vision, so that a body of any lightness is never confused with food or poison.
+//
 // Owner        none: constants.
 // Threads      any.
 #pragma once
@@ -18,8 +21,22 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
+/// How islands are drawn: vivid has filled bodies; classic has hollow circles on grey, as the first version had.
+enum class Skin : std::uint8_t { Vivid, Classic };
+/// The background of the vivid skin. The classic skin is always grey.
+enum class Background : std::uint8_t { Dark, Light };
+struct Look {
+    Skin skin = Skin::Vivid;
+    Background background = Background::Dark;
+    friend bool operator==(const Look&, const Look&) = default;
+};
+
+constexpr std::array<std::string_view, 2> skin_names{"vivid", "classic"};
+constexpr std::array<std::string_view, 2> background_names{"dark", "light"};
+
 namespace palette {
 
+// Colours of the classic skin.
 constexpr Colour background{204, 204, 204};
 constexpr Colour wall{0, 0, 0};
 constexpr Colour organism{104, 22, 148};
@@ -52,14 +69,15 @@ constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
 
-/// Colour ramps for numbers. Lightness rises with the number.
-enum class Ramp { Viridis, Cividis };
-constexpr std::array<Ramp, 2> ramps{Ramp::Viridis, Ramp::Cividis};
+/// Colour ramps for numbers. Lightness rises with the number. Violet never resembles food or poison; viridis contains
+/// green.
+enum class Ramp { Violet, Viridis, Cividis };
+constexpr std::array<Ramp, 3> ramps{Ramp::Violet, Ramp::Viridis, Ramp::Cividis};
 std::string_view name_of(Ramp ramp);
 
 /// Returns the colour at `share` of the ramp, clamped to 0 to 1; `unknown` if `share` is not a number.
 ///
-/// Source   every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van der Walt and N. Smith,
+/// Source   viridis and cividis: every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van der Walt and N. Smith,
 ///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
 Colour at(Ramp ramp, double share);
 
@@ -76,7 +94,22 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
-// Colours for the choice of an organism.
+/// The colours of an island in one look.
+struct IslandColours {
+    Colour outside;              // around the walls
+    Colour ground, wall;         // inside the walls, and the walls
+    Colour label;                // numbers on the ground
+    Colour body_low, body_high;  // an organism with no health, and one with the greatest health
+    Colour body;                 // an organism whose health is unknown
+    Colour arc;                  // the health arc; classic: the circle of an organism
+    Colour pointed_at, selected; // rings around organisms
+    Colour food, poison, crate, crate_edge, obstacle;
+    Colour food_radius, poison_radius, trail, death;
+    Colour wanders, seeks, flees; // the choice of an organism
+};
+const IslandColours& of(Look look);
+
+// Colours of the choices on a light background.
 constexpr Colour wanders{90, 90, 96};
 constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
@@ -91,6 +124,7 @@ constexpr Colour series_blue = kinds[4];
 constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
+constexpr Colour plot_mark{74, 58, 150}; // a change of parameters
 // Colours of the integrators in the time step demonstration.
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];

@@ -2,54 +2,70 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/text/lines.h"
+#include "proto/text/number_text.h"
 
-#include <utility>
+#include <imgui_internal.h> // ImGuiLastItemData, the window's clip rectangle
+
+#include <algorithm>
 
 namespace evod::viewer {
 
-void WidgetPositions::begin_frame() {
+void WidgetPositions::end_frame(unsigned hovered) {
     shown_ = std::exchange(building_, {});
+    hovered_id_ = hovered;
     panel_.clear();
+    wanted_.clear();
 }
 
-/// Calls `act` for both names of a widget: "Panel/name" and "name".
-template <class Do>
-void WidgetPositions::for_each_name(std::string_view name, Do act) {
-    if (!panel_.empty()) {
-        act(panel_ + "/" + std::string{name});
+void WidgetPositions::add(MarkedWidget widget) {
+    widget.panel = panel_;
+    building_.push_back(std::move(widget));
+}
+
+void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, std::string_view alias,
+                                 MarkedWidget widget) {
+    const auto owner = std::ranges::find_if(building_, [&](const MarkedWidget& built) {
+        return built.kind == MarkedWidget::Kind::DropDown && built.panel == panel_ && built.name == drop_down;
+    });
+    if (owner != building_.end()) {
+        owner->choices.emplace_back(choice);
     }
-    act(std::string{name});
+    widget.name = std::string{drop_down} + ": " + std::string{choice};
+    if (!alias.empty()) {
+        widget.aliases = {std::string{drop_down} + ": " + std::string{alias}};
+    }
+    add(std::move(widget));
 }
 
-void WidgetPositions::add(std::string_view name, Point centre) {
-    for_each_name(name, [&](std::string full) {
-        building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {}});
-    });
+void WidgetPositions::add_alias(std::string_view alias) {
+    if (!building_.empty()) {
+        building_.back().aliases.emplace_back(alias);
+    }
 }
 
-void WidgetPositions::add_drop_down(std::string_view name, Point centre) {
-    for_each_name(name, [&](std::string full) {
-        building_.insert_or_assign(std::move(full), Widget{.centre = centre, .choices = {{}}});
-    });
+void WidgetPositions::explain(unsigned id, std::string_view note) {
+    if (id != 0 && !building_.empty() && building_.back().id == id) {
+        building_.back().note = note;
+    }
 }
 
-void WidgetPositions::add_choice(std::string_view drop_down, std::string_view choice, Point centre) {
-    add(std::string{drop_down} + ": " + std::string{choice}, centre);
-    for_each_name(drop_down, [&](const std::string& full) {
-        if (const auto spot = building_.find(full); spot != building_.end() && spot->second.choices) {
-            spot->second.choices->emplace_back(choice);
+std::vector<const MarkedWidget*> WidgetPositions::find(std::string_view name) const {
+    std::vector<const MarkedWidget*> found;
+    for (const MarkedWidget& widget : shown_) {
+        std::string_view in_panel = name; // without the panel of the widget
+        if (!widget.panel.empty() && name.starts_with(widget.panel + "/")) {
+            in_panel.remove_prefix(widget.panel.size() + 1);
         }
-    });
+        const auto is_named = [&](const std::string& own) { return own == name || own == in_panel; };
+        if (is_named(widget.name) || std::ranges::any_of(widget.aliases, is_named)) {
+            found.push_back(&widget);
+        }
+    }
+    return found;
 }
 
-std::optional<Point> WidgetPositions::find(const std::string& name) const {
-    const auto found = shown_.find(name);
-    return found == shown_.end() ? std::nullopt : std::optional{found->second.centre};
-}
-
-const std::vector<std::string>* WidgetPositions::choices(const std::string& name) const {
-    const auto found = shown_.find(name);
-    return found == shown_.end() || !found->second.choices ? nullptr : &*found->second.choices;
+bool WidgetPositions::is_wanted(std::string_view name) const {
+    return !wanted_.empty() && (name == wanted_ || panel_ + "/" + std::string{name} == wanted_);
 }
 
 bool WidgetPositions::mouse_rests(Point corner, double now_s, bool clicked) {
@@ -77,22 +93,56 @@ void write_lines(std::string_view text, float width_max) {
     ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
 }
 
-/// Returns the register of widgets; null if no part of this rectangle is visible.
-WidgetPositions* positions_of(ImVec2 least, ImVec2 most) {
-    return ImGui::IsRectVisible(least, most) ? static_cast<WidgetPositions*>(ImGui::GetIO().UserData) : nullptr;
+/// Returns the register of widgets; null if the current window draws nothing.
+WidgetPositions* positions() {
+    return ImGui::GetCurrentWindow()->SkipItems ? nullptr : static_cast<WidgetPositions*>(ImGui::GetIO().UserData);
 }
 
-Point middle(ImVec2 least, ImVec2 most) {
-    return {(least.x + most.x) / 2.0, (least.y + most.y) / 2.0};
+/// Completes and registers the description of a widget.
+///
+/// place  the part of the widget that reacts to clicks
+/// flags  of Dear ImGui, which contain whether the widget is disabled
+void add(MarkedWidget widget, ImRect place, ImGuiItemFlags flags) {
+    if (WidgetPositions* all = positions()) {
+        const ImVec2 centre = place.GetCenter();
+        widget.place = {place.Min.x, place.Min.y, place.GetWidth(), place.GetHeight()};
+        widget.enabled = (flags & ImGuiItemFlags_Disabled) == 0;
+        // A widget may be wider than its column of a table, so the column's clip rectangle counts only vertically.
+        const ImGuiWindow& window = *ImGui::GetCurrentWindow();
+        widget.visible = window.InnerClipRect.Contains({centre.x, window.InnerClipRect.Min.y}) &&
+                         centre.y >= window.ClipRect.Min.y && centre.y < window.ClipRect.Max.y;
+        if (!widget.visible && all->is_wanted(widget.name)) {
+            ImGui::SetScrollHereY();
+        }
+        all->add(std::move(widget));
+    }
+}
+
+/// Registers the widget that was drawn last.
+void add_last(MarkedWidget widget) {
+    const ImGuiLastItemData& last = ImGui::GetCurrentContext()->LastItemData;
+    widget.id = last.ID;
+    add(std::move(widget), last.NavRect, last.InFlags);
 }
 
 } // namespace
 
 void mark(std::string_view name) {
-    const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-    if (WidgetPositions* positions = positions_of(least, most)) {
-        positions->add(name, middle(least, most));
+    add_last({.name = std::string{name}});
+}
+
+void alias(std::string_view name) {
+    if (WidgetPositions* all = positions()) {
+        all->add_alias(name);
     }
+}
+
+void mark_field(std::string_view name, std::string value) {
+    add_last({.kind = MarkedWidget::Kind::Field, .name = std::string{name}, .value = std::move(value)});
+}
+
+void mark_field(std::string_view name, double value) {
+    mark_field(name, text::number_text(value));
 }
 
 bool button(const char* label) {
@@ -101,27 +151,33 @@ bool button(const char* label) {
     return pressed;
 }
 
-bool checkbox(const char* label, bool& on) {
+bool checkbox(const char* label, bool& on, std::string_view name) {
     const bool changed = ImGui::Checkbox(label, &on);
-    mark(label);
+    add_last({.kind = MarkedWidget::Kind::CheckBox,
+              .name = std::string{name.empty() ? label : name},
+              .value = on ? "on" : "off"});
     return changed;
 }
 
 bool begin_drop_down(const char* label, const char* chosen, std::string_view name) {
-    // After an open list is drawn, Dear ImGui's "last widget" is the list. The position is therefore read before.
+    // After an open list is drawn, Dear ImGui's "last widget" is the list. The widget is therefore registered before.
     const ImVec2 least = ImGui::GetCursorScreenPos();
-    const ImVec2 most{least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()};
-    if (WidgetPositions* positions = positions_of(least, most)) {
-        positions->add_drop_down(name.empty() ? label : name, middle(least, most));
-    }
+    add({.kind = MarkedWidget::Kind::DropDown,
+         .name = std::string{name.empty() ? label : name},
+         .id = ImGui::GetID(label),
+         .value = chosen},
+        {least, {least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()}},
+        ImGui::GetCurrentContext()->CurrentItemFlags);
     return ImGui::BeginCombo(label, chosen, ImGuiComboFlags_HeightLargest);
 }
 
-bool choice(std::string_view drop_down, const std::string& name, bool chosen) {
+bool choice(std::string_view drop_down, const std::string& name, bool chosen, std::string_view alias) {
     const bool taken = ImGui::Selectable(name.c_str(), chosen);
-    const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-    if (WidgetPositions* positions = positions_of(least, most)) {
-        positions->add_choice(drop_down, name, middle(least, most));
+    if (WidgetPositions* all = positions()) {
+        const ImGuiLastItemData& last = ImGui::GetCurrentContext()->LastItemData;
+        const ImRect& place = last.NavRect;
+        all->add_choice(drop_down, name, alias,
+                        {.place = {place.Min.x, place.Min.y, place.GetWidth(), place.GetHeight()}, .id = last.ID});
     }
     return taken;
 }
@@ -155,6 +211,9 @@ void note(std::string_view text) {
 }
 
 void explain(std::string_view text) {
+    if (WidgetPositions* all = positions()) {
+        all->explain(ImGui::GetItemID(), text);
+    }
     if (wants_note()) {
         note(text);
     }

@@ -16,43 +16,22 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float label_pixels = 14;      // height of the health numbers, at scale 1
-constexpr double label_zoom_min = 0.45; // at a smaller zoom, organisms are smaller than their numbers
-
-const ShapeStyle food_style{.fill = palette::food, .half_pixels_min = 1};
-const ShapeStyle poison_style{.fill = palette::poison, .half_pixels_min = 1};
-const ShapeStyle obstacle_style{.form = Form::Rectangle, .fill = palette::obstacle, .half_pixels_min = 1};
-const ShapeStyle crate_style{.form = Form::Rectangle,
-                             .fill = palette::crate,
-                             .edge = palette::crate_edge,
-                             .edge_pixels = 2,
-                             .half_pixels_min = 1};
-const ShapeStyle organism_style{
-    .fill = {0, 0, 0, 0}, .edge = palette::organism, .edge_pixels = 2, .half_pixels_min = 1.5f};
-const ShapeStyle pointed_at_style{
-    .fill = {255, 255, 255, 90}, .edge = palette::organism_pointed_at, .edge_pixels = 3, .half_pixels_min = 4};
-const ShapeStyle wall_style{
-    .form = Form::Rectangle, .fill = {0, 0, 0, 0}, .edge = palette::wall, .edge_pixels = float(Camera::wall_pixels)};
-
-// The style of coloured organisms: a disc, with a dark outline if it is large enough.
-const ShapeStyle coloured_style{.edge = palette::organism_outline, .edge_pixels = 1, .half_pixels_min = 1.5f};
-const ShapeStyle coloured_small_style{.half_pixels_min = 1.5f};
-constexpr double outline_zoom_min = 0.3;
-const ShapeStyle selected_style{
-    .fill = {0, 0, 0, 0}, .edge = palette::selected, .edge_pixels = 3, .half_pixels_min = 6};
-const ShapeStyle density_style{.form = Form::Rectangle};
-const ShapeStyle food_radius_style{.fill = {0, 0, 0, 0}, .edge = palette::food_radius, .edge_pixels = 1};
-const ShapeStyle poison_radius_style{.fill = {0, 0, 0, 0}, .edge = palette::poison_radius, .edge_pixels = 1};
-const ShapeStyle arrow_style{.form = Form::Arrow, .line_pixels = 2};
-const ShapeStyle target_style{.form = Form::Line, .line_pixels = 1};
-constexpr double marks_zoom_min = 0.05; // at a smaller zoom, rings and arrows would cover everything
-
+constexpr float label_pixels = 14; // height of the health numbers, at scale 1
 constexpr double density_cell_pixels = 5;
 
-ShapeStyle trail_style(double age_share) {
-    ShapeStyle style{.form = Form::Line, .fill = palette::trail, .line_pixels = 1.5f};
-    style.fill.alpha = static_cast<std::uint8_t>(200 - 160 * std::clamp(age_share, 0.0, 1.0));
-    return style;
+constexpr double outline_zoom_min = 0.3; // smaller coloured organisms have neither outline nor arc
+
+const ShapeStyle density_style{.form = Form::Rectangle};
+
+/// The style of a trail whose end has this age, as a share of the time that trails are kept.
+ShapeStyle aged(ShapeStyle trail, double age_share) {
+    trail.fill.alpha = static_cast<std::uint8_t>(trail.fill.alpha * (1 - 0.8 * std::clamp(age_share, 0.0, 1.0)));
+    return trail;
+}
+
+Rectangle on_screen(const Camera& camera, const evod::v1::SnapshotFrame& island) {
+    const Point corner = camera.to_screen({0, 0});
+    return {corner.x, corner.y, island.width_px() * camera.zoom(), island.height_px() * camera.zoom()};
 }
 
 /// Returns the index of the gene with this name; nullopt if the world has no such gene.
@@ -68,31 +47,58 @@ unsigned shown_health(float health) {
     return health > 0 ? static_cast<unsigned>(std::ceil(health)) : 0;
 }
 
-bool labels_are_readable(const Camera& camera, std::size_t visible_count) {
-    constexpr double label_area = 2 * label_pixels * label_pixels, covered_max = 0.4;
+bool labels_are_readable(const Camera& camera, std::size_t visible_count, double zoom_min) {
+    constexpr double covered_max = 0.4;
+    const double label_height = label_pixels * camera.scale(), label_area = 2 * label_height * label_height;
     const double viewport_area = camera.viewport().width * camera.viewport().height;
-    return camera.zoom() >= label_zoom_min &&
+    return camera.zoom() >= zoom_min * camera.scale() &&
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
+namespace {
+
+/// Returns the circle at a point of the screen, as organism_at() does.
+///
+/// radius_px  a function that returns the radius of a circle, by its index
+template <class Radius>
+std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Radius radius_px, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
     const Point world = camera.to_world(screen);
-    const double slack = 3 / camera.zoom();
+    const double pixel = camera.scale() / camera.zoom(), target_min = 12 * pixel, slack = 3 * pixel;
     std::optional<std::size_t> found;
-    double nearest = 0; // squared distance of the nearest organism so far
-    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
-        const auto [x_px, y_px] = organisms[i];
-        const double x = x_px - world.x, y = y_px - world.y, distance = x * x + y * y;
-        const double reach = organisms.entities->radius_px(i) + slack;
-        if (distance <= reach * reach && (!found || distance < nearest)) {
+    bool found_inside = false;
+    double nearest = 0; // distance to the found circle: to its centre if it contains the point, otherwise to its edge
+    for (std::size_t i = 0, size = circles.size(); i < size; ++i) {
+        const auto [x_px, y_px] = circles[i];
+        const double radius = radius_px(i);
+        const double x = x_px - world.x, y = y_px - world.y, reach = std::max(radius + slack, target_min);
+        if (x * x + y * y > reach * reach) {
+            continue;
+        }
+        const double distance = std::sqrt(x * x + y * y);
+        const bool inside = distance <= radius;
+        const double measure = inside ? distance : distance - radius;
+        if (!found || (inside && !found_inside) || (inside == found_inside && measure < nearest)) {
             found = i;
-            nearest = distance;
+            found_inside = inside;
+            nearest = measure;
         }
     }
     return found;
+}
+
+} // namespace
+
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
+    return circle_at(
+        screen, organisms, [&](std::size_t i) { return organisms.entities->radius_px(i); }, camera);
+}
+
+std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera) {
+    return circle_at(
+        screen, {.entities = &items}, [&](std::size_t) { return radius_px; }, camera);
 }
 
 void IslandRenderer::set_circles(Layer& layer, const codec::Entities& items, float radius) {
@@ -112,65 +118,104 @@ void IslandRenderer::set_boxes(Layer& layer, const Positions& boxes) {
     layer.set(shapes_);
 }
 
-void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
-                                     const Camera& camera) {
-    if (snapshot != uploaded_) {
-        uploaded_ = snapshot;
-        const auto item_radius = static_cast<float>(snapshot->about.item_radius_px());
-        set_circles(food_, snapshot->entities->food, item_radius);
-        set_circles(poison_, snapshot->entities->poison, item_radius);
-        set_boxes(obstacles_, {.entities = &snapshot->entities->obstacles});
+void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
+    if (snapshot == uploaded_) {
+        return;
     }
-    // The walls lie outside the island and have the same thickness on the screen at any zoom.
-    const auto half_width = static_cast<float>(snapshot->about.width_px() / 2);
-    const auto half_height = static_cast<float>(snapshot->about.height_px() / 2);
-    const auto thickness = static_cast<float>(Camera::wall_pixels / camera.zoom());
-    walls_.set(std::array{Shape{half_width, half_height, half_width + thickness, half_height + thickness}});
+    uploaded_ = snapshot;
+    const auto item_radius = static_cast<float>(snapshot->about.item_radius_px());
+    set_circles(food_, snapshot->entities->food, item_radius);
+    set_circles(poison_, snapshot->entities->poison, item_radius);
+    set_boxes(obstacles_, {.entities = &snapshot->entities->obstacles});
+    full_health_ = health_scale(snapshot->entities->organisms, {}).high;
+}
+
+/// Draws the ground and the walls. The walls lie outside the island and have the same thickness at any zoom.
+void IslandRenderer::draw_walls(const codec::ReceivedSnapshot& snapshot, const Camera& camera, Look look) {
+    const palette::IslandColours& colours = palette::of(look);
+    const Rectangle inside = on_screen(camera, snapshot.about);
+    const double thickness = Camera::wall_pixels * camera.scale();
+    if (const ShapeStyle& style = styles_of(look).shadow; style.fill.alpha > 0) {
+        const auto beyond = static_cast<float>(thickness / camera.zoom());
+        const auto further = static_cast<float>(Camera::margin_pixels * camera.scale() / camera.zoom());
+        const float left = -beyond, top = -beyond, right = static_cast<float>(snapshot.about.width_px()) + beyond,
+                    bottom = static_cast<float>(snapshot.about.height_px()) + beyond;
+        shadow_.set(std::array{
+            Line{left - further, top, right + further, top}, Line{left - further, bottom, right + further, bottom},
+            Line{left, top - further, left, bottom + further}, Line{right, top - further, right, bottom + further}});
+        painter_.draw(shadow_, style);
+    }
+    painter_.fill(
+        {inside.left - thickness, inside.top - thickness, inside.width + 2 * thickness, inside.height + 2 * thickness},
+        colours.wall);
+    painter_.fill(inside, colours.ground);
 }
 
 void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, const Camera& camera,
                           unsigned width_pixels, unsigned height_pixels, const IslandView& island_view,
                           const Highlighted& highlighted) {
-    painter_.begin(camera, width_pixels, height_pixels, palette::background);
+    const Look look = island_view.options.look;
+    const Styles& styles = styles_of(look);
+    painter_.begin(camera, width_pixels, height_pixels);
+    painter_.fill(camera.viewport(), palette::of(look).outside);
     density_scale_.reset();
     if (const auto& snapshot = view.latest()) {
-        upload_snapshot(snapshot, camera);
+        upload_snapshot(snapshot);
         set_boxes(crates_, view.crates_at(blend));
         const Positions organisms = view.organisms_at(blend);
-        painter_.draw(walls_, wall_style);
-        painter_.draw(obstacles_, obstacle_style);
-        painter_.draw(crates_, crate_style);
+        draw_walls(*snapshot, camera, look);
+        painter_.draw(obstacles_, styles.obstacle);
+        painter_.draw(crates_, styles.crate);
         // After a change of the level of detail, draw densities until the first snapshot with the new detail arrives.
         const bool has_densities = std::ranges::any_of(
             snapshot->tiles, [](const auto& tile) { return tile.detail == evod::v1::DETAIL_DENSITY; });
-        if (island_view.shows_density(camera) || has_densities) {
+        if (island_view.shows_density(camera, *snapshot) || has_densities) {
             draw_density(*snapshot, organisms, camera, island_view);
         } else {
-            draw_items(*snapshot);
+            draw_items(*snapshot, camera, styles);
             discs_.clear();
             add_discs(organisms, discs_);
-            draw_radii(*organisms.entities, camera, island_view);
+            Chosen chosen;
+            if (!island_view.options.of_all) {
+                chosen.emplace();
+                for (const auto& index : {highlighted.pointed_at, highlighted.selected}) {
+                    if (index && *index < discs_.size()) {
+                        chosen->push_back(*index);
+                    }
+                }
+            }
+            painter_.clip(on_screen(camera, snapshot->about));
+            draw_radii(*organisms.entities, camera, island_view, chosen);
             draw_trails(*snapshot, camera, island_view);
+            const double behind_s =
+                view.previous() ? snapshot->about.simulated_s() - view.previous()->about.simulated_s() : 0;
+            draw_flashes(snapshot->about.simulated_s() - (1 - blend) * behind_s, island_view);
+            painter_.clip_to_viewport();
             draw_organisms(*organisms.entities, camera, island_view);
-            draw_forces(*organisms.entities, camera, island_view);
+            painter_.clip(on_screen(camera, snapshot->about));
+            draw_forces(*organisms.entities, camera, island_view, chosen);
+            painter_.clip_to_viewport();
         }
         const auto highlight = [&](std::optional<std::size_t> index, Layer& layer, const ShapeStyle& style) {
             if (index && *index < organisms.size()) {
                 const auto [x, y] = organisms[*index];
-                const float radius = organisms.entities->radius_px(*index);
+                const double beyond = static_cast<double>(styles.highlight_pixels) * camera.scale() / camera.zoom();
+                const float radius = organisms.entities->radius_px(*index) + static_cast<float>(beyond);
                 layer.set(std::array{Shape{x, y, radius, radius}});
                 painter_.draw(layer, style);
             }
         };
-        highlight(highlighted.selected, selected_, selected_style);
-        highlight(highlighted.pointed_at, pointed_at_, pointed_at_style);
+        highlight(highlighted.selected, selected_, styles.selected);
+        highlight(highlighted.pointed_at, pointed_at_, styles.pointed_at);
     }
     painter_.end();
 }
 
-void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot) {
-    painter_.draw(poison_, poison_style);
-    painter_.draw(food_, food_style);
+void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles) {
+    const ShapeStyle& food = too_small_to_see(camera) ? styles.food_dot : styles.food;
+    const ShapeStyle& poison = too_small_to_see(camera) ? styles.poison_dot : styles.poison;
+    painter_.draw(poison_, poison);
+    painter_.draw(food_, food);
     // Tiles streamed as dots contain only positions.
     const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px,
                                const ShapeStyle& style) {
@@ -187,23 +232,27 @@ void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot) {
             painter_.draw(dots_, style);
         }
     };
-    draw_dots(&codec::DecodedDots::obstacles, typical_radius_px, obstacle_style);
-    draw_dots(&codec::DecodedDots::crates, typical_radius_px, crate_style);
-    draw_dots(&codec::DecodedDots::poison, snapshot.about.item_radius_px(), poison_style);
-    draw_dots(&codec::DecodedDots::food, snapshot.about.item_radius_px(), food_style);
-    draw_dots(&codec::DecodedDots::organisms, typical_radius_px, organism_style);
+    draw_dots(&codec::DecodedDots::obstacles, typical_radius_px, styles.obstacle);
+    draw_dots(&codec::DecodedDots::crates, typical_radius_px, styles.crate);
+    draw_dots(&codec::DecodedDots::poison, snapshot.about.item_radius_px(), poison);
+    draw_dots(&codec::DecodedDots::food, snapshot.about.item_radius_px(), food);
+    draw_dots(&codec::DecodedDots::organisms, typical_radius_px, styles.organism_dot);
 }
 
 void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Camera& camera,
                                     const IslandView& island_view) {
-    colours_.clear();
+    const Styles& styles = styles_of(island_view.options.look);
+    if (styles.organism.form == Form::Body) {
+        set_health(organisms, full_health_, discs_);
+    }
     if (island_view.options.colour_by == ColourBy::Nothing) {
         organisms_.set(discs_);
-        return painter_.draw(organisms_, organism_style);
+        return painter_.draw(organisms_, styles.organism);
     }
+    colours_.clear();
     const Population* population = island_view.population();
     if (island_view.options.colour_by == ColourBy::Health) {
-        add_health_colours(organisms, health_scale(organisms, island_view.options.ramp), colours_);
+        add_health_colours(organisms, ColourScale{island_view.options.ramp, 0, full_health_}, colours_);
     } else if (population != nullptr && island_view.options.colour_by == ColourBy::Lineage) {
         add_family_colours(organisms, island_view.families(), island_view.family_colours(), colours_);
     } else if (population != nullptr && island_view.options.gene < population->gene_count()) {
@@ -213,7 +262,11 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
         colours_.assign(discs_.size(), palette::unknown);
     }
     organisms_.set(discs_, colours_);
-    painter_.draw(organisms_, camera.zoom() >= outline_zoom_min ? coloured_style : coloured_small_style);
+    ShapeStyle style = styles.coloured;
+    if (camera.zoom() < outline_zoom_min) {
+        style.edge_pixels = 0;
+    }
+    painter_.draw(organisms_, style);
 }
 
 void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
@@ -233,41 +286,45 @@ void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const
     painter_.draw(density_, density_style);
 }
 
-void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view) {
+void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
+                                const Chosen& chosen) {
     const Population* population = island_view.population();
-    if (!island_view.options.radii || population == nullptr || camera.zoom() < marks_zoom_min) {
+    if (!island_view.options.radii || population == nullptr || !shows_details(camera)) {
         return;
     }
-    for (const auto& [name, style] : {std::pair<std::string_view, const ShapeStyle&>{"food_radius", food_radius_style},
-                                      {"poison_radius", poison_radius_style}}) {
+    const Styles& styles = styles_of(island_view.options.look);
+    for (const auto& [name, style] : {std::pair<std::string_view, const ShapeStyle&>{"food_radius", styles.food_radius},
+                                      {"poison_radius", styles.poison_radius}}) {
         if (const auto gene = gene_named(name, island_view)) {
             shapes_.clear();
-            add_radii(organisms, discs_, *population, *gene, camera.visible(), shapes_);
+            add_radii(organisms, discs_, *population, *gene, camera.visible(), chosen, shapes_);
             radii_.set(shapes_);
             painter_.draw(radii_, style);
         }
     }
 }
 
-void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera& camera,
-                                 const IslandView& island_view) {
+void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
+                                 const Chosen& chosen) {
     const Population* population = island_view.population();
-    if (!island_view.options.forces || population == nullptr || camera.zoom() < marks_zoom_min) {
+    if (!island_view.options.forces || population == nullptr || !shows_details(camera)) {
         return;
     }
     arrow_lines_.clear();
     target_lines_.clear();
-    add_forces(organisms, discs_, *population, camera.visible(), arrow_lines_, target_lines_);
+    add_forces(organisms, discs_, *population, camera.visible(), chosen, palette::of(island_view.options.look),
+               arrow_lines_, target_lines_);
+    const Styles& styles = styles_of(island_view.options.look);
     targets_.set(target_lines_.lines, target_lines_.colours);
-    painter_.draw(targets_, target_style);
+    painter_.draw(targets_, styles.target);
     arrows_.set(arrow_lines_.lines, arrow_lines_.colours);
-    painter_.draw(arrows_, arrow_style);
+    painter_.draw(arrows_, styles.arrow);
 }
 
 void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera,
                                  const IslandView& island_view) {
     const auto& snapshots = island_view.trails().snapshots();
-    if (!island_view.options.trails || snapshots.empty() || camera.zoom() < marks_zoom_min) {
+    if (!island_view.options.trails || snapshots.empty() || !shows_traces(camera, snapshot)) {
         trail_segments_.clear();
         return;
     }
@@ -285,50 +342,84 @@ void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const 
             trail_segments_.back().layer->set(lines_);
         }
     }
+    const ShapeStyle& style = styles_of(island_view.options.look).trail;
     const double now_s = snapshot.about.simulated_s();
     for (const TrailSegment& segment : trail_segments_) {
-        painter_.draw(*segment.layer, trail_style((now_s - segment.to->about.simulated_s()) / Trails::kept_s));
+        painter_.draw(*segment.layer, aged(style, (now_s - segment.to->about.simulated_s()) / Trails::kept_s));
     }
     lines_.clear();
     add_paths(snapshots.back()->entities->organisms, snapshot.entities->organisms, discs_, lines_);
     trail_ends_.set(lines_);
-    painter_.draw(trail_ends_, trail_style(0));
+    painter_.draw(trail_ends_, style);
 }
 
-void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera,
-                                 ImDrawList& list, ImFont& font) {
+/// Draws each flash as a growing and fading disc in the colour of what was eaten or died.
+void IslandRenderer::draw_flashes(double now_s, const IslandView& island_view) {
+    if (!island_view.options.flashes) {
+        return;
+    }
+    const palette::IslandColours& of = palette::of(island_view.options.look);
+    shapes_.clear();
+    colours_.clear();
+    for (const Flash& flash : island_view.flashes().all()) {
+        const double age = (now_s - flash.began_s) / Flashes::shown_s;
+        if (age < 0 || age >= 1) { // it begins after the shown time, which is interpolated
+            continue;
+        }
+        const bool death = flash.kind == Flash::Kind::Death;
+        Colour colour = death ? of.death : flash.kind == Flash::Kind::Food ? of.food : of.poison;
+        colour.alpha = static_cast<std::uint8_t>(255 * (1 - age));
+        const auto radius = static_cast<float>(flash.radius_px * (1.5 + (death ? 2 : 3.5) * std::sqrt(age)));
+        shapes_.push_back({flash.x_px, flash.y_px, radius, radius});
+        colours_.push_back(colour);
+    }
+    if (!shapes_.empty()) {
+        flashes_.set(shapes_, colours_);
+        painter_.draw(flashes_, styles_of(island_view.options.look).ripple);
+    }
+}
+
+void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, Look look,
+                                 const Highlighted& highlighted, ImDrawList& list, ImFont& font) {
     const auto& snapshot = view.latest();
-    if (!snapshot || camera.zoom() < label_zoom_min) {
+    if (!snapshot) {
         return;
     }
     const Positions organisms = view.organisms_at(blend);
-    const Rectangle visible = camera.visible();
+    const double zoom_min = static_cast<double>(styles_of(look).label_zoom_min);
     labelled_.clear();
-    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
-        const auto [x, y] = organisms[i];
-        if (visible.contains({x, y})) {
-            labelled_.push_back(i);
+    if (labels_are_readable(camera, 0, zoom_min)) {
+        const Rectangle visible = camera.visible();
+        for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+            const auto [x, y] = organisms[i];
+            if (visible.contains({x, y})) {
+                labelled_.push_back(i);
+            }
         }
     }
-    if (!labels_are_readable(camera, labelled_.size())) {
-        return;
+    if (labelled_.empty() || !labels_are_readable(camera, labelled_.size(), zoom_min)) {
+        labelled_.clear();
+        for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
+            if (index && *index < organisms.size() && std::ranges::find(labelled_, *index) == labelled_.end()) {
+                labelled_.push_back(*index);
+            }
+        }
     }
-    const Point corner = camera.to_screen({0, 0});
-    const Point other = camera.to_screen({snapshot->about.width_px(), snapshot->about.height_px()});
-    for (const std::size_t i : labelled_) {
-        std::array<char, 16> room;
+    std::array<char, 16> room;
+    const auto digits = [&](std::size_t i) {
         const char* end = std::to_chars(room.begin(), room.end(), shown_health(organisms.entities->health(i))).ptr;
-        const std::string_view digits{room.data(), static_cast<std::size_t>(end - room.data())};
+        return std::string_view{room.data(), static_cast<std::size_t>(end - room.data())};
+    };
+    labels_.clear();
+    for (const std::size_t i : labelled_) {
         const auto [x, y] = organisms[i];
-        const Point centre = camera.to_screen({x, y});
-        const double radius = organisms.entities->radius_px(i) * camera.zoom();
-        const double width = size_of(digits, font).x;
-        // A black number is invisible on the black wall. Near a side wall the number moves inwards; near the top wall
-        // it moves below the organism.
-        const double above = centre.y - radius - font.FontSize - 1;
-        const double top = above < corner.y ? centre.y + radius + 1 : above;
-        const double left = std::max(std::min(centre.x - width / 2, other.x - width - 1), corner.x + 1);
-        write(list, font, {static_cast<float>(left), static_cast<float>(top)}, palette::health, digits);
+        labels_.push_back({camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom(),
+                           static_cast<double>(size_of(digits(i), font).x)});
+    }
+    const auto corners = place_labels(labels_, static_cast<double>(font.FontSize), on_screen(camera, snapshot->about));
+    for (std::size_t i = 0; i < labelled_.size(); ++i) {
+        write(list, font, {static_cast<float>(corners[i].x), static_cast<float>(corners[i].y)}, palette::of(look).label,
+              digits(labelled_[i]));
     }
 }
 

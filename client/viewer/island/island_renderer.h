@@ -1,5 +1,5 @@
-// IslandRenderer: draws an island: walls, food, poison, crates, obstacles, organisms with their health above them, and
-// everything that the view options enable: colours, radii, forces, trails and densities.
+// IslandRenderer: draws an island in its skin: walls, food, poison, crates, obstacles, organisms with their health, and
+// everything that the view options enable: colours, radii, forces, trails, flashes and densities.
 //
 // Pure functions (marks.h) compute the shapes. IslandRenderer keeps the shapes in graphics memory and draws all shapes
 // of one kind in one call. Items are uploaded once per snapshot. Organisms and crates are uploaded in each frame,
@@ -12,8 +12,10 @@
 #include "client/core/snapshot_interpolator.h"
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/island/island_view.h"
+#include "client/viewer/island/labels.h"
 #include "client/viewer/island/marks.h"
 #include "client/viewer/island/shapes.h"
+#include "client/viewer/island/styles.h"
 
 #include <cstddef>
 #include <deque>
@@ -29,15 +31,24 @@ namespace evod::viewer {
 /// Rounds the health up for display, so that a living organism never shows 0.
 unsigned shown_health(float health);
 
-/// Returns whether the health numbers are readable: organisms must be large enough, and few enough that the numbers do
-/// not overlap.
-bool labels_are_readable(const Camera& camera, std::size_t visible_count);
+/// Returns whether the health numbers of all visible organisms are readable: organisms must be large enough, and few
+/// enough that the numbers do not cover the island.
+///
+/// zoom_min  at scale 1
+bool labels_are_readable(const Camera& camera, std::size_t visible_count, double zoom_min);
 
-/// Returns the organism at a point of the screen. A point up to 3 pixels outside an organism still counts as a hit. If
-/// several organisms are hit, returns the one whose centre is nearest.
+/// Returns the organism at a point of the screen. The target of a small organism has a radius of 12 pixels, that of a
+/// large one extends 3 pixels beyond its edge; both grow with the scale. Of several organisms that contain the point,
+/// the one whose centre is nearest is hit. If none contains it, the one whose edge is nearest is hit.
 ///
 /// returns  an index in `organisms`; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);
+
+/// Returns the item at a point of the screen, in the same way as organism_at().
+///
+/// items      the food or the poison of a snapshot
+/// radius_px  of every item
+std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera);
 
 class IslandRenderer {
   public:
@@ -55,25 +66,30 @@ class IslandRenderer {
     const std::optional<ColourScale>& density_scale() const { return density_scale_; }
     double density_cell_px() const { return density_cell_px_; }
 
-    /// Draws the health of the visible organisms. Call after draw(), with the same view, blend and camera.
-    void draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, ImDrawList& list,
-                     ImFont& font);
+    /// Draws the health of the visible organisms as numbers, or of the highlighted ones only if the organisms are small
+    /// in this skin. Call after draw(), with the same arguments.
+    void draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, Look look,
+                     const Highlighted& highlighted, ImDrawList& list, ImFont& font);
 
   private:
-    void upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot, const Camera& camera);
-    void draw_items(const codec::ReceivedSnapshot& snapshot);
+    void upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
+    void draw_walls(const codec::ReceivedSnapshot& snapshot, const Camera& camera, Look look);
+    void draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles);
     void draw_organisms(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
     void draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
                       const IslandView& island_view);
-    void draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
-    void draw_forces(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
+                    const Chosen& chosen);
+    void draw_forces(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
+                     const Chosen& chosen);
     void draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const IslandView& island_view);
+    void draw_flashes(double now_s, const IslandView& island_view);
     void set_circles(Layer& layer, const codec::Entities& items, float radius);
     void set_boxes(Layer& layer, const Positions& boxes);
 
     ShapePainter painter_;
-    Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
-    Layer dots_, density_, radii_, arrows_, targets_, trail_ends_;
+    Layer shadow_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
+    Layer dots_, density_, radii_, arrows_, targets_, trail_ends_, flashes_;
     /// The trail lines between two consecutive snapshots; uploaded once.
     struct TrailSegment {
         std::shared_ptr<const codec::ReceivedSnapshot> from, to;
@@ -81,6 +97,7 @@ class IslandRenderer {
     };
     std::deque<TrailSegment> trail_segments_;
     std::shared_ptr<const codec::ReceivedSnapshot> uploaded_;
+    double full_health_ = 100; // in the uploaded snapshot; see health_scale()
     std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
     std::vector<Shape> discs_;  // the organisms in this frame
@@ -88,7 +105,8 @@ class IslandRenderer {
     std::vector<Line> lines_;
     std::vector<Colour> colours_;
     ColouredLines arrow_lines_, target_lines_;
-    std::vector<std::size_t> labelled_; // indices of the visible organisms
+    std::vector<std::size_t> labelled_; // indices of the organisms with a number
+    std::vector<HealthLabel> labels_;
 };
 
 } // namespace evod::viewer

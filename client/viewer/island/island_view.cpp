@@ -11,6 +11,11 @@ constexpr double dots_radius_pixels = 2; // organisms smaller than this are stre
 
 } // namespace
 
+ViewOptions default_options(Look look) {
+    const bool vivid = look.skin == Skin::Vivid;
+    return {.look = look, .trails = vivid, .flashes = vivid, .radii = vivid};
+}
+
 // ---- the region ------------------------------------------------------------------------------------------------
 
 std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod::v1::Detail detail,
@@ -45,15 +50,25 @@ void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::
     if (!in_part_) {
         return;
     }
-    const bool no_single_organism_matters = options.colour_by == ColourBy::Nothing && !options.radii &&
-                                            !options.forces && !options.trails && !world.feed.selected();
+    const bool details_of_all = options.of_all && (options.radii || options.forces) && shows_details(camera);
+    const bool no_single_organism_matters =
+        options.colour_by == ColourBy::Nothing && !details_of_all && !world.feed.selected();
     const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
-    const auto detail = shows_density(camera)                 ? evod::v1::DETAIL_DENSITY
+    const auto detail = shows_density(camera, *snapshot_)     ? evod::v1::DETAIL_DENSITY
                         : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
                                                               : evod::v1::DETAIL_FULL;
     if (auto view = region_.update(camera, detail, now)) {
         world.feed.set_view(std::move(view));
     }
+}
+
+bool IslandView::shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const {
+    const evod::v1::SnapshotFrame& island = snapshot.about;
+    const std::size_t streamed = snapshot.entities->organisms.x.size();
+    const double count =
+        std::max({double(island.organism_count()), double(island.live().organism_count()), double(streamed)});
+    return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera) &&
+           too_many_for_dots(camera, island, count);
 }
 
 // ---- requests --------------------------------------------------------------------------------------------------
@@ -62,16 +77,20 @@ PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
     return {world.feed.world(), shown_.run_id, world.feed.island(), gene_names_.size()};
 }
 
-bool IslandView::needs_population() const {
+bool IslandView::needs_population(bool points_at) const {
+    const bool any_chosen = options.of_all || points_at || (organism_history_ && !organism_history_->ended());
+    const bool forces = options.forces && any_chosen;
     const bool current_needed =
-        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || options.radii ||
-        options.forces || lineage_wanted_ ||
+        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || lineage_wanted_ ||
+        (options.radii && any_chosen) || forces ||
         (organism_history_ && (organism_history_->waits_for_children() ||
                                (!organism_history_->ended() && organism_history_->ranges().empty())));
     if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
         return false;
     }
-    return population() == nullptr || (options.forces && population_tick_ != tick_);
+    const bool complete = // organisms may have been placed since the population was requested
+        population() != nullptr && population()->size() >= snapshot_->about.live().organism_count();
+    return !complete || (forces && population_tick_ != tick_);
 }
 
 void IslandView::take_lineage(std::uint32_t island) {
@@ -132,22 +151,78 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
     });
 }
 
+void IslandView::request_picks(ViewedWorld& world, Clock::time_point now) {
+    const evod::v1::Replay* replay = world.replay.info();
+    const std::uint64_t newest = replay != nullptr ? replay->last_generation() : generation_;
+    auto wanted = organism_history_->wanted_picks(organism_history_->generation() < newest);
+    if (!wanted || picks_poll_.is_unsupported() || !picks_poll_.due(world, now)) {
+        return;
+    }
+    wanted->set_world(world.feed.world());
+    wanted->set_island(world.feed.island());
+    evod::v1::Request request;
+    *request.mutable_get_breeding() = *wanted;
+    picks_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
+        if (response != nullptr && organism_history_) {
+            organism_history_->add(wanted, response->breeding());
+        }
+    });
+}
+
+// ---- the selection in other generations --------------------------------------------------------------------------
+
+void IslandView::go_to(ViewedWorld& world, const OrganismPlace& organism) {
+    kept_ = Kept{.run_id = shown_.run_id, .organism = organism, .followed = true, .out_of_sight = true};
+    world.feed.select(std::nullopt);
+    const bool shown = organism.island == world.feed.island() && organism.generation == generation_ && snapshot_ &&
+                       snapshot_->entities->organisms.index_of(organism.id).has_value();
+    if (shown) {
+        return;
+    }
+    world.feed.choose_island(organism.island);
+    world.show_generation(organism.generation);
+}
+
+/// Remembers the selection, or restores it when its generation is on the screen again.
+void IslandView::keep_selection(ViewedWorld& world) {
+    if (const auto selected = world.feed.selected()) {
+        kept_ = Kept{.run_id = shown_.run_id,
+                     .organism = {world.feed.island(), generation_, *selected},
+                     .followed = followed_.has_value()};
+    } else if (kept_ && !kept_->out_of_sight) { // the user cleared the selection
+        kept_.reset();
+    } else if (kept_ && kept_->run_id == shown_.run_id && kept_->organism.island == world.feed.island() &&
+               kept_->organism.generation == generation_ && world.replay.target() == nullptr) {
+        kept_->out_of_sight = false;
+        world.feed.select(kept_->organism.id);
+        if (kept_->followed) {
+            followed_ = Followed{.id = kept_->organism.id};
+        }
+    }
+}
+
 // ---- snapshots -------------------------------------------------------------------------------------------------
 
 void IslandView::forget() {
     IslandView fresh;
     fresh.options = options;
     fresh.lineage_poll_ = std::move(lineage_poll_);
+    fresh.kept_ = std::move(kept_);
+    if (fresh.kept_) {
+        fresh.kept_->out_of_sight = true;
+    }
     *this = std::move(fresh);
 }
 
-void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
+void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
+                               const Camera& camera) {
     const auto& about = snapshot->about;
     if (shown_.run_id != about.run_id()) {
         if (!shown_.run_id.empty()) { // the world was reset
             world.feed.select(std::nullopt);
             world.feed.set_view(std::nullopt);
             forget();
+            kept_.reset();
         }
         shown_ = {world.feed.place_number(), about.run_id()};
     }
@@ -158,12 +233,20 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
         organism_history_->add(*snapshot);
         if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
             world.feed.select(std::nullopt); // the id now belongs to another organism
+            if (kept_) {
+                kept_->out_of_sight = true;
+            }
         }
     }
     trails_.add(snapshot);
+    if (options.flashes && shows_traces(camera, *snapshot)) {
+        flashes_.add(snapshot);
+    } else {
+        flashes_.clear();
+    }
 }
 
-void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
+void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at) {
     if (shown_.number != world.feed.place_number()) {
         forget();
         shown_.number = world.feed.place_number();
@@ -173,22 +256,24 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         return;
     }
     if (snapshot != snapshot_) {
-        take_snapshot(world, snapshot);
+        take_snapshot(world, snapshot, camera);
     }
     if (gene_names_ != world.feed.gene_names()) {
         gene_names_ = world.feed.gene_names();
     }
+    keep_selection(world);
     if (const auto selected = world.feed.selected();
         selected && (!organism_history_ || organism_history_->id() != *selected || organism_history_->ended())) {
         organism_history_.emplace(*selected, generation_);
         organism_history_->add(*snapshot);
         organism_poll_.reset();
+        picks_poll_.reset();
         organism_tick_ = ~std::uint64_t{0};
     }
     lineage_poll_->update(world, lineage_wanted_ || options.colour_by == ColourBy::Lineage, now);
     take_lineage(world.feed.island());
     take_population(world.feed.island());
-    const bool population_wanted = needs_population();
+    const bool population_wanted = needs_population(points_at);
     lineage_wanted_ = false;
     if (population_poll_.update(world, population_of(world), population_wanted, now)) {
         population_tick_ = tick_;
@@ -196,6 +281,9 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();
     if (organism_poll_.due(world, now) && alive && organism_tick_ != tick_) {
         request_organism(world, now);
+    }
+    if (organism_history_) {
+        request_picks(world, now);
     }
     update_stream(world, camera, now);
 }

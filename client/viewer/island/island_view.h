@@ -5,6 +5,7 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
+#include "client/viewer/island/flashes.h"
 #include "client/viewer/island/marks.h"
 #include "client/viewer/world/lineage_base.h"
 #include "client/viewer/world/lineage_poll.h"
@@ -17,19 +18,27 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evod::viewer {
 
 /// The settings of the View panel: which parts of an island are drawn, and how.
 struct ViewOptions {
+    Look look;
     ColourBy colour_by = ColourBy::Nothing;
     std::size_t gene = 0; // index of the gene that colours organisms, in the world's list of genes
-    palette::Ramp ramp = palette::Ramp::Viridis;
-    bool radii = false, forces = false, trails = false;
-    bool density = true; // draw densities in place of organisms that are too small to see
+    palette::Ramp ramp = palette::Ramp::Violet;
+    bool trails = true, flashes = true;
+    bool radii = true, forces = false;
+    bool of_all = false; // radii and forces of all organisms; otherwise of the organisms pointed at and selected
+    bool density = true; // draw densities in place of organisms that are too many to see
     bool minimap = true; // show the minimap while part of the island is out of sight
+    friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
+
+/// The options with which a look is shown at first. The classic skin shows organisms, items and walls only.
+ViewOptions default_options(Look look);
 
 /// Chooses the region and the level of detail in which a large island is streamed. The region is twice as wide and high
 /// as the visible part, so that a small pan stays inside it. The region changes at most once per `interval`.
@@ -48,6 +57,13 @@ class StreamedRegion {
     Clock::time_point changed_{};
 };
 
+/// Identifies an organism of a run. Every generation uses the same ids.
+struct OrganismPlace {
+    std::uint32_t island = 0;
+    std::uint64_t generation = 0;
+    std::uint32_t id = 0;
+};
+
 class IslandView {
   public:
     using Clock = core::SnapshotInterpolator::Clock;
@@ -61,13 +77,27 @@ class IslandView {
     static constexpr std::uint32_t streamed_in_part_min = 5'000;
 
     /// Reads the newest snapshot, requests the data that the options need, and moves the streamed region.
-    void update(ViewedWorld& world, const Camera& camera, Clock::time_point now);
+    ///
+    /// points_at  whether the mouse points at an organism
+    void update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at = false);
 
     /// Keeps the followed organism in the centre. Following ends when the user moves the camera or the organism dies.
     void follow(ViewedWorld& world, Camera& camera, double blend);
     bool following() const { return followed_.has_value(); }
     /// Starts following the selected organism, or stops following it.
     void toggle_following(ViewedWorld& world);
+
+    /// Selects and follows an organism of any generation of the run. If it is not on the screen, shows its island, and
+    /// opens a replay at the start of its generation or seeks there. The organism is selected when its generation
+    /// appears.
+    void go_to(ViewedWorld& world, const OrganismPlace& organism);
+    /// Makes the glass box show the first pick of an organism of the chosen island.
+    void show_pick(const OrganismPlace& organism) { wanted_pick_ = organism; }
+    bool wants_pick() const { return wanted_pick_.has_value(); }
+    /// Returns the organism of the last show_pick(), once.
+    std::optional<OrganismPlace> take_wanted_pick() { return std::exchange(wanted_pick_, std::nullopt); }
+    /// Returns why the picks of the selected organism are unknown, as a sentence; empty if they are known or requested.
+    const std::string& picks_problem() const { return picks_poll_.problem(); }
 
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
@@ -93,13 +123,12 @@ class IslandView {
     const std::string& lineage_problem() const { return lineage_poll_->problem(); }
     void want_lineage() { lineage_wanted_ = true; }
     const Trails& trails() const { return trails_; }
+    const Flashes& flashes() const { return flashes_; }
     /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
     /// organism has been selected.
     const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
-    /// Returns whether densities are shown because organisms are too small.
-    bool shows_density(const Camera& camera) const {
-        return options.density && options.colour_by == ColourBy::Nothing && too_small_to_see(camera);
-    }
+    /// Returns whether densities are shown because the visible organisms are too small and too many.
+    bool shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
@@ -111,13 +140,16 @@ class IslandView {
         friend bool operator==(const Shown&, const Shown&) = default;
     };
     PopulationPoll::Of population_of(const ViewedWorld& world) const;
-    bool needs_population() const;
+    bool needs_population(bool points_at) const;
     void forget();
-    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
+    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
+                       const Camera& camera);
     void take_lineage(std::uint32_t island);
     void take_population(std::uint32_t island);
     void find_families(const Population& population, std::uint32_t island);
     void request_organism(ViewedWorld& world, Clock::time_point now);
+    void request_picks(ViewedWorld& world, Clock::time_point now);
+    void keep_selection(ViewedWorld& world);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
     Shown shown_;
@@ -127,6 +159,7 @@ class IslandView {
     std::vector<std::string> gene_names_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
+    Poll picks_poll_;
     std::uint64_t taken_count_ = 0;                         // complete populations received
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     Families families_;
@@ -137,6 +170,7 @@ class IslandView {
     std::vector<std::uint64_t> lineage_bases_;
     std::uint64_t lineage_version_ = 0; // of the lineage, at the last update of lineage_bases_
     Trails trails_;
+    Flashes flashes_;
     std::optional<OrganismHistory> organism_history_;
 
     struct Followed {
@@ -145,6 +179,16 @@ class IslandView {
         double zoom = 0;
     };
     std::optional<Followed> followed_;
+
+    /// The selection. It is restored when its generation is on the screen again, for example after a seek.
+    struct Kept {
+        std::string run_id;
+        OrganismPlace organism;
+        bool followed = false;
+        bool out_of_sight = false; // another generation, island or world is shown
+    };
+    std::optional<Kept> kept_;
+    std::optional<OrganismPlace> wanted_pick_;
     StreamedRegion region_;
     bool in_part_ = false; // whether the island is large and therefore streamed in part
 };

@@ -32,7 +32,7 @@ void add_families(const IslandView& island_view, const Population& population, L
         return;
     }
     legend.title = "lineages, counted from generation " + with_separators(island_view.families_since());
-    std::size_t others = population.size();
+    std::size_t others = families.size();
     for (std::uint8_t family = 0; family < families.shown().size(); ++family) {
         const auto& [founder, size] = families.shown()[family];
         legend.entries.push_back(
@@ -40,9 +40,13 @@ void add_families(const IslandView& island_view, const Population& population, L
              "descendants of " + founder_text(island_view, founder) + ": " + with_separators(size)});
         others -= size;
     }
-    if (others > 0) {
+    if (families.count() > families.shown().size()) {
         legend.entries.push_back({palette::unknown, with_separators(families.count() - families.shown().size()) +
                                                         " smaller lineages: " + with_separators(others)});
+    }
+    if (population.size() > families.size()) {
+        legend.entries.push_back({palette::unknown, "placed by a user, and their descendants: " +
+                                                        with_separators(population.size() - families.size())});
     }
 }
 
@@ -85,19 +89,20 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
     if (needs_population && population == nullptr && !island_view.problem().empty()) {
         legend.entries.push_back({palette::unknown, island_view.problem()});
     }
-    if (island_view.options.radii && population != nullptr) {
-        legend.entries.push_back({palette::food_radius, "perception radius for food"});
-        legend.entries.push_back({palette::poison_radius, "perception radius for poison"});
+    if (island_view.options.radii && island_view.options.of_all && population != nullptr) {
+        legend.entries.push_back({{}, "perception radius for food", &Styles::food_radius});
+        legend.entries.push_back({{}, "perception radius for poison", &Styles::poison_radius});
     }
     if (island_view.options.forces && population != nullptr) {
-        legend.entries.push_back({palette::seeks, "seeks food"});
-        legend.entries.push_back({palette::flees, "flees from poison"});
-        legend.entries.push_back({palette::wanders, "wanders; an arrow of 30 px is 100 kg px/s²"});
+        const palette::IslandColours& colours = palette::of(island_view.options.look);
+        legend.entries.push_back({colours.seeks, "seeks food", &Styles::arrow});
+        legend.entries.push_back({colours.flees, "flees from poison", &Styles::arrow});
+        legend.entries.push_back({colours.wanders, "wanders; an arrow of 30 px is 100 kg px/s²", &Styles::arrow});
     }
     return legend;
 }
 
-void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
+void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Look look, MarkPainter& marks) {
     if (legend.empty()) {
         return;
     }
@@ -116,28 +121,30 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     const ImVec2 corner{std::floor(static_cast<float>(viewport.left)) + 12 * pixel,
                         std::floor(static_cast<float>(viewport.top + viewport.height) - height - 12 * pixel)};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip), 4 * pixel);
-    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4 * pixel);
+    const palette::IslandColours& colours = palette::of(look);
+    const Styles& styles = styles_of(look);
+    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(colours.ground), 4 * pixel);
+    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(faint(colours.label, 80)), 4 * pixel);
     const float left = corner.x + inside;
     float top = corner.y + inside;
     if (legend.ramp) {
         const ColourScale& scale = legend.ramp->scale;
-        write(list, font, {left, top}, palette::text, legend.ramp->title);
+        write(list, font, {left, top}, colours.label, legend.ramp->title);
         top += line;
         draw_ramp(list, {left, top}, {bar_width, bar_height}, scale.ramp);
         top += bar_height + 4 * pixel;
-        write(list, font, {left, top}, palette::text, shown_number(scale.low));
-        write_to_the_left(list, font, {left + bar_width, top}, palette::text, shown_number(scale.high));
+        write(list, font, {left, top}, colours.label, shown_number(scale.low));
+        write_to_the_left(list, font, {left + bar_width, top}, colours.label, shown_number(scale.high));
         top += line;
     }
     if (!legend.title.empty()) {
-        write(list, font, {left, top}, palette::text, legend.title);
+        write(list, font, {left, top}, colours.label, legend.title);
         top += line;
     }
     for (const Legend::Entry& entry : legend.entries) {
-        list.AddRectFilled({left, top + 2 * pixel}, {left + swatch, top + 2 * pixel + swatch}, ink(entry.colour),
-                           2 * pixel);
-        write(list, font, {left + swatch + gap, top}, palette::text, entry.text);
+        const ImVec2 centre{left + swatch / 2, top + line / 2};
+        marks.add(list, centre, swatch / 2, double{pixel}, styles.*entry.mark, entry.colour);
+        write(list, font, {left + swatch + gap, top}, colours.label, entry.text);
         top += line;
     }
 }

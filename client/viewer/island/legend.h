@@ -6,7 +6,9 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/gui.h"
 #include "client/viewer/island/island_view.h"
+#include "client/viewer/island/mark_painter.h"
 #include "client/viewer/island/marks.h"
+#include "client/viewer/island/styles.h"
 
 #include <optional>
 #include <string>
@@ -20,8 +22,9 @@ struct Legend {
         ColourScale scale;
     };
     struct Entry {
-        Colour colour;
+        std::optional<Colour> colour; // nullopt: the colour of the mark's style
         std::string text;
+        ShapeStyle Styles::*mark = &Styles::coloured; // the mark that the text explains
     };
     std::optional<Ramp> ramp;
     std::string title; // of the entries; may be empty
@@ -39,6 +42,6 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
                  const std::optional<ColourScale>& density, double density_cell_px);
 
 /// Draws the legend unless it is empty. Call between Gui::begin() and Gui::draw().
-void build_legend(const Legend& legend, const Camera& camera, const Gui& gui);
+void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Look look, MarkPainter& marks);
 
 } // namespace evod::viewer

@@ -35,13 +35,32 @@ bool may_touch(const Rectangle& rectangle, float x, float y, float radius) {
            y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
 }
 
-Colour colour_of(evod::v1::Choice choice) {
-    return choice == evod::v1::CHOICE_SEEK   ? palette::seeks
-           : choice == evod::v1::CHOICE_FLEE ? palette::flees
-                                             : palette::wanders;
+Colour colour_of(evod::v1::Choice choice, const palette::IslandColours& colours) {
+    return choice == evod::v1::CHOICE_SEEK   ? colours.seeks
+           : choice == evod::v1::CHOICE_FLEE ? colours.flees
+                                             : colours.wanders;
+}
+
+/// Calls `act` with the index of each chosen organism.
+template <class Act>
+void for_each(const Chosen& chosen, std::size_t organism_count, Act act) {
+    if (chosen) {
+        for (const std::size_t i : *chosen) {
+            act(i);
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < organism_count; ++i) {
+        act(i);
+    }
 }
 
 } // namespace
+
+bool continues(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame& last) {
+    return next.world() == last.world() && next.run_id() == last.run_id() && next.island() == last.island() &&
+           next.generation() == last.generation() && next.tick() >= last.tick();
+}
 
 ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp) {
     float most = 100;
@@ -93,6 +112,13 @@ void add_discs(const Positions& organisms, std::vector<Shape>& discs) {
     }
 }
 
+void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs) {
+    const auto share_per_step = static_cast<float>(1 / (codec::steps_per_px * full_health));
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        discs[i].half_height = std::min(static_cast<float>(organisms.height[i]) * share_per_step, 1.f);
+    }
+}
+
 void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours) {
     const Table table{scale};
     for (const std::uint32_t steps : organisms.height) {
@@ -117,30 +143,31 @@ void add_family_colours(const codec::Entities& organisms, const Families& famili
 }
 
 void add_radii(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-               std::size_t gene, const Rectangle& visible, std::vector<Shape>& shapes) {
+               std::size_t gene, const Rectangle& visible, const Chosen& chosen, std::vector<Shape>& shapes) {
     const auto radii = population.gene(gene);
-    for (std::size_t i = 0; i < organisms.id.size(); ++i) {
+    for_each(chosen, organisms.id.size(), [&](std::size_t i) {
         const std::uint32_t id = organisms.id[i];
         if (id < radii.size() && may_touch(visible, discs[i].x, discs[i].y, radii[id])) {
             shapes.push_back({discs[i].x, discs[i].y, radii[id], radii[id]});
         }
-    }
+    });
 }
 
 void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-                const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets) {
+                const Rectangle& visible, const Chosen& chosen, const palette::IslandColours& colours,
+                ColouredLines& arrows, ColouredLines& targets) {
     constexpr float reach_px = 200; // no organism perceives farther than this
-    for (std::size_t i = 0; i < organisms.id.size(); ++i) {
+    for_each(chosen, organisms.id.size(), [&](std::size_t i) {
         const std::uint32_t id = organisms.id[i];
         const float x = discs[i].x, y = discs[i].y;
         if (id >= population.size() || !may_touch(visible, x, y, reach_px)) {
-            continue;
+            return;
         }
         const evod::v1::Choice choice = population.choice(id);
         if (choice == evod::v1::CHOICE_UNSPECIFIED) {
-            continue;
+            return;
         }
-        const Colour colour = colour_of(choice);
+        const Colour colour = colour_of(choice, colours);
         arrows.lines.push_back({x, y, x + arrow_px_per_force * population.force_x()[id],
                                 y + arrow_px_per_force * population.force_y()[id]});
         arrows.colours.push_back(colour);
@@ -148,7 +175,7 @@ void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, 
             targets.lines.push_back({x, y, population.target_x_px()[id], population.target_y_px()[id]});
             targets.colours.push_back(colour);
         }
-    }
+    });
 }
 
 // ---- trails ----------------------------------------------------------------------------------------------------
@@ -157,8 +184,7 @@ void Trails::add(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot)
     if (!snapshots_.empty()) {
         const auto& last = snapshots_.back()->about;
         const auto& next = snapshot->about;
-        if (next.world() != last.world() || next.run_id() != last.run_id() || next.island() != last.island() ||
-            next.generation() != last.generation() || next.tick() < last.tick()) {
+        if (!continues(next, last)) {
             snapshots_.clear();
         } else if (next.simulated_s() - last.simulated_s() < interval_s - 1e-6) {
             return;
@@ -210,6 +236,17 @@ void count(DensityGrid& grid, double x, double y, std::uint32_t amount) {
 }
 
 } // namespace
+
+bool too_many_for_dots(const Camera& camera, const evod::v1::SnapshotFrame& island, double organism_count) {
+    const Rectangle visible = camera.visible();
+    const auto overlap = [](double begin, double size, double whole) {
+        return std::max(std::min(begin + size, whole) - std::max(begin, 0.0), 0.0);
+    };
+    const double area_px2 = overlap(visible.left, visible.width, island.width_px()) *
+                            overlap(visible.top, visible.height, island.height_px());
+    const double count = organism_count * area_px2 / std::max(island.width_px() * island.height_px(), 1.0);
+    return count > dots_max || count > area_px2 * camera.zoom() * camera.zoom();
+}
 
 double density_cell_px(const Camera& camera, double cell_pixels) {
     return std::exp2(std::ceil(std::log2(cell_pixels / camera.zoom())));

@@ -27,6 +27,9 @@ using core::Positions;
 /// The property that determines the colours of organisms.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
+/// Returns whether `next` continues what `last` showed: same world, run, island and generation, and no earlier tick.
+bool continues(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame& last);
+
 /// Returns a colour scale from 0 to the greatest health in the snapshot. Rounds the upper end up to hundreds, at least
 /// 100, so that the scale rarely changes.
 ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp);
@@ -55,6 +58,8 @@ class FamilyColours {
 /// Adds the disc of each organism. The functions below read positions from these discs, so that each position is
 /// computed once per frame.
 void add_discs(const Positions& organisms, std::vector<Shape>& discs);
+/// Replaces the half height of each disc by the organism's health, as a share of `full_health`.
+void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs);
 
 void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours);
 /// Adds the colour of each organism. An organism that is not in the population or families gets palette::unknown, also in
@@ -64,9 +69,12 @@ void add_gene_colours(const codec::Entities& organisms, const Population& popula
 void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
                         std::vector<Colour>& colours);
 
-/// Adds a circle around each organism, with the gene's value as its radius, if part of the circle is visible.
+/// Indices of organisms in a snapshot. Radii and forces are drawn for these organisms; nullopt: for all.
+using Chosen = std::optional<std::vector<std::size_t>>;
+
+/// Adds a circle around each chosen organism, with the gene's value as its radius, if part of the circle is visible.
 void add_radii(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-               std::size_t gene, const Rectangle& visible, std::vector<Shape>& shapes);
+               std::size_t gene, const Rectangle& visible, const Chosen& chosen, std::vector<Shape>& shapes);
 
 /// Length of an arrow, in px of the world, for a force of 1 kg px/s².
 constexpr float arrow_px_per_force = 0.3f;
@@ -77,9 +85,10 @@ struct ColouredLines {
     void clear() { lines.clear(), colours.clear(); }
 };
 
-/// Adds, for each visible organism, an arrow along its force and a line to its target, coloured by its choice.
+/// Adds, for each visible chosen organism, an arrow along its force and a line to its target, coloured by its choice.
 void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, const Population& population,
-                const Rectangle& visible, ColouredLines& arrows, ColouredLines& targets);
+                const Rectangle& visible, const Chosen& chosen, const palette::IslandColours& colours,
+                ColouredLines& arrows, ColouredLines& targets);
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 
@@ -108,11 +117,28 @@ void add_paths(const codec::Entities& from, const codec::Entities& to, std::span
 
 // ---- density ---------------------------------------------------------------------------------------------------
 
-/// Radius of a typical organism. If it is below one pixel on the screen, organisms are too small to see.
+/// Radius of a typical organism. If it is below one pixel on the screen, organisms are too small to see one by one.
 constexpr double typical_radius_px = 10;
 inline bool too_small_to_see(const Camera& camera) {
     return typical_radius_px * camera.zoom() < 1;
 }
+/// Smaller organisms have neither radii, forces, trails nor flashes, which would cover everything.
+inline bool shows_details(const Camera& camera) {
+    return typical_radius_px * camera.zoom() >= 0.5;
+}
+/// Trails and flashes are shown if a snapshot contains fewer organisms than this.
+constexpr std::size_t traced_max = 5'000;
+inline bool shows_traces(const Camera& camera, const codec::ReceivedSnapshot& snapshot) {
+    return shows_details(camera) && snapshot.entities->organisms.x.size() < traced_max;
+}
+
+/// The greatest number of visible organisms that are streamed and drawn as moving dots. A dot takes two bytes, and there
+/// are several items for each organism; 30 snapshots per second of such a world are about 9 MB/s.
+constexpr double dots_max = 30'000;
+/// Returns whether there are too many visible organisms for dots: more than dots_max, or more than one per pixel.
+///
+/// organism_count  on the whole island, assumed to be evenly spread
+bool too_many_for_dots(const Camera& camera, const evod::v1::SnapshotFrame& island, double organism_count);
 
 /// The number of organisms in each cell of a part of the island. Cells are square.
 struct DensityGrid {

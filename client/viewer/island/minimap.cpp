@@ -44,7 +44,7 @@ bool is_whole_island_visible(const Camera& camera, double island_width, double i
     return visible.contains({0, 0}) && visible.contains({island_width, island_height});
 }
 
-void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int number) {
+void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look, int number) {
     const std::shared_ptr<const codec::ReceivedSnapshot> snapshot =
         world.feed.overview() != nullptr ? world.feed.overview() : world.feed.view().latest();
     const double width = snapshot->about.width_px(), height = snapshot->about.height_px();
@@ -71,12 +71,13 @@ void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int numb
     pressed_ = widgets::window_pressed();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
-    list.AddRectFilled(corner, other, ink(palette::strip));
+    const palette::IslandColours& colours = palette::of(look);
+    list.AddRectFilled(corner, other, ink(colours.ground));
     const ColourScale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
     const auto cell = static_cast<float>(grid_.cell_px * place.zoom);
     for (std::size_t i = 0; i < grid_.counts.size(); ++i) {
         if (grid_.counts[i] > 0) {
-            Colour colour = palette::organism;
+            Colour colour = colours.body;
             colour.alpha = static_cast<std::uint8_t>(60 + 195 * std::min(scale.share(grid_.counts[i]), 1.0));
             const ImVec2 from{corner.x + static_cast<float>(i % grid_.columns) * cell,
                               corner.y + static_cast<float>(i / grid_.columns) * cell};
@@ -84,13 +85,13 @@ void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, int numb
         }
     }
     list.PushClipRectFullScreen(); // half of each line lies outside the minimap's window
-    list.AddRect(corner, other, ink(palette::wall));
+    list.AddRect(corner, other, ink(colours.wall));
     const Rectangle part = place.visible_part(camera.visible());
     // Draw the frame at least this large, so that it is easy to find.
     const ImVec2 middle = vector(part.centre());
     const ImVec2 half{std::max(static_cast<float>(part.width) / 2, 3 * pixel),
                       std::max(static_cast<float>(part.height) / 2, 3 * pixel)};
-    list.AddRect({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, ink(palette::poison),
+    list.AddRect({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, ink(colours.selected),
                  0, 0, 2 * pixel);
     list.PopClipRect();
     ImGui::InvisibleButton("there", size);

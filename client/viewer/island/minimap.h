@@ -43,7 +43,7 @@ class Minimap {
     /// Gui::draw().
     ///
     /// number  the number of the minimap, which differs between the minimaps of a window
-    void build(ViewedWorld& world, Camera& camera, const Gui& gui, int number);
+    void build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look, int number);
     /// Returns whether a mouse button was pressed on the minimap since the last call.
     bool take_press() { return std::exchange(pressed_, false); }
 

@@ -4,6 +4,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -15,33 +16,41 @@ namespace {
 
 // The shader subtracts the camera's centre from a position before it multiplies by the zoom. The difference of nearby
 // positions is exact in floats, but each product would be rounded.
-constexpr const char* vertex_source = R"(#version 330 core
+constexpr const char* vertex_source = R"(
 uniform samplerBuffer shapes;        // centre and half size; for lines and arrows, begin and end
 uniform samplerBuffer colours;
-uniform int form;                    // Form
 uniform bool coloured;               // whether each shape has its own colour
 uniform vec2 pixel_size;             // size of one pixel in clip space
 uniform vec2 origin;                 // centre of the viewport, in pixels
 uniform vec2 centre;
-uniform float zoom, half_pixels_min, line_pixels;
-uniform vec4 fill;
+uniform float zoom, half_pixels_min, line_pixels, edge_pixels;
+uniform vec4 fill, fill_low;
 out vec2 place;                      // offset from the shape's centre, in pixels, along the shape's axes
 flat out vec2 half_size;
 flat out vec4 own_fill;
+flat out vec3 arc;                   // of a body: direction across the end of the arc; health
 void main() {
     int index = gl_VertexID / 3;
     vec4 shape = texelFetch(shapes, index);
     own_fill = coloured ? texelFetch(colours, index) : fill;
     vec2 middle = (shape.xy - centre) * zoom, along = vec2(1.0, 0.0), around = vec2(1.0);
     half_size = max(shape.zw * zoom, vec2(half_pixels_min));
-    if (form >= 2) {
-        vec2 way = (shape.zw - shape.xy) * zoom;
-        float pixels = length(way);
-        middle += way / 2.0;
-        along = pixels > 0.0 ? way / pixels : along;
-        half_size = vec2(pixels, line_pixels) / 2.0;
-        around += form == 3 ? vec2(line_pixels, 5.0) : vec2(line_pixels);
-    }
+    arc = vec3(0.0);
+#if FORM == LINE || FORM == ARROW || FORM == SOFT_LINE
+    vec2 way = (shape.zw - shape.xy) * zoom;
+    float pixels = length(way);
+    middle += way / 2.0;
+    along = pixels > 0.0 ? way / pixels : along;
+    half_size = vec2(pixels, line_pixels) / 2.0;
+    around += FORM == ARROW ? vec2(line_pixels, 2.5 * line_pixels) : vec2(line_pixels);
+#elif FORM == BODY
+    half_size = half_size.xx;
+    around += 2.0 * edge_pixels;
+    arc = vec3(cos(6.2831853 * shape.w), sin(6.2831853 * shape.w), shape.w);
+    own_fill = coloured ? own_fill : mix(fill_low, fill, shape.w);
+#elif FORM == LEAF || FORM == STAR
+    around += 0.5 * half_size;
+#endif
     int corner_index = gl_VertexID % 3; // one triangle covers the rectangle around the shape
     vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
     place = corner * (half_size + around);
@@ -51,40 +60,89 @@ void main() {
 )";
 
 // The shader computes how much of a pixel a shape covers from the distance between the pixel's centre and the outline.
-constexpr const char* fragment_source = R"(#version 330 core
+constexpr const char* fragment_source = R"(
 in vec2 place;
 flat in vec2 half_size;
 flat in vec4 own_fill;
-uniform int form;
+flat in vec3 arc;
 uniform vec4 edge;
-uniform float edge_pixels;
+uniform float edge_pixels, line_pixels;
 out vec4 colour;                     // with premultiplied alpha
+float covered(float outside) {
+    return clamp(0.5 - outside, 0.0, 1.0);
+}
+#if FORM == BODY
+void main() {
+    float radius = half_size.x, distance = length(place);
+    float rim = radius < 0.8 * edge_pixels ? 0.0 : min(edge_pixels, 0.4 * radius); // a small body has no arc
+    float outer = radius + 1.6 * rim, share = distance / radius;
+    float before_end = -dot(place, arc.xy), after_begin = place.x;
+    float within = arc.z < 0.5 ? min(after_begin, before_end) : max(after_begin, before_end);
+    float lit = arc.z <= 0.0 ? 0.0 : arc.z >= 1.0 ? 1.0 : clamp(within + 0.5, 0.0, 1.0);
+    float ring = covered(distance - outer) - covered(distance - outer + rim);
+    colour = vec4(own_fill.rgb * (1.0 - 0.2 * share * share), 1.0) * own_fill.a * covered(distance - radius) +
+             vec4(edge.rgb, 1.0) * edge.a * ring * (0.2 + 0.8 * lit);
+}
+#elif FORM == RIPPLE
+void main() {
+    float share = length(place) / half_size.x;
+    colour = vec4(own_fill.rgb, 1.0) * own_fill.a * share * share * covered(length(place) - half_size.x);
+}
+#elif FORM == SOFT_LINE
+void main() {
+    float across = clamp(1.0 - abs(place.y) / half_size.y, 0.0, 1.0);
+    colour = vec4(own_fill.rgb, 1.0) * own_fill.a * across * covered(abs(place.x) - half_size.x);
+}
+#else
 float distance_outside() {
     vec2 beyond = abs(place) - half_size;
-    if (form == 0) {
-        return length(place) - half_size.x;
-    }
-    if (form == 1) {
-        return max(beyond.x, beyond.y);
-    }
+#if FORM == CIRCLE
+    return length(place) - half_size.x;
+#elif FORM == RECTANGLE
+    return max(beyond.x, beyond.y);
+#elif FORM == LEAF                   // the overlap of two discs
+    vec2 tilted = vec2(place.x - place.y, place.x + place.y) * 0.7071;
+    return length(vec2(tilted.x, abs(tilted.y) + 1.018 * half_size.x)) - 2.068 * half_size.x;
+#elif FORM == STAR                   // the distance from the line between a tip and the valley beside it
+    vec2 tilted = abs(vec2(place.x - place.y, place.x + place.y)) * 0.7071;
+    tilted = tilted.y > tilted.x ? tilted.yx : tilted;
+    return dot(tilted - vec2(2.0 * half_size.x, 0.0), vec2(0.339, 0.941));
+#else
     float outside = length(vec2(max(beyond.x, 0.0), place.y)) - half_size.y;
-    if (form == 3) {
-        float head = min(9.0, half_size.x), behind_tip = half_size.x - place.x;
-        outside = min(outside, max((abs(place.y) - behind_tip / 2.0) * 0.894, behind_tip - head));
-    }
+#if FORM == ARROW
+    float head = min(4.5 * line_pixels, half_size.x), behind_tip = half_size.x - place.x;
+    outside = min(outside, max((abs(place.y) - behind_tip / 2.0) * 0.894, behind_tip - head));
+#endif
     return outside;
+#endif
 }
 void main() {
     float outside = distance_outside();
-    float whole = clamp(0.5 - outside, 0.0, 1.0);
-    float inner = clamp(0.5 - outside - edge_pixels, 0.0, 1.0);
-    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(own_fill.rgb, 1.0) * own_fill.a * inner;
+    float whole = covered(outside), inner = covered(outside + edge_pixels);
+    vec3 inside = own_fill.rgb;
+#if FORM == LEAF
+    float vein = 0.09 * half_size.x;
+    inside *= 1.0 - 0.35 * covered(abs(place.x + place.y) * 0.7071 - vein) * clamp(vein - 0.3, 0.0, 1.0);
+#endif
+    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(inside, 1.0) * own_fill.a * inner;
 }
+#endif
 )";
 
-unsigned compile(GLenum kind, const char* source) {
+std::string with_form(const char* source, Form form) {
+    constexpr std::array<const char*, form_count> names{"CIRCLE", "RECTANGLE", "LINE",   "ARROW",    "BODY",
+                                                        "LEAF",   "STAR",      "RIPPLE", "SOFT_LINE"};
+    std::string text = "#version 330 core\n";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        text += "#define " + std::string{names[i]} + " " + std::to_string(i) + "\n";
+    }
+    return text + "#define FORM " + names[static_cast<std::size_t>(form)] + "\n" + source;
+}
+
+unsigned compile(GLenum kind, const std::string& source) {
     const unsigned shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, nullptr);
+    const char* text = source.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
     int compiled = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -142,72 +200,99 @@ void Layer::upload(std::span<const std::byte> shapes, std::span<const Colour> co
 }
 
 ShapePainter::ShapePainter() {
-    const unsigned vertex = compile(GL_VERTEX_SHADER, vertex_source);
-    const unsigned fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
-    program_ = glCreateProgram();
-    glAttachShader(program_, vertex);
-    glAttachShader(program_, fragment);
-    glLinkProgram(program_);
-    glDeleteShader(vertex);
-    glDeleteShader(fragment);
     glGenVertexArrays(1, &vertex_array_);
-    const auto uniform = [this](const char* name) { return glGetUniformLocation(program_, name); };
-    pixel_size_ = uniform("pixel_size");
-    origin_ = uniform("origin");
-    centre_ = uniform("centre");
-    zoom_ = uniform("zoom");
-    form_ = uniform("form");
-    coloured_ = uniform("coloured");
-    fill_ = uniform("fill");
-    edge_ = uniform("edge");
-    edge_pixels_ = uniform("edge_pixels");
-    half_pixels_min_ = uniform("half_pixels_min");
-    line_pixels_ = uniform("line_pixels");
-    glUseProgram(program_);
-    glUniform1i(uniform("shapes"), 0);
-    glUniform1i(uniform("colours"), 1);
-    glUseProgram(0);
 }
 
 ShapePainter::~ShapePainter() {
     glDeleteVertexArrays(1, &vertex_array_);
-    glDeleteProgram(program_);
+    for (const Program& program : programs_) {
+        glDeleteProgram(program.name);
+    }
 }
 
-void ShapePainter::begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background) {
+const ShapePainter::Program& ShapePainter::program_of(Form form) {
+    Program& program = programs_[static_cast<std::size_t>(form)];
+    if (program.name != 0) {
+        return program;
+    }
+    const unsigned vertex = compile(GL_VERTEX_SHADER, with_form(vertex_source, form));
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, with_form(fragment_source, form));
+    program.name = glCreateProgram();
+    glAttachShader(program.name, vertex);
+    glAttachShader(program.name, fragment);
+    glLinkProgram(program.name);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    const auto uniform = [&](const char* name) { return glGetUniformLocation(program.name, name); };
+    program.pixel_size = uniform("pixel_size");
+    program.origin = uniform("origin");
+    program.centre = uniform("centre");
+    program.zoom = uniform("zoom");
+    program.coloured = uniform("coloured");
+    program.fill = uniform("fill");
+    program.fill_low = uniform("fill_low");
+    program.edge = uniform("edge");
+    program.edge_pixels = uniform("edge_pixels");
+    program.half_pixels_min = uniform("half_pixels_min");
+    program.line_pixels = uniform("line_pixels");
+    glUseProgram(program.name);
+    glUniform1i(uniform("shapes"), 0);
+    glUniform1i(uniform("colours"), 1);
+    return program;
+}
+
+void ShapePainter::begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels) {
+    camera_ = camera;
+    width_pixels_ = width_pixels;
+    height_pixels_ = height_pixels;
     glViewport(0, 0, static_cast<int>(width_pixels), static_cast<int>(height_pixels));
-    const Rectangle& viewport = camera.viewport();
-    const auto pixel = [](double value) { return static_cast<int>(std::lround(value)); };
     glEnable(GL_SCISSOR_TEST);
-    glScissor(pixel(viewport.left), pixel(height_pixels - viewport.top - viewport.height), pixel(viewport.width),
-              pixel(viewport.height));
-    glClearColor(background.red / 255.f, background.green / 255.f, background.blue / 255.f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    clip_to_viewport();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-
-    const Point middle = viewport.centre(), centre = camera.centre();
-    glUseProgram(program_);
     glBindVertexArray(vertex_array_);
-    glUniform2f(pixel_size_, 2.f / static_cast<float>(width_pixels), 2.f / static_cast<float>(height_pixels));
-    glUniform2f(origin_, static_cast<float>(middle.x), static_cast<float>(middle.y));
-    glUniform2f(centre_, static_cast<float>(centre.x), static_cast<float>(centre.y));
-    glUniform1f(zoom_, static_cast<float>(camera.zoom()));
+}
+
+void ShapePainter::clip(const Rectangle& screen) {
+    const Rectangle& viewport = camera_.viewport();
+    const auto pixel = [](double value, double from, double size) {
+        return static_cast<int>(std::lround(std::clamp(value, from, from + size)));
+    };
+    const int left = pixel(screen.left, viewport.left, viewport.width);
+    const int right = pixel(screen.left + screen.width, viewport.left, viewport.width);
+    const int top = pixel(screen.top, viewport.top, viewport.height);
+    const int bottom = pixel(screen.top + screen.height, viewport.top, viewport.height);
+    glScissor(left, static_cast<int>(height_pixels_) - bottom, right - left, bottom - top);
+}
+
+void ShapePainter::fill(const Rectangle& screen, Colour colour) {
+    clip(screen);
+    glClearColor(colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    clip_to_viewport();
 }
 
 void ShapePainter::draw(const Layer& layer, const ShapeStyle& style) {
     if (layer.count_ == 0) {
         return;
     }
-    glUniform1i(form_, static_cast<int>(style.form));
-    glUniform1i(coloured_, layer.coloured_);
-    set_colour(fill_, style.fill);
-    set_colour(edge_, style.edge);
-    glUniform1f(edge_pixels_, style.edge_pixels);
-    glUniform1f(half_pixels_min_, style.half_pixels_min);
-    glUniform1f(line_pixels_, style.line_pixels);
+    const Program& program = program_of(style.form);
+    const Point middle = camera_.viewport().centre(), centre = camera_.centre();
+    const auto scale = static_cast<float>(camera_.scale());
+    glUseProgram(program.name);
+    glUniform2f(program.pixel_size, 2.f / static_cast<float>(width_pixels_), 2.f / static_cast<float>(height_pixels_));
+    glUniform2f(program.origin, static_cast<float>(middle.x), static_cast<float>(middle.y));
+    glUniform2f(program.centre, static_cast<float>(centre.x), static_cast<float>(centre.y));
+    glUniform1f(program.zoom, static_cast<float>(camera_.zoom()));
+    glUniform1i(program.coloured, layer.coloured_);
+    set_colour(program.fill, style.fill);
+    set_colour(program.fill_low, style.fill_low);
+    set_colour(program.edge, style.edge);
+    glUniform1f(program.edge_pixels, scale * style.edge_pixels);
+    glUniform1f(program.half_pixels_min, scale * style.half_pixels_min);
+    glUniform1f(program.line_pixels, scale * style.line_pixels);
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_BUFFER, layer.colours_.texture);
     glActiveTexture(GL_TEXTURE0);

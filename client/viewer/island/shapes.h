@@ -11,27 +11,42 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/palette.h"
 
+#include <array>
 #include <cstddef>
 #include <span>
 
 namespace evod::viewer {
 
-/// A circle or rectangle: its centre and half size, in px of the world. The half width of a circle is its radius.
+/// A circle, rectangle, leaf or star: its centre and half size, in px of the world. The half width of a circle, leaf or
+/// star is its radius. The half height of a body is no length but its health, from 0 to 1.
 struct Shape {
     float x = 0, y = 0, half_width = 0, half_height = 0;
 };
 
-/// A line or arrow from its begin to its end, in px of the world. The tip of an arrow is at the end.
+/// A line, arrow or soft line from its begin to its end, in px of the world. The tip of an arrow is at the end.
 struct Line {
     float x = 0, y = 0, end_x = 0, end_y = 0;
 };
 
-enum class Form { Circle, Rectangle, Line, Arrow };
+enum class Form {
+    Circle,
+    Rectangle,
+    Line,
+    Arrow,
+    Body,    // a disc with an arc around it that shows the health, clockwise from the top
+    Leaf,    // around the disc of its radius, pointed at the upper right and the lower left, with a vein if it is large
+    Star,    // four spikes twice as long as its radius, like the letter X
+    Ripple,  // a disc that is transparent at its centre
+    SoftLine // fades out at both sides
+};
+constexpr std::size_t form_count = 9;
 
+/// All sizes in pixels are those at scale 1; they are multiplied by the scale of the camera.
 struct ShapeStyle {
     Form form = Form::Circle;
     Colour fill{}, edge{};     // `fill` is used by layers that have no colours per shape
-    float edge_pixels = 0;     // width of the edge, drawn inside the outline; 0: none; unused for lines and arrows
+    Colour fill_low{};         // of a body without health; its colour changes to `fill` with its health
+    float edge_pixels = 0;     // width of the edge, drawn inside the outline; 0: none. Of a body: of the arc, at most
     float half_pixels_min = 0; // a smaller shape is drawn with this half size, so that it stays visible
     float line_pixels = 1.5f;  // thickness of lines and arrows
 };
@@ -69,15 +84,29 @@ class ShapePainter {
     ShapePainter(const ShapePainter&) = delete;
     ShapePainter& operator=(const ShapePainter&) = delete;
 
-    /// Fills the camera's viewport with `background` and restricts drawing to it until end().
-    void begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background);
+    /// Restricts drawing to the camera's viewport until end().
+    void begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels);
+    /// Restricts drawing to a rectangle of the screen, within the viewport.
+    void clip(const Rectangle& screen);
+    void clip_to_viewport() { clip(camera_.viewport()); }
+    /// Fills a rectangle of the screen, clipped at the viewport, in whole pixels. Ends a clip().
+    void fill(const Rectangle& screen, Colour colour);
     void draw(const Layer& layer, const ShapeStyle& style);
     void end();
 
   private:
-    unsigned program_ = 0, vertex_array_ = 0; // there are no vertex attributes: the shader reads shapes by index
-    int pixel_size_ = 0, origin_ = 0, centre_ = 0, zoom_ = 0, form_ = 0, coloured_ = 0, fill_ = 0, edge_ = 0,
-        edge_pixels_ = 0, half_pixels_min_ = 0, line_pixels_ = 0;
+    /// The shader for one form, compiled when it is used first. A shader without branches is faster.
+    struct Program {
+        unsigned name = 0;
+        int pixel_size = 0, origin = 0, centre = 0, zoom = 0, coloured = 0, fill = 0, fill_low = 0, edge = 0,
+            edge_pixels = 0, half_pixels_min = 0, line_pixels = 0;
+    };
+    const Program& program_of(Form form);
+
+    std::array<Program, form_count> programs_{};
+    unsigned vertex_array_ = 0; // there are no vertex attributes: the shader reads shapes by index
+    Camera camera_;
+    unsigned width_pixels_ = 1, height_pixels_ = 1;
 };
 
 } // namespace evod::viewer

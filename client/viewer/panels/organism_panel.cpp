@@ -4,11 +4,15 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
+#include "client/viewer/world/freezer.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
 
 namespace evod::viewer {
 
@@ -34,7 +38,7 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     list.AddLine({across(range.mean), corner.y - 2 * pixel}, {across(range.mean), corner.y + height + 2 * pixel},
                  ink(palette::wall), 2 * pixel);
     ImGui::Dummy({width, height});
-    widgets::explain(print("range in this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+    widgets::explain(print("Range in this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
                            double{range.mean}));
 }
 
@@ -46,24 +50,58 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
         health.push_back(point.health);
         most = std::max(most, health.back());
     }
-    most = nice_step(most);
-    Plot plot{.title = shown_number(most)};
+    most = axis_end(most);
+    Plot plot{.title = "Health, axis from 0 to " + shown_number(most)};
     plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
-    curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
-    ImGui::TextDisabled("%s", points.size() > 1
-                                  ? ("health over " + core::duration(points.back().s - points.front().s)).c_str()
-                                  : "health since you selected the organism");
+    curve_widget("##health", plot, {0, most}, 5 * ImGui::GetFontSize());
+    ImGui::TextDisabled(
+        "%s", points.size() > 1
+                  ? ("since you selected it, " + core::duration(points.back().s - points.front().s) + " ago").c_str()
+                  : "since you selected it");
 }
 
 } // namespace
 
-std::string shown_parents(const evod::v1::OrganismInfo& info) {
+double axis_end(double most) {
+    const double step = nice_step(most / 5);
+    return step * std::max(std::ceil(most / step), 1.0);
+}
+
+std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count) {
+    std::vector<std::size_t> indices(organisms.id.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    count = std::min(count, indices.size());
+    std::ranges::partial_sort(indices, indices.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
+        const float of_a = organisms.health(a), of_b = organisms.health(b);
+        return of_a != of_b ? of_a > of_b : organisms.id[a] < organisms.id[b];
+    });
+    indices.resize(count);
+    return indices;
+}
+
+std::string shown_picks(const std::string& subject, const OrganismHistory::Picks& picks) {
+    std::string text = subject;
+    if (picks.migrant) {
+        text += print(" (a copy of organism %u of island %u)", picks.migrant->organism(), picks.migrant->island());
+    }
+    return text + " was picked " + with_separators(picks.count) + " of " + with_separators(picks.all) +
+           (picks.all == 1 ? " time" : " times") + ", expected " + three_digits(picks.expected) + ".";
+}
+
+std::string shown_parents(const evod::v1::OrganismInfo& info, OrganismHistory::Origin origin) {
+    if (info.has_placed_tick()) {
+        return "No parents: placed by a user after tick " + with_separators(info.placed_tick()) + " of the generation";
+    }
     if (info.parents().empty()) {
         return "No parents: founder of generation 1, or loaded from a file";
     }
     const std::string generation = with_separators(info.generation() - 1);
     if (info.parents_size() == 1 || info.parents(0) == info.parents(1)) {
-        return print("Parent: %u (generation %s)", info.parents(0), generation.c_str());
+        const char* why = origin == OrganismHistory::Origin::Elite      ? ": this organism belongs to the elite"
+                          : origin == OrganismHistory::Origin::Survivor ? ": this organism is a survivor"
+                          : origin == OrganismHistory::Origin::Child    ? ", which was both parents"
+                                                                        : "";
+        return print("One parent: %u (generation %s)%s", info.parents(0), generation.c_str(), why);
     }
     return print("Parents: %u and %u (generation %s)", info.parents(0), info.parents(1), generation.c_str());
 }
@@ -74,6 +112,9 @@ std::string shown_fate(const OrganismHistory& history) {
     }
     const evod::v1::OrganismInfo& info = *history.info();
     if (!info.alive()) {
+        if (info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_REMOVED) {
+            return print("removed by a user after %.1f s", info.lived_s());
+        }
         return print("died of %s after %.1f s",
                      info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
     }
@@ -111,52 +152,156 @@ std::string shown_children(const std::vector<OrganismHistory::Child>& children) 
     return text.empty() ? "none" : text;
 }
 
+void OrganismPanel::build_freeze(Context& context, const OrganismHistory& history) {
+    if (widgets::button("Freeze")) {
+        const std::string name = context.world.feed.name() + "-g" + std::to_string(history.generation()) + "-o" +
+                                 std::to_string(history.id());
+        const auto& genes = history.info()->genes();
+        const auto saved = context.freezer->save(name, {{genes.begin(), genes.end()}});
+        context.world.server.notice(saved ? "Stored the organism in the freezer as " + *saved : saved.error().what);
+    }
+    widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");
+}
+
 void OrganismPanel::build(Context& context) {
     const OrganismHistory* history = context.island_view.organism_history();
     if (history == nullptr) {
-        widgets::small_text("Click an organism to select it.", palette::text);
+        build_choice(context);
         return;
     }
     ImGui::Text("Organism %u of generation %s", history->id(), with_separators(history->generation()).c_str());
+    if (context.world.replay.is_own()) {
+        if (widgets::button("Back to live")) {
+            context.world.replay.return_to_present();
+            return;
+        }
+        widgets::explain("Returns to the live world (P).");
+    }
     if (!history->info()) {
         ImGui::TextDisabled("…");
         return;
     }
-    const evod::v1::OrganismInfo& info = *history->info();
-    widgets::small_text(shown_fate(*history), palette::text);
-    if (!history->dead() && !history->ended()) {
+    build_life(context, *history);
+    ImGui::Separator();
+    build_picks(context, *history);
+    ImGui::Separator();
+    build_health(history->health());
+    ImGui::Separator();
+    build_genes(context, *history);
+    ImGui::Separator();
+    build_offspring(*history);
+}
+
+/// Builds the panel while no organism is selected.
+void OrganismPanel::build_choice(Context& context) {
+    widgets::small_text("Click an organism to inspect it: its genes, its parents and why they were picked.",
+                        palette::text);
+    const codec::ReceivedSnapshot* snapshot = context.world.feed.snapshot();
+    if (snapshot == nullptr || snapshot->entities->organisms.id.empty()) {
+        return;
+    }
+    constexpr std::size_t offered = 5;
+    const codec::Entities& organisms = snapshot->entities->organisms;
+    ImGui::Separator();
+    widgets::small_text("The healthiest organisms now:", palette::text);
+    for (const std::size_t index : healthiest(organisms, offered)) {
+        const std::string label = "Organism " + std::to_string(organisms.id[index]) + ", health " +
+                                  three_digits(double{organisms.health(index)});
+        if (ImGui::Button((label + "###" + std::to_string(organisms.id[index])).c_str(),
+                          {-1, 26 * context.gui.scale()})) {
+            context.world.feed.select(organisms.id[index]);
+        }
+        widgets::mark("Organism " + std::to_string(organisms.id[index]));
+    }
+}
+
+void OrganismPanel::build_life(Context& context, const OrganismHistory& history) {
+    const evod::v1::OrganismInfo& info = *history.info();
+    widgets::small_text(shown_fate(history), palette::text);
+    if (!history.dead() && !history.ended()) {
         widgets::small_text(shown_choice(info), palette::text);
         bool following = context.island_view.following();
         if (widgets::checkbox("keep it centred (L)", following)) {
             context.island_view.toggle_following(context.world);
         }
     }
+    build_freeze(context, history);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
-    ImGui::Separator();
-    build_health(history->health());
-    ImGui::Separator();
+}
+
+/// Answers the question why this organism exists, and whether it has offspring.
+void OrganismPanel::build_picks(Context& context, const OrganismHistory& history) {
+    const evod::v1::OrganismInfo& info = *history.info();
+    widgets::small_text(shown_parents(info, history.origin()), palette::text);
+    std::uint32_t last = 0;
+    for (int i = 0; i < info.parents_size(); ++i) {
+        if (i == 0 || info.parents(i) != last) {
+            last = info.parents(i);
+            build_parent(context, history, last);
+        }
+    }
+    if (const OrganismHistory::Picks* picks = history.picks()) {
+        widgets::small_text(shown_picks("It", *picks), palette::text);
+        if (widgets::button("Show its picks")) {
+            context.island_view.show_pick({info.island(), history.generation(), history.id()});
+        }
+        widgets::explain("Opens the glass box at its first pick.");
+    }
+    if (!context.island_view.picks_problem().empty()) {
+        widgets::small_text("The picks are unknown: " + context.island_view.picks_problem() + ".");
+    }
+}
+
+void OrganismPanel::build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent) {
+    const evod::v1::OrganismInfo& info = *history.info();
+    const OrganismHistory::Picks* picks = history.picks_of_parent(parent);
+    if (picks != nullptr) {
+        widgets::small_text(shown_picks("Its parent " + std::to_string(parent), *picks), palette::text);
+    }
+    const std::string id = std::to_string(parent);
+    if (widgets::button(("Go to parent " + id).c_str())) {
+        OrganismPlace place{info.island(), history.generation() - 1, parent};
+        if (picks != nullptr && picks->migrant) {
+            place.island = picks->migrant->island();
+            place.id = picks->migrant->organism();
+        }
+        context.island_view.go_to(context.world, place);
+    }
+    widgets::explain("Shows the parent alive, in a replay of its generation. P returns to the live world.");
+    if (picks != nullptr) {
+        ImGui::SameLine();
+        if (widgets::button(("Why " + id + "?").c_str())) {
+            context.island_view.show_pick({info.island(), history.generation() - 1, parent});
+        }
+        widgets::explain("Opens the glass box at the first pick of this parent.");
+    }
+}
+
+void OrganismPanel::build_genes(Context& context, const OrganismHistory& history) {
+    const evod::v1::OrganismInfo& info = *history.info();
     const auto& names = context.island_view.gene_names();
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
         const float value = info.genes(static_cast<int>(gene));
-        if (gene < history->ranges().size()) {
-            build_gene(names[gene], value, history->ranges()[gene], context.gui.scale());
+        if (gene < history.ranges().size()) {
+            build_gene(names[gene], value, history.ranges()[gene], context.gui.scale());
         } else {
             ImGui::Text("%s %.1f", names[gene].c_str(), double{value});
         }
     }
-    if (history->ranges().empty() && !context.island_view.problem().empty()) {
+    if (history.ranges().empty() && !context.island_view.problem().empty()) {
         widgets::small_text(context.island_view.problem() + ".", palette::text);
     }
-    ImGui::Separator();
-    widgets::small_text(shown_parents(info), palette::text);
-    if (history->children()) {
-        widgets::small_text(print("Offspring in generation %s: %s", with_separators(history->generation() + 1).c_str(),
-                                  shown_children(*history->children()).c_str()),
+}
+
+void OrganismPanel::build_offspring(const OrganismHistory& history) {
+    if (history.children()) {
+        widgets::small_text(print("Offspring in generation %s: %s", with_separators(history.generation() + 1).c_str(),
+                                  shown_children(*history.children()).c_str()),
                             palette::text);
-    } else if (!history->ended()) {
+    } else if (!history.ended()) {
         ImGui::TextDisabled("Offspring appear when the next generation starts");
-    } else if (!history->waits_for_children()) {
+    } else if (!history.waits_for_children()) {
         ImGui::TextDisabled("Offspring unknown: the world ran too fast to be observed");
     }
 }

@@ -1,11 +1,16 @@
-// OrganismPanel: shows the selected organism: its genes within the range of its generation, its health, choices,
-// parents and offspring.
+// OrganismPanel: shows the selected organism: how often its parents were picked, its health, choices and offspring, and
+// its genes within the range of its generation. Without a selection, it offers the healthiest organisms.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
 #pragma once
 
 #include "client/viewer/panels/panel.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -14,7 +19,26 @@ class OrganismPanel : public Panel {
     static constexpr std::string_view name = "Organism";
     std::string_view title() const override { return name; }
     void build(Context& context) override;
+
+  private:
+    void build_freeze(Context& context, const OrganismHistory& history);
+    void build_choice(Context& context);
+    void build_life(Context& context, const OrganismHistory& history);
+    void build_picks(Context& context, const OrganismHistory& history);
+    void build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent);
+    void build_genes(Context& context, const OrganismHistory& history);
+    void build_offspring(const OrganismHistory& history);
 };
+
+/// Returns the indices in the snapshot of at most `count` organisms, by decreasing health; among equal healths, the
+/// lower id comes first.
+std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count);
+/// Returns how often an organism was picked: "Its parent 45 was picked 3 of 25 times, expected 1.71."
+///
+/// subject  begin of the sentence: "Its parent 45"
+std::string shown_picks(const std::string& subject, const OrganismHistory::Picks& picks);
+/// Returns the end of the axis for values from 0 to `most`: the next multiple of a round number.
+double axis_end(double most);
 
 /// Returns the organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its
 /// generation has ended", "alive for 12.3 s, …".
@@ -22,7 +46,7 @@ std::string shown_fate(const OrganismHistory& history);
 /// Returns the organism's choice as text: "about to seek food at (120, 40)".
 std::string shown_choice(const evod::v1::OrganismInfo& info);
 /// Returns the parents as text: "Parents: 12 and 45 (generation 35)". A survivor has one parent.
-std::string shown_parents(const evod::v1::OrganismInfo& info);
+std::string shown_parents(const evod::v1::OrganismInfo& info, OrganismHistory::Origin origin);
 /// Returns the children as text: "3 (unchanged), 7 (with 12), 9 (single parent)"; "none" if there are no children.
 std::string shown_children(const std::vector<OrganismHistory::Child>& children);
 

@@ -16,6 +16,9 @@
 
 namespace evod::viewer {
 
+class Freezer;
+class MouseTool;
+class NewWorldDialog;
 class RunHistory;
 
 class Panel {
@@ -25,7 +28,11 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        const RunHistory* history = nullptr; // of the world; set by Panels
+        // Panels sets the following members.
+        const RunHistory* history = nullptr; // of the world
+        Freezer* freezer = nullptr;
+        NewWorldDialog* new_world = nullptr;
+        MouseTool* tool = nullptr;
         /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
         bool just_shown = false;
     };
@@ -49,6 +56,9 @@ class Panel {
     virtual Size first_size() const { return {400, 480}; }
     /// The width in pixels at scale 1 to which the sidebar grows while it shows this panel, if the window is wide enough.
     virtual float width_min() const { return 0; }
+    /// The height in pixels at scale 1 that the panel needs. If the window is too low, the sidebar shows only the run
+    /// controls above this panel.
+    virtual float height_min() const { return 0; }
 
     /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
     virtual std::span<const Key> keys() const { return {}; }

@@ -4,6 +4,7 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/family_tree/family_tree_panel.h"
+#include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
 #include "client/viewer/panels/physics/physics_panel.h"
@@ -23,7 +24,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t tabs_per_row = 4;
+constexpr std::size_t tabs_per_row = 5;
 
 ImVec2 corner_of(Rectangle place) {
     return {static_cast<float>(place.left), static_cast<float>(place.top)};
@@ -48,6 +49,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<PlotsPanel>()});
     places_.push_back({std::make_unique<BreedingPanel>()});
     places_.push_back({std::make_unique<PhysicsPanel>()});
+    places_.push_back({std::make_unique<FreezerPanel>()});
     places_.push_back({std::make_unique<FamilyTreePanel>()});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
@@ -123,6 +125,7 @@ void Panels::begin_session() {
         fresh.places_[i].detached = places_[i].detached;
     }
     fresh.settings_ = std::move(settings_);
+    fresh.freezer_ = std::move(freezer_);
     fresh.used_ = std::move(used_);
     *this = std::move(fresh);
 }
@@ -132,7 +135,8 @@ double Panels::width(unsigned window_pixels, double scale) const {
         return std::round(sidebar_collapsed * scale);
     }
     const Place& place = places_[tab()];
-    const float wanted = place.detached ? 0 : place.panel->width_min();
+    // A panel widens the sidebar to at most a third of the window.
+    const float wanted = place.detached ? 0 : std::min(place.panel->width_min(), float(window_pixels / scale / 3));
     return sidebar_pixels(std::max(settings_.width, wanted) * scale, window_pixels, scale);
 }
 
@@ -140,16 +144,30 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
     keyboard_.reset();
     history_.update(context.world, context.now);
     context.history = &history_;
+    context.freezer = &freezer_;
+    context.new_world = &new_world_;
+    context.tool = &tool_;
+    if (context.world.take_new_world_offer()) {
+        if (context.world.server.may_create()) {
+            new_world_.open(true);
+        } else {
+            context.world.server.notice("There is no other world. " + std::string{no_creation_text});
+        }
+    }
     if (settings_.collapsed) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
         build_sidebar(context, sidebar);
+    }
+    if (context.island_view.wants_pick()) {
+        show(BreedingPanel::name);
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
         if (places_[i].detached) {
             build_detached(i, context, sidebar);
         }
     }
+    new_world_.build(context);
 }
 
 void Panels::build_collapsed(Rectangle sidebar, float scale) {
@@ -204,7 +222,9 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     context.gui.widget_positions().begin_panel("Sidebar");
     summary_.build_title(context.world);
     build_corner(scale);
-    summary_.build(context);
+    constexpr float summary_height = 330; // with the tabs, in pixels at scale 1
+    const float wanted_height = places_[tab()].detached ? 0 : places_[tab()].panel->height_min();
+    summary_.build(context, static_cast<float>(sidebar.height) >= (wanted_height + summary_height) * scale);
     ImGui::Separator();
     context.gui.widget_positions().begin_panel("Tabs");
     build_tabs(context.gui);
@@ -229,20 +249,30 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
 }
 
 void Panels::build_tabs(const Gui& gui) {
-    const float scale = gui.scale(), gap = 4 * scale;
-    const float width = (ImGui::GetContentRegionAvail().x - gap * (tabs_per_row - 1)) / tabs_per_row;
+    const float scale = gui.scale(), gap = 4 * scale, row_width = ImGui::GetContentRegionAvail().x;
+    const auto text_width = [&](std::size_t i) { return ImGui::CalcTextSize(titles_[i].data()).x; };
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+    float room = 0; // of each tab of the row, around its text
     for (std::size_t i = 0; i < places_.size(); ++i) {
+        const std::size_t end = std::min(i - i % tabs_per_row + tabs_per_row, places_.size());
+        if (i % tabs_per_row == 0) {
+            const auto count = static_cast<float>(end - i);
+            room = row_width - gap * (count - 1);
+            for (std::size_t k = i; k < end; ++k) {
+                room -= text_width(k);
+            }
+            room /= count;
+        }
         const bool chosen = i == tab();
         ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
         ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
-        if (ImGui::Button(titles_[i].data(), {width, 25 * scale})) {
+        if (ImGui::Button(titles_[i].data(), {text_width(i) + room, 25 * scale})) {
             show(i);
         }
         ImGui::PopStyleColor(2);
         widgets::mark(titles_[i]);
         widgets::explain(std::string{titles_[i]} + " (" + panel_key(i) + ")");
-        if (i % tabs_per_row + 1 < tabs_per_row && i + 1 < places_.size()) {
+        if (i + 1 < end) {
             ImGui::SameLine();
         }
     }

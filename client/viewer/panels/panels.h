@@ -7,13 +7,17 @@
 #pragma once
 
 #include "client/viewer/drawing/window_layout.h"
+#include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/panels/summary.h"
+#include "client/viewer/world/freezer.h"
+#include "client/viewer/world/mouse_tool.h"
 
 #include <SFML/Window/Event.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,6 +37,7 @@ struct SidebarSettings {
     float width = sidebar_width; // pixels at scale 1
     bool collapsed = false;
     std::string tab = "Parameters"; // title of the panel that the sidebar shows
+    bool tour_seen = false;         // whether the tour was shown
 };
 
 class Panels {
@@ -59,8 +64,15 @@ class Panels {
     const std::vector<std::string_view>& titles() const { return titles_; }
     std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
 
+    /// What a click in an island does.
+    MouseTool& tool() { return tool_; }
+    const MouseTool& tool() const { return tool_; }
+    /// Sets the folder of the freezer.
+    void set_freezer(std::filesystem::path folder) { freezer_ = Freezer{std::move(folder)}; }
+
     const SidebarSettings& settings() const { return settings_; }
     void set(SidebarSettings settings);
+    void set_tour_seen() { settings_.tour_seen = true; }
 
     /// The width of the sidebar in pixels, in a window of this width. A panel that needs more room widens it.
     double width(unsigned window_pixels, double scale) const;
@@ -92,6 +104,9 @@ class Panels {
     std::vector<std::string_view> titles_;
     RunHistory history_; // of the focused world
     Summary summary_;
+    Freezer freezer_;
+    NewWorldDialog new_world_;
+    MouseTool tool_;
     std::vector<std::size_t> used_;       // indices of detached panels, the most recently used last
     std::optional<std::size_t> keyboard_; // index of the panel with the keyboard focus
 };

@@ -6,6 +6,7 @@
 
 #include <SFML/Window/Keyboard.hpp>
 #include <imgui.h>
+#include <imgui_internal.h> // TablePushBackgroundChannel()
 
 #include <algorithm>
 
@@ -17,14 +18,14 @@ using evod::v1::ParameterDescription;
 using evod::v1::ParameterValue;
 
 struct EffectWords {
-    const char *mark, *sentence;
+    const char *word, *sentence;
 };
 EffectWords words_of(evod::v1::ParameterEffect effect) {
     switch (effect) {
     case evod::v1::PARAMETER_EFFECT_NEXT_TICK:
         return {"now", "Takes effect at the next tick; breeding parameters, at the next breeding."};
     case evod::v1::PARAMETER_EFFECT_NEXT_GENERATION:
-        return {"generation", "Takes effect with the next generation."};
+        return {"next gen.", "Takes effect with the next generation."};
     case evod::v1::PARAMETER_EFFECT_RESET:
         return {"reset", "Takes effect when the world is reset."};
     default:
@@ -47,11 +48,16 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
     if (!widgets::wants_note()) {
         return;
     }
-    std::string text = about.help() + "\n\nAllowed: " + allowed_text(about) +
+    std::string text = about.name() + "\n" + about.help() + "\n\nAllowed: " + allowed_text(about) +
                        (about.unit().empty() ? "" : " " + about.unit()) +
                        "\nDefault: " + to_text(about.default_value()) + "\nNow: " + to_text(edits.current_value(i));
     if (edits.is_pending(i)) {
         text += ", then " + to_text(edits.requested_value(i));
+    }
+    for (int n = 0; n < std::min(about.choices_size(), about.choice_help_size()); ++n) {
+        if (about.choices(n) == edits.shown(i).choice()) {
+            text += "\n" + label_of_choice(about.choices(n)) + ": " + about.choice_help(n);
+        }
     }
     widgets::note(text + "\n" + words_of(about.effect()).sentence + std::string{more});
 }
@@ -92,13 +98,11 @@ void ParametersPanel::build(Context& context) {
     build_head(context, may);
     ImGui::EndDisabled();
     ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##search", "search in names, units and descriptions", search_.data(), search_.size());
-    widgets::mark("Search");
-    ImGui::BeginChild("rows");
+    ImGui::InputTextWithHint("##search", "search in names, groups and descriptions", search_.data(), search_.size());
+    widgets::mark_field("Search", search_.data());
     ImGui::BeginDisabled(!may);
     build_rows(scale);
     ImGui::EndDisabled();
-    ImGui::EndChild();
     apply_ = apply_ && may;
     if (apply_ && !edits_.busy()) { // apply_ is set in the frame in which the user releases a slider
         apply_ = false;
@@ -153,6 +157,7 @@ void ParametersPanel::poll(const Context& context) {
                 const auto& registry = response->description().parameters();
                 edits_.describe({registry.begin(), registry.end()});
                 groups_ = group(edits_.registry());
+                groups_.insert(groups_.begin(), most_used(edits_.registry()));
                 stale_ = true;
             }
         });
@@ -199,7 +204,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Apply")) {
         apply_ = true;
     }
-    widgets::explain("Sends all edits as one change: the server accepts all of them or none.");
+    widgets::explain(count == 0 ? "There are no edits."
+                                : "Sends all edits as one change: the server accepts all of them or none.");
     ImGui::SameLine();
     if (widgets::button("Discard")) {
         edits_.revert_all();
@@ -221,9 +227,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     widgets::explain("Ctrl+Shift+Z: applies the last undone change again.");
     ImGui::EndDisabled();
     ImGui::SameLine(0, 20 * scale);
-    ImGui::Checkbox("apply on release", &apply_on_release_);
-    widgets::mark("apply on release");
-    widgets::explain("Sends a value as soon as you release the mouse button.");
+    widgets::checkbox("apply at once", apply_at_once_);
+    widgets::explain("Applies each change as soon as you make it.");
     if (!edits_.problem().empty()) {
         widgets::small_text(edits_.problem(), palette::warning);
         widgets::mark("problem");
@@ -241,47 +246,76 @@ void ParametersPanel::build_head(const Context& context, bool may) {
 void ParametersPanel::build_rows(float scale) {
     const bool searching = search_[0] != '\0';
     bool any = false;
-    for (const ParameterGroup& part : groups_) {
-        const auto hit = [&](std::size_t i) { // show rejected values even if they do not match the search
-            return edits_.violation(i) != nullptr || matches(edits_.registry()[i], search_.data());
-        };
-        bool hits = false, needs_attention = false;
-        for (std::size_t i = part.first; i < part.end; ++i) {
-            hits = hits || hit(i);
+    constexpr ImGuiTableFlags flags =
+        ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY;
+    if (!ImGui::BeginTable("parameters", 3, flags)) {
+        return;
+    }
+    ImGui::TableSetupColumn("Parameter", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("Effect", ImGuiTableColumnFlags_WidthFixed, 66 * scale);
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, 0); // only the headings of the groups are coloured
+    ImGui::PushStyleColor(ImGuiCol_Text, ink(palette::text_quiet));
+    ImGui::TableHeadersRow();
+    ImGui::PopStyleColor(2);
+    widgets::explain(
+        "When a change takes effect: at the next tick, with the next generation, or when the world is reset.");
+    marked_.assign(edits_.registry().size(), false);
+    for (std::size_t number = 0; number < groups_.size(); ++number) {
+        const ParameterGroup& part = groups_[number];
+        const bool is_extra = number == 0; // its parameters also belong to other groups
+        if (is_extra && searching) {
+            continue;
+        }
+        std::vector<std::size_t> hits;
+        bool needs_attention = false;
+        for (const std::size_t i : part.members) { // show rejected values even if they do not match the search
+            if (edits_.violation(i) != nullptr || matches(edits_.registry()[i], part.title, search_.data())) {
+                hits.push_back(i);
+            }
             needs_attention = needs_attention || edits_.is_edited(i) || edits_.violation(i) != nullptr;
         }
-        if (!hits) {
+        if (hits.empty()) {
             continue;
         }
         any = true;
-        const std::string title{part.title};
-        if (searching || needs_attention) { // open groups that contain matches, edits or rejected values
-            ImGui::SetNextItemOpen(true);
-        }
-        if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
-            continue;
-        }
-        if (!ImGui::BeginTable(title.c_str(), 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
-            continue;
-        }
-        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 4);
-        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 5);
-        ImGui::TableSetupColumn("effect", ImGuiTableColumnFlags_WidthFixed, 76 * scale);
-        for (std::size_t i = part.first; i < part.end; ++i) {
-            if (hit(i)) {
-                ImGui::PushID(static_cast<int>(i));
-                build_row(i);
+        if (build_heading(part.title, searching || (needs_attention && !is_extra))) {
+            for (const std::size_t i : hits) {
+                ImGui::PushID(static_cast<int>(i + number * edits_.registry().size()));
+                const std::string& name = edits_.registry()[i].name();
+                build_row({i, marked_[i] ? std::string{part.title} + "/" + name : name});
+                marked_[i] = true;
                 ImGui::PopID();
             }
         }
-        ImGui::EndTable();
     }
+    ImGui::EndTable();
     if (!any) {
         widgets::small_text("No parameter matches.");
     }
 }
 
-void ParametersPanel::build_row(std::size_t i) {
+/// Builds the heading of a group. Returns whether the group is open.
+bool ParametersPanel::build_heading(std::string_view title, bool must_open) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, ImGui::GetColorU32(ImGuiCol_Header));
+    if (must_open) { // a group that contains matches, edits or rejected values
+        ImGui::SetNextItemOpen(true);
+    }
+    const std::string name{title};
+    constexpr ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
+                                         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_FramePadding;
+    ImGui::TablePushBackgroundChannel(); // otherwise the column would clip the title
+    const bool open = ImGui::TreeNodeEx(name.c_str(), flags);
+    widgets::mark("group " + name);
+    ImGui::TablePopBackgroundChannel();
+    return open;
+}
+
+void ParametersPanel::build_row(const Row& row) {
+    const std::size_t i = row.parameter;
     const ParameterDescription& about = edits_.registry()[i];
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -290,101 +324,129 @@ void ParametersPanel::build_row(std::size_t i) {
                           : edits_.is_edited(i)          ? palette::stopped
                                                          : palette::text;
     ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
-    ImGui::TextUnformatted(about.name().c_str());
+    ImGui::TextWrapped("%s", label_of(about).c_str());
     ImGui::PopStyleColor();
     explain(about, edits_, i);
-    build_menu(i);
+    ImGui::OpenPopupOnItemClick("menu");
     ImGui::TableNextColumn();
-    build_field(i);
+    build_field(row);
+    build_menu(i);
     build_remarks(i);
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     const EffectWords effect = words_of(about.effect());
     ImGui::PushStyleColor(
         ImGuiCol_Text,
-        ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::running : palette::text_quiet));
-    ImGui::TextUnformatted(effect.mark);
+        ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::text : palette::text_quiet));
+    ImGui::TextUnformatted(effect.word);
     ImGui::PopStyleColor();
     widgets::explain(effect.sentence);
 }
 
-void ParametersPanel::build_field(std::size_t i) {
-    const ParameterDescription& about = edits_.registry()[i];
+void ParametersPanel::build_field(const Row& row) {
+    const ParameterDescription& about = edits_.registry()[row.parameter];
     ImGui::SetNextItemWidth(-1);
     bool released = false;
     switch (about.kind()) {
-    case evod::v1::PARAMETER_KIND_FLAG: {
-        ParameterValue value = edits_.shown(i);
-        bool flag = value.flag();
-        if (ImGui::Checkbox("##value", &flag)) {
-            value.set_flag(flag);
-            edits_.edit(i, value);
-            released = true;
-        }
-        widgets::mark(about.name());
-        explain(about, edits_, i);
+    case evod::v1::PARAMETER_KIND_FLAG:
+        released = build_flag(row);
         break;
-    }
     case evod::v1::PARAMETER_KIND_CHOICE:
-        released = build_choice(i);
+        released = build_choice(row);
         break;
     default:
-        released = build_number(i);
+        released = build_number(row);
         break;
     }
-    if (released && apply_on_release_) {
+    if (released && apply_at_once_) {
         apply_ = true;
     }
 }
 
-bool ParametersPanel::build_number(std::size_t i) {
-    const ParameterDescription& about = edits_.registry()[i];
-    double number = number_of(edits_.shown(i));
+/// Adds the label of the parameter to the names of the last widget, unless another row has it.
+void ParametersPanel::add_label(const Row& row, const ParameterDescription& about) {
+    if (row.name == about.name()) {
+        widgets::alias(label_of(about));
+    }
+}
+
+bool ParametersPanel::build_flag(const Row& row) {
+    const ParameterDescription& about = edits_.registry()[row.parameter];
+    ParameterValue value = edits_.shown(row.parameter);
+    bool flag = value.flag();
+    const bool switched = widgets::checkbox("##value", flag, row.name);
+    add_label(row, about);
+    if (switched) {
+        value.set_flag(flag);
+        edits_.edit(row.parameter, value);
+    }
+    explain(about, edits_, row.parameter);
+    ImGui::OpenPopupOnItemClick("menu");
+    return switched;
+}
+
+bool ParametersPanel::build_number(const Row& row) {
+    const ParameterDescription& about = edits_.registry()[row.parameter];
+    double number = number_of(edits_.shown(row.parameter));
     const double least = about.min(), most = about.max();
     const std::string format = (about.kind() == evod::v1::PARAMETER_KIND_COUNT ? "%.0f" : "%.6g") +
-                               (about.unit().empty() ? "" : " " + escape_percent_signs(about.unit()));
+                               escape_percent_signs(unit_text(about, number));
     if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &number, &least, &most, format.c_str(),
                             spans_decades(about) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None)) {
-        edits_.edit(i, value_of(about, number));
+        edits_.edit(row.parameter, value_of(about, number));
     }
-    widgets::mark(about.name());
+    widgets::mark_field(row.name, number);
+    add_label(row, about);
+    ImGui::OpenPopupOnItemClick("menu");
     const bool released = ImGui::IsItemDeactivatedAfterEdit();
     if (!ImGui::IsItemActive()) {
-        explain(about, edits_, i, "\n\nDrag, or Ctrl+click to type.");
+        explain(about, edits_, row.parameter, "\n\nDrag, or Ctrl+click to type.");
     }
     return released;
 }
 
-bool ParametersPanel::build_choice(std::size_t i) {
-    const ParameterDescription& about = edits_.registry()[i];
-    ParameterValue value = edits_.shown(i);
+bool ParametersPanel::build_choice(const Row& row) {
+    const ParameterDescription& about = edits_.registry()[row.parameter];
+    ParameterValue value = edits_.shown(row.parameter);
     bool released = false;
-    if (widgets::begin_drop_down("##value", value.choice().c_str(), about.name())) {
-        for (const std::string& choice : about.choices()) {
-            if (widgets::choice(about.name(), choice, choice == value.choice())) {
-                value.set_choice(choice);
-                edits_.edit(i, value);
-                released = true;
-            }
-        }
-        ImGui::EndCombo();
-    } else {
-        explain(about, edits_, i);
+    const std::string chosen = label_of_choice(value.choice());
+    const bool open = widgets::begin_drop_down("##value", chosen.c_str(), row.name);
+    add_label(row, about);
+    if (!open) {
+        explain(about, edits_, row.parameter);
+        ImGui::OpenPopupOnItemClick("menu");
+        return false;
     }
+    for (int n = 0; n < about.choices_size(); ++n) {
+        const std::string& choice = about.choices(n);
+        if (widgets::choice(row.name, label_of_choice(choice), choice == value.choice(), choice)) {
+            value.set_choice(choice);
+            edits_.edit(row.parameter, value);
+            released = true;
+        }
+        if (n < about.choice_help_size()) {
+            widgets::explain(about.choice_help(n));
+        }
+    }
+    ImGui::EndCombo();
     return released;
 }
 
 void ParametersPanel::build_menu(std::size_t i) {
     const ParameterDescription& about = edits_.registry()[i];
-    if (!ImGui::BeginPopupContextItem("menu")) {
+    if (!ImGui::BeginPopup("menu")) {
         return;
     }
     if (ImGui::MenuItem("Discard the edit", nullptr, false, edits_.is_edited(i))) {
         edits_.revert(i);
     }
-    if (ImGui::MenuItem(("Default: " + to_text(about.default_value())).c_str())) {
+    widgets::mark("Discard the edit");
+    const std::string set_default = "Default: " + to_text(about.default_value());
+    const bool wanted = ImGui::MenuItem(set_default.c_str());
+    widgets::mark(set_default);
+    if (wanted) {
         edits_.edit(i, about.default_value());
-        apply_ = apply_ || apply_on_release_;
+        apply_ = apply_ || apply_at_once_;
     }
     ImGui::EndPopup();
 }

@@ -14,6 +14,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -31,17 +32,27 @@ class ParametersPanel : public Panel {
 
     void build_head(const Context& context, bool may);
     void build_rows(float scale);
-    void build_row(std::size_t i);
-    void build_field(std::size_t i);
-    bool build_number(std::size_t i);
-    bool build_choice(std::size_t i);
+    /// A row of the table.
+    struct Row {
+        std::size_t parameter; // index in the registry
+        std::string name;      // the name of its widget for scripts
+    };
+    static bool build_heading(std::string_view title, bool must_open);
+    void build_row(const Row& row);
+    void build_field(const Row& row);
+    static void add_label(const Row& row, const evod::v1::ParameterDescription& about);
+    // The following functions return whether the user has set a value.
+    bool build_flag(const Row& row);
+    bool build_number(const Row& row);
+    bool build_choice(const Row& row);
     void build_menu(std::size_t i);
     void build_remarks(std::size_t i);
 
     ParameterEdits edits_;
-    std::vector<ParameterGroup> groups_;
-    std::string world_;  // the viewed world
-    std::string run_id_; // the run to which edits_ belong
+    std::vector<ParameterGroup> groups_; // the most used parameters, then all by topic
+    std::vector<bool> marked_;           // by parameter: whether this frame has a row of it
+    std::string world_;                  // the viewed world
+    std::string run_id_;                 // the run to which edits_ belong
     std::uint64_t place_number_ = 0, connected_count_ = 0;
     Poll registry_poll_;            // requests the registry until it has arrived
     Poll values_poll_;              // requests the values when they may have changed
@@ -49,7 +60,7 @@ class ParametersPanel : public Panel {
     std::uint64_t transaction_ = 0; // number of the last transaction; answers to earlier ones are ignored
     core::SnapshotInterpolator::Clock::time_point sent_{}; // time of the last transaction, which is never sent again
     std::array<char, 64> search_{};
-    bool apply_on_release_ = false;
+    bool apply_at_once_ = false;
     bool apply_ = false; // apply the edits as soon as no transaction is pending
 };
 

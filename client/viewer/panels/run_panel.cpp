@@ -36,7 +36,7 @@ void number_field(const char* name, std::array<char, size>& field, float width, 
     ImGui::SetNextItemWidth(width);
     ImGui::InputTextWithHint((std::string{"##"} + name).c_str(), hint, field.data(), field.size(),
                              ImGuiInputTextFlags_CharsDecimal);
-    widgets::mark(name);
+    widgets::mark_field(name, field.data());
     ImGui::SameLine();
 }
 

@@ -2,13 +2,17 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/island/styles.h"
+#include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/panels/plots/run_history.h"
+#include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 
 namespace evod::viewer {
 
@@ -16,25 +20,14 @@ namespace {
 
 constexpr float curve_height = 84; // pixels at scale 1
 
-/// Explains the marks of the island in one line: each mark as it is drawn, followed by its name.
-void build_marks(float scale) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float line = ImGui::GetTextLineHeight(), radius = 5 * scale;
-    const auto centre = [&] {
-        const ImVec2 place = ImGui::GetCursorScreenPos();
-        ImGui::Dummy({3 * radius, line});
-        ImGui::SameLine(0, 2 * scale);
-        return ImVec2{place.x + radius, place.y + line / 2};
-    };
-    list.AddCircle(centre(), radius, ink(palette::organism), 0, 2 * scale);
-    ImGui::TextUnformatted("organism, with its health");
-    ImGui::SameLine(0, 12 * scale);
-    list.AddCircleFilled(centre(), radius * 0.8f, ink(palette::food));
-    ImGui::TextUnformatted("food");
-    ImGui::SameLine(0, 12 * scale);
-    list.AddCircleFilled(centre(), radius * 0.8f, ink(palette::poison));
-    ImGui::TextUnformatted("poison");
-}
+/// What a click in an island does, by MouseTool::Kind.
+constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
+    "A click in the island selects the organism there (Esc).",
+    "A click in the island places food. It does not reappear when it is eaten.",
+    "A click in the island places poison. It does not reappear when it is eaten.",
+    "A click in the island places a copy of the selected organism, or of the last organism from the freezer.",
+    "A click in the island removes the organism, food or poison there until the generation ends.",
+};
 
 } // namespace
 
@@ -45,25 +38,48 @@ void Summary::build_title(const ViewedWorld& world) {
     widgets::mark("World");
 }
 
-void Summary::build(Panel::Context& context) {
-    build_experiment(context);
-    build_curve(context);
-    build_buttons(context.world, context.gui.scale());
+void Summary::build(Panel::Context& context, bool complete) {
+    if (complete) {
+        build_experiment(context);
+        build_curve(context);
+    }
+    build_buttons(context);
     build_speed(context.world);
+    build_tools(context);
 }
 
 void Summary::build_experiment(Panel::Context& context) {
     ViewedWorld& world = context.world;
     experiment_.update(world, context.now);
-    const float scale = context.gui.scale();
     ImGui::PushFont(&context.gui.label());
     if (experiment_.text().empty()) {
         widgets::small_text(world.feed.control().known() ? "Loading the experiment …" : "No world is open yet.");
     } else {
         widgets::small_text(experiment_.text(), palette::text);
     }
-    build_marks(scale);
+    build_marks(context.island_view.options.look, context.gui);
     ImGui::PopFont();
+}
+
+/// Explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
+void Summary::build_marks(Look look, const Gui& gui) {
+    const float scale = gui.scale(), radius = 7 * scale, gap = 6 * scale, height = 26 * scale;
+    const palette::IslandColours& colours = palette::of(look);
+    const Styles& styles = styles_of(look);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(colours.ground), 4 * scale);
+    float left = corner.x + gap;
+    const auto add = [&](const ShapeStyle& style, const char* name) {
+        marks_.add(list, {left + radius, corner.y + height / 2}, radius, double{scale}, style);
+        const float top = corner.y + (height - gui.label().FontSize) / 2 - scale;
+        left = write(list, gui.label(), {left + 2 * radius + gap, top}, colours.label, name) + 2.5f * gap;
+    };
+    add(styles.organism, look.skin == Skin::Vivid ? "organism, arc: health" : "organism, number: health");
+    add(styles.food, "food");
+    add(styles.poison, "poison");
+    ImGui::Dummy({width, height});
 }
 
 void Summary::build_curve(const Panel::Context& context) {
@@ -71,23 +87,40 @@ void Summary::build_curve(const Panel::Context& context) {
     const auto generations = table.column(std::nullopt, "generation");
     const auto mean = table.column(std::nullopt, "fitness_mean"), best = table.column(std::nullopt, "fitness_best");
     Plot plot;
-    plot.series = {{.name = "best", .colour = palette::series_orange, .x = generations, .y = best},
-                   {.name = "mean", .colour = palette::series_blue, .x = generations, .y = mean}};
     if (generations.empty()) {
         plot.title = context.history->history().complete() ? "Fitness: the curve begins when the first generation ends"
                                                            : "Fitness: loading the earlier generations …";
     } else {
-        plot.title = print("Fitness by generation: best %.3g, mean %.3g in generation %.0f", best.back(), mean.back(),
-                           generations.back());
+        plot.title = "Fitness, generation " + shown_number(generations.back());
+        plot.x_label = "generation";
+        plot.note_end = "A click shows this generation in a replay.";
+        plot.counted_x = true;
+        plot.series = {{.name = "best",
+                        .newest = significant(best.back()),
+                        .colour = palette::series_orange,
+                        .x = generations,
+                        .y = best},
+                       {.name = "mean",
+                        .newest = significant(mean.back()),
+                        .colour = palette::series_blue,
+                        .x = generations,
+                        .y = mean}};
+        plot.marks = {{context.history->history().changes()}};
     }
     const Range range = joined(range_of(best), range_of(mean)).value_or(Range{0, 1});
     ImGui::PushFont(&context.gui.label());
-    curve_widget(plot, with_room({std::min(range.min, 0.0), range.max}, 0.25), curve_height * context.gui.scale());
+    const auto clicked = curve_widget("##fitness", plot, with_room({std::min(range.min, 0.0), range.max}, 0.05),
+                                      curve_height * context.gui.scale());
     ImGui::PopFont();
     widgets::mark("Fitness curve");
+    if (clicked) {
+        context.world.show_generation(static_cast<std::uint64_t>(*clicked));
+    }
 }
 
-void Summary::build_buttons(ViewedWorld& world, float scale) {
+void Summary::build_buttons(Panel::Context& context) {
+    ViewedWorld& world = context.world;
+    const float scale = context.gui.scale();
     const RunControl& control = world.feed.control();
     const std::string_view why = world.commands.read_only_reason();
     const bool over = control.state() == evod::v1::RUN_STATE_TERMINATED || world.replay.at_end();
@@ -99,23 +132,41 @@ void Summary::build_buttons(ViewedWorld& world, float scale) {
         world.commands.pause_or_resume();
     }
     widgets::mark(label);
-    widgets::explain("Space");
+    widgets::alias("Run or pause");
+    const std::string why_not = !why.empty() ? std::string{why} + "." : over ? "The run has ended." : "";
+    widgets::explain(why_not.empty() ? "Runs or pauses the world (Space)." : why_not);
     ImGui::SameLine();
     if (widgets::button("One generation")) {
         world.commands.run_generations(1);
     }
-    widgets::explain("Runs until the generation has ended and the next one is bred, then waits.");
+    widgets::explain(why_not.empty() ? "Runs until the generation has ended and the next one is bred, then waits."
+                                     : why_not);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!control.known());
     if (widgets::button(world.replay.is_own() ? "Live" : "Replay")) {
         world.toggle_replay();
     }
+    widgets::alias("Replay or live");
     widgets::explain(world.replay.is_own() ? "Returns to the live world (P)."
                                            : "Shows earlier generations of this run, with a time line (P).");
     ImGui::SameLine();
-    fork_.build(world);
+    const bool may_create = world.server.may_create();
+    ImGui::BeginDisabled(!may_create);
+    if (widgets::button("Fork")) {
+        world.replay.fork();
+    }
     ImGui::EndDisabled();
+    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
+                                : no_creation_text);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!may_create);
+    if (widgets::button("New …")) {
+        context.new_world->open(false);
+    }
+    ImGui::EndDisabled();
+    widgets::explain(may_create ? new_world_text : no_creation_text);
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);
     }
@@ -139,7 +190,7 @@ void Summary::build_speed(ViewedWorld& world) {
                             factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
-    widgets::mark("speed");
+    widgets::mark_field("speed", factor);
     widgets::explain("+ doubles and − halves the speed; 1 is real time.");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
         const bool allowed = *factor_ >= least && *factor_ <= most; // the slider does not limit a typed value
@@ -165,6 +216,36 @@ void Summary::build_speed(ViewedWorld& world) {
     }
     if (control.info().slowed()) {
         widgets::small_text("The server cannot keep up: simulated time runs slower, no tick is skipped.");
+    }
+}
+
+void Summary::build_tools(const Panel::Context& context) {
+    MouseTool& tool = *context.tool;
+    const OrganismHistory* selected = context.island_view.organism_history();
+    const bool copies = context.world.feed.selected() && selected != nullptr && selected->info();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Click");
+    for (std::size_t i = 0; i < MouseTool::names.size(); ++i) {
+        const auto kind = static_cast<MouseTool::Kind>(i);
+        const bool chosen = tool.kind() == kind, takes_copy = copies && kind == MouseTool::Kind::Organism;
+        const std::string problem = takes_copy && !tool.model() ? tool.problem(MouseTool::Kind::Food, context.world)
+                                                                : tool.problem(kind, context.world);
+        ImGui::SameLine(0, 4 * context.gui.scale());
+        ImGui::BeginDisabled(!problem.empty());
+        ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
+        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
+        const bool pressed = ImGui::Button(MouseTool::names[i].data());
+        widgets::mark("Click: " + std::string{MouseTool::names[i]}); // the panel Organism has a tab with this label
+        if (pressed) {
+            if (takes_copy) {
+                const auto& genes = selected->info()->genes();
+                tool.place({"a copy of organism " + std::to_string(selected->id()), {genes.begin(), genes.end()}});
+            }
+            tool.choose(kind);
+        }
+        ImGui::PopStyleColor(2);
+        ImGui::EndDisabled();
+        widgets::explain(problem.empty() ? explanations[i] : problem);
     }
 }
 

@@ -1,12 +1,13 @@
 // Summary: the top of the sidebar. It explains the focused world to a newcomer and controls its run.
 //
-//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls
+//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls ·
+//   what a click in the island does
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
 #pragma once
 
-#include "client/viewer/panels/fork_dialog.h"
+#include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
 
@@ -20,16 +21,20 @@ class Summary {
     /// Builds one line: the name of the world that the sidebar is about.
     void build_title(const ViewedWorld& world);
     /// Builds everything below the title.
-    void build(Panel::Context& context);
+    ///
+    /// complete  false: only the run controls
+    void build(Panel::Context& context, bool complete);
 
   private:
     void build_experiment(Panel::Context& context);
+    void build_marks(Look look, const Gui& gui);
     void build_curve(const Panel::Context& context);
-    void build_buttons(ViewedWorld& world, float scale);
+    void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);
+    void build_tools(const Panel::Context& context);
 
     Experiment experiment_;
-    ForkDialog fork_;
+    MarkPainter marks_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused
 };

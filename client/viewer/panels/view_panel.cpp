@@ -5,11 +5,40 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 
 namespace evod::viewer {
 
 namespace {
+
+/// Builds a drop-down for one of the values with these names.
+template <class Value, std::size_t Count>
+bool choose(const char* label, const std::array<std::string_view, Count>& names, Value& value) {
+    bool changed = false;
+    if (widgets::begin_drop_down(label, std::string{names[static_cast<std::size_t>(value)]}.c_str())) {
+        for (std::size_t i = 0; i < Count; ++i) {
+            const bool chosen = static_cast<std::size_t>(value) == i;
+            if (widgets::choice(label, std::string{names[i]}, chosen) && !chosen) {
+                value = static_cast<Value>(i);
+                changed = true;
+            }
+        }
+        ImGui::EndCombo();
+    }
+    return changed;
+}
+
+void build_look(ViewOptions& options) {
+    Look look = options.look;
+    if (choose("skin", skin_names, look.skin)) {
+        options = default_options(look);
+    }
+    if (look.skin == Skin::Vivid) {
+        choose("background", background_names, options.look.background);
+    }
+}
 
 void build_colouring(IslandView& island_view) {
     ViewOptions& shown = island_view.options;
@@ -23,7 +52,7 @@ void build_colouring(IslandView& island_view) {
         case ColourBy::Lineage:
             return "lineage (ancestor in an earlier generation)";
         default:
-            return "nothing";
+            return shown.look.skin == Skin::Vivid ? "nothing (shade: health)" : "nothing";
         }
     };
     constexpr const char* colouring = "colour by (C)";
@@ -57,13 +86,18 @@ void build_colouring(IslandView& island_view) {
 
 void ViewPanel::build(Context& context) {
     IslandView& island_view = context.island_view;
+    build_look(island_view.options);
     build_colouring(island_view);
+    ImGui::Separator();
+    widgets::checkbox("trails of the last 3 simulated seconds (T)", island_view.options.trails);
+    widgets::checkbox("flashes of meals and deaths", island_view.options.flashes);
     ImGui::Separator();
     widgets::checkbox("perception radii of food and poison (V)", island_view.options.radii);
     widgets::checkbox("forces and their targets (G)", island_view.options.forces);
-    widgets::checkbox("trails of the last 3 simulated seconds (T)", island_view.options.trails);
+    widgets::checkbox("radii and forces of all organisms", island_view.options.of_all);
+    widgets::explain("Otherwise of the organisms that the mouse points at and that you have selected.");
     ImGui::Separator();
-    widgets::checkbox("density map where organisms are too small", island_view.options.density);
+    widgets::checkbox("density map where organisms are too many", island_view.options.density);
     widgets::checkbox("minimap while zoomed in", island_view.options.minimap);
     ImGui::Separator();
     bool following = island_view.following();

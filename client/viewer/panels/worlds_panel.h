@@ -1,5 +1,5 @@
 // WorldsPanel: lists the worlds of the server and their states. A click shows a world, or another island of the viewed
-// world.
+// world. Buttons create and delete worlds.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace evod::viewer {
@@ -29,10 +30,12 @@ class WorldsPanel : public Panel {
     void poll(ViewedWorld& world, Clock::time_point now);
     void process_events(const ViewedWorld& world);
     void refresh();
+    void build_actions(Context& context);
     void build_worlds(ViewedWorld& world);
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
+    std::string deleted_;             // the world that the user is asked about
     evod::v1::Statistics statistics_; // statistics of the viewed world
     std::uint64_t place_number_ = 0;  // the place that statistics_ describes
     Poll list_poll_{poll_interval};

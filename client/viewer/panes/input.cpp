@@ -78,6 +78,10 @@ std::optional<Action> Input::handle(const sf::Event& event, Captured captured, C
     return std::nullopt;
 }
 
+bool Input::moves_camera(const sf::Event& event) {
+    return event.type == sf::Event::KeyPressed && event.key.code >= Key::Left && event.key.code <= Key::Down;
+}
+
 void Input::move(Camera& camera, double seconds) const {
     const auto held = [this](Key::Key key) { return held_.contains(key) ? 1.0 : 0.0; };
     const double pixels = pan_pixels_per_s * seconds;

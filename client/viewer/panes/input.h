@@ -24,6 +24,9 @@ class Input {
     /// action is returned once; only + − and the step keys repeat.
     std::optional<Action> handle(const sf::Event& event, Captured captured, Camera& camera);
 
+    /// Returns whether the event presses a key that moves the camera while it is held down.
+    static bool moves_camera(const sf::Event& event);
+
     /// Pans the camera in the direction of the arrow keys that are held down.
     void move(Camera& camera, double seconds) const;
 

@@ -50,7 +50,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Help, .sign = '?'},
     {.action = Action::Close,
      .key = Key::Escape,
-     .help = "close a menu, the help or a panel's own window; twice: quit"},
+     .help = "close a menu or the help, end a tool, return a panel's window; twice: quit"},
     {.action = Action::Quit, .key = Key::Q, .help = "quit at once; the worlds continue"},
 };
 
@@ -58,7 +58,7 @@ constexpr KeyBinding bindings[] = {
 constexpr std::pair<std::string_view, std::string_view> gestures[] = {
     {"Wheel", "zoom at the cursor"},
     {"Drag   ← → ↑ ↓", "move the camera"},
-    {"Click", "select an organism; on empty space: select none"},
+    {"Click", "select an organism; on empty space: select none; or use the sidebar's tool"},
     {"", "also focuses this half and chooses this island"},
 };
 

@@ -47,7 +47,8 @@ enum class Action {
     Follow,
     StartScreen,
     Help,
-    Close, // closes a menu, or else the help, or else a detached panel; pressed twice without these: the window
+    Close, // closes a menu, or else the help, or else ends a tool, or else returns a detached panel to the sidebar;
+           // pressed twice without these: closes the window
     Quit,
     FirstPanel, // FirstPanel + index shows the panel with this index
 };

@@ -59,11 +59,12 @@ void Overlay::build_world(const ViewedWorld& world, const Gui& gui, Rectangle pl
     build_connection(world, gui, place);
 }
 
-void Overlay::build(const Gui& gui, const Panels& panels, Clock::time_point now) {
-    build_notices(gui, now);
+void Overlay::build(const Gui& gui, const Panels& panels, Rectangle worlds, Clock::time_point now) {
+    build_notices(gui, worlds, now);
     if (help_) {
         build_help(gui, panels);
     }
+    tour_.build(gui, worlds);
 }
 
 void Overlay::build_strips(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused) {
@@ -162,7 +163,7 @@ void Overlay::build_tile(std::uint32_t island, const Gui& gui, Rectangle place, 
     write(list, gui.label(), {corner.x + 6 * scale, corner.y + 2 * scale}, palette::note_text, text);
 }
 
-void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
+void Overlay::build_notices(const Gui& gui, Rectangle worlds, Clock::time_point now) {
     while (!notices_.empty() && notices_.front().until < now) {
         notices_.pop_front();
     }
@@ -171,18 +172,15 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
         text += (text.empty() ? "" : "\n") + notice.text;
     }
     if (!text.empty()) {
-        const ImVec2 window = ImGui::GetIO().DisplaySize;
+        // Above the title of the help, otherwise above the statistics.
         const float height = size_of(text, gui.text()).y;
-        text_box(*ImGui::GetForegroundDrawList(), gui, {0, 0, window.x, window.y},
-                 window.y - (bottom_strip + 40) * gui.scale() - height, palette::note, text);
+        const float top =
+            help_ ? 4 * gui.scale() : static_cast<float>(worlds.height) - (bottom_strip + 40) * gui.scale() - height;
+        text_box(*ImGui::GetForegroundDrawList(), gui, worlds, top, palette::note, text);
     }
 }
 
-void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen,
-                             const Gui& gui) {
-    const codec::Entities& organisms = snapshot.entities->organisms;
-    const std::string text = print("organism %u\nhealth %.1f\nradius %.1f px", organisms.id[organism],
-                                   double{organisms.health(organism)}, double{organisms.radius_px(organism)});
+void Overlay::build_hint(const std::string& text, Point screen, const Gui& gui) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 size = size_of(text, gui.label());
     const float scale = gui.scale();
@@ -193,6 +191,14 @@ void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_
     list.AddRectFilled(corner, {corner.x + size.x + 16 * scale, corner.y + size.y + 12 * scale}, ink(palette::note),
                        5 * scale);
     write(list, gui.label(), {corner.x + 8 * scale, corner.y + 6 * scale}, palette::note_text, text);
+}
+
+void Overlay::build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen,
+                             const Gui& gui) {
+    const codec::Entities& organisms = snapshot.entities->organisms;
+    build_hint(print("organism %u\nhealth %.1f\nradius %.1f px", organisms.id[organism],
+                     double{organisms.health(organism)}, double{organisms.radius_px(organism)}),
+               screen, gui);
 }
 
 void Overlay::build_help(const Gui& gui, const Panels& panels) {
@@ -216,6 +222,10 @@ void Overlay::build_help(const Gui& gui, const Panels& panels) {
             ImGui::EndTable();
         }
     };
+    if (widgets::button("Show the tour")) {
+        help_ = false;
+        tour_.start();
+    }
     build_lines("of the window", help_lines());
     widgets::mark("Keys");
     if (window.x >= help_width * scale) {

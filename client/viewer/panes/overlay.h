@@ -7,6 +7,7 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/gui.h"
 #include "client/viewer/panels/panels.h"
+#include "client/viewer/panes/tour.h"
 #include "client/viewer/world/viewed_world.h"
 
 #include <chrono>
@@ -26,15 +27,20 @@ class Overlay {
     void toggle_help() { help_ = !help_; }
     bool help() const { return help_; }
     void close_help() { help_ = false; }
+    Tour& tour() { return tour_; }
 
     // Call the following functions between Gui::begin() and Gui::draw().
 
-    /// Draws notices and help over the whole window.
-    void build(const Gui& gui, const Panels& panels, Clock::time_point now);
+    /// Draws notices, help and the tour.
+    ///
+    /// worlds  the part of the window in which the worlds are drawn
+    void build(const Gui& gui, const Panels& panels, Rectangle worlds, Clock::time_point now);
     /// Draws the strips of a world in its part of the window, and the state of its connection.
     void build_world(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
     /// Draws the number of the island in its tile.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
+    /// Draws a note beside the mouse.
+    void build_hint(const std::string& text, Point screen, const Gui& gui);
     /// Draws the data of an organism beside the organism.
     void build_organism(const codec::ReceivedSnapshot& snapshot, std::size_t organism, Point screen, const Gui& gui);
 
@@ -46,10 +52,11 @@ class Overlay {
 
     void build_strips(const ViewedWorld& world, const Gui& gui, Rectangle place, bool focused);
     void build_connection(const ViewedWorld& world, const Gui& gui, Rectangle place);
-    void build_notices(const Gui& gui, Clock::time_point now);
+    void build_notices(const Gui& gui, Rectangle worlds, Clock::time_point now);
     void build_help(const Gui& gui, const Panels& panels);
 
     bool help_ = false;
+    Tour tour_;
     std::deque<Notice> notices_;
 };
 

@@ -41,18 +41,19 @@ void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
     }
     const std::vector<Rectangle> places = in_tiles(viewport_of(place_, scale), all.size(), aspect);
     for (std::size_t i = 0; i < all.size(); ++i) {
-        all[i].camera.set_viewport(places[i]);
+        all[i].camera.set_viewport(places[i], scale);
     }
 }
 
 // ---- all panes -------------------------------------------------------------------------------------------------
 
-Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside) : wanted_{std::move(wanted)} {
-    panes_.push_back(std::make_unique<Pane>(wanted_));
+Panes::Panes(WantedWorld wanted, const std::optional<std::string>& beside, const ViewOptions& view)
+    : wanted_{std::move(wanted)} {
+    panes_.push_back(std::make_unique<Pane>(wanted_, view));
     wanted_.replay_generation.reset();
     if (beside) {
         wanted_.world = *beside;
-        panes_.push_back(std::make_unique<Pane>(wanted_));
+        panes_.push_back(std::make_unique<Pane>(wanted_, view));
     }
 }
 
@@ -62,6 +63,11 @@ void Panes::update(core::SnapshotInterpolator::Clock::time_point now) {
     }
     if (!next_world_.empty()) { // opened here, because panes must not change while they are updated
         open_beside(std::exchange(next_world_, {}), 0);
+    }
+    for (std::size_t i = 0; i < panes_.size(); ++i) {
+        if (std::string world = panes_[i]->world.take_beside(); !world.empty()) {
+            show_beside(i, std::move(world));
+        }
     }
 }
 
@@ -114,18 +120,34 @@ void Panes::toggle_beside() {
         open_beside(beside, shown.feed.island());
         return;
     }
-    shown.find_next_world([this, number](const std::string& world) {
-        if (number == next_request_number_) { // otherwise the key was pressed again while the request was pending
-            next_world_ = world;
+    shown.find_next_world([this, number, &shown](const std::optional<std::string>& world) {
+        if (number != next_request_number_) { // the key was pressed again while the request was pending
+            return;
+        }
+        if (world) {
+            next_world_ = *world;
+        } else {
+            shown.offer_new_world();
         }
     });
+}
+
+/// Shows a world in the other half than the pane with this index.
+void Panes::show_beside(std::size_t pane, std::string world) {
+    const ViewedWorld& shown = panes_[pane]->world;
+    const std::uint32_t island = world == shown.replay.forked() ? shown.feed.island() : 0;
+    if (panes_.size() > 1) {
+        panes_[1 - pane]->world.show(std::move(world), island);
+    } else {
+        open_beside(std::move(world), island);
+    }
 }
 
 void Panes::open_beside(std::string world, std::uint32_t island) {
     wanted_.world = std::move(world);
     wanted_.island = island;
     wanted_.all_islands = focused().world.feed.all_islands();
-    panes_.push_back(std::make_unique<Pane>(wanted_));
+    panes_.push_back(std::make_unique<Pane>(wanted_, focused().island_view.options));
     focus_ = 1;
 }
 

@@ -29,13 +29,12 @@ struct Tile {
 
 class Pane {
   public:
-    explicit Pane(WantedWorld wanted) : world{std::move(wanted)} {}
+    Pane(WantedWorld wanted, const ViewOptions& view) : world{std::move(wanted)} { island_view.options = view; }
 
     ViewedWorld world;
     IslandView island_view; // how the chosen island is shown
     Minimap minimap;
     Timeline timeline;
-    double blend = 1; // interpolation of the chosen island in the last frame: from 0 (older snapshot) to 1 (newer)
 
     /// The camera of the chosen island.
     Camera& camera() { return camera_of(world.feed.island()); }
@@ -64,7 +63,8 @@ class Pane {
 class Panes {
   public:
     /// beside  world of a second pane; nullopt: no second pane
-    explicit Panes(WantedWorld wanted, const std::optional<std::string>& beside = {});
+    /// view    how each pane shows its island at first
+    explicit Panes(WantedWorld wanted, const std::optional<std::string>& beside = {}, const ViewOptions& view = {});
 
     /// Processes everything that each pane has received from its server since the last call.
     void update(core::SnapshotInterpolator::Clock::time_point now);
@@ -89,7 +89,8 @@ class Panes {
 
     /// With one pane, opens a second one and moves the focus to it. It shows the newest fork of the focused world.
     /// Without a fork, it shows the live world of the focused replay. Otherwise it shows the next world of the server,
-    /// as soon as its name has arrived. With two panes, closes the pane without the focus.
+    /// as soon as its name has arrived; if there is no other world, the window offers to create one. With two panes,
+    /// closes the pane without the focus.
     void toggle_beside();
     void toggle_linked() { linked_ = !linked_; }
     bool linked() const { return linked_; }
@@ -97,6 +98,7 @@ class Panes {
     void link_cameras(const Camera& leader);
 
   private:
+    void show_beside(std::size_t pane, std::string world);
     void open_beside(std::string world, std::uint32_t island);
 
     std::vector<std::unique_ptr<Pane>> panes_; // never empty

@@ -151,29 +151,29 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     if (widgets::button("|<")) {
         world.replay.seek(moment_of_generation(replay.first_generation()));
     }
-    widgets::explain("go to the beginning");
+    widgets::explain("Goes to the first tick.");
     ImGui::SameLine();
     if (widgets::button("<")) {
         world.replay.seek_generations(-1);
     }
-    widgets::explain("the previous generation: [");
+    widgets::explain("Goes to the previous generation ([).");
     ImGui::SameLine();
     const bool runs = world.feed.control().state() == evod::v1::RUN_STATE_RUNNING;
     if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20 * pixel, 0})) {
         world.commands.pause_or_resume();
     }
     widgets::mark(runs ? "Pause" : "Play");
-    widgets::explain("Space");
+    widgets::explain("Plays or pauses the replay (Space).");
     ImGui::SameLine();
     if (widgets::button(">")) {
         world.replay.seek_generations(1);
     }
-    widgets::explain("the next generation: ]");
+    widgets::explain("Goes to the next generation (]).");
     ImGui::SameLine();
     if (widgets::button(">|")) {
         world.replay.seek({});
     }
-    widgets::explain("go to the end");
+    widgets::explain("Goes to the last tick.");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
@@ -181,20 +181,20 @@ void Timeline::build_buttons(ViewedWorld& world, float pixel) {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5);
     const bool entered =
         ImGui::InputInt("##generation", &typed_generation_, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue);
-    widgets::mark("generation");
+    widgets::mark_field("generation", typed_generation_);
     if (entered) {
         world.replay.seek(moment_of_generation(static_cast<std::uint64_t>(std::max(typed_generation_, 0))));
     } else if (!ImGui::IsItemActive()) {
         typed_generation_ = static_cast<int>(shown_generation_);
     }
-    widgets::explain(std::to_string(replay.first_generation()) + " to " + std::to_string(replay.last_generation()) +
-                     "; press Enter to go there");
+    widgets::explain("Type a generation from " + std::to_string(replay.first_generation()) + " to " +
+                     std::to_string(replay.last_generation()) + " and press Enter to go there.");
     if (world.replay.is_own()) {
         ImGui::SameLine();
         if (widgets::button("Present")) {
             world.replay.return_to_present();
         }
-        widgets::explain("return to the live world: P");
+        widgets::explain("Returns to the live world (P).");
     }
 }
 

@@ -7,12 +7,14 @@
 
 #include "client/viewer/drawing/gui.h"
 #include "client/viewer/island/island_renderer.h"
+#include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/panels.h"
 #include "client/viewer/panes/overlay.h"
 #include "client/viewer/panes/pane.h"
 
 #include <SFML/Graphics/Image.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -56,18 +58,28 @@ class WindowRenderer {
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
 
-    /// Selects the organism at a point of the chosen island, at the positions drawn in the last frame, and shows the
-    /// organism panel. If no organism is there, clears the selection.
-    void select_at(Pane& pane, Point screen);
+    /// The weight of the newest snapshot in the positions of the last frame.
+    double drawn_blend(const core::SnapshotInterpolator& view) const;
+    /// Returns the id of the organism at a point of the chosen island, at the positions drawn in the last frame.
+    std::optional<std::uint32_t> organism_drawn_at(Pane& pane, Point screen) const;
+    /// Uses the mouse tool at a point of the chosen island. Without another tool, selects `organism`.
+    ///
+    /// organism  the organism that was at this point when the button was pressed
+    void click_at(Pane& pane, Point screen, std::optional<std::uint32_t> organism);
+    /// Selects an organism and shows the organism panel; nullopt: clears the selection.
+    void select(Pane& pane, std::optional<std::uint32_t> organism);
 
   private:
+    void drop_at_mouse(Panes& panes);
     void draw_tile(Pane& pane, const Tile& tile, IslandRenderer& renderer, const Frame& frame, int pane_number);
 
     Gui gui_;
     std::vector<std::unique_ptr<IslandRenderer>> island_renderers_; // one per tile
+    MarkPainter marks_;                                             // of the legends
     Overlay overlay_;
     Panels panels_;
     Clock::time_point drawn_{};
+    bool interpolated_ = false; // whether the last frame was interpolated
 };
 
 } // namespace evod::viewer

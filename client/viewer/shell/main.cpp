@@ -8,6 +8,7 @@
 
 #include <exception>
 #include <iostream>
+#include <utility>
 
 namespace evod::viewer {
 namespace {
@@ -23,7 +24,10 @@ void run(Options options) {
                 return;
             }
             if (connected) {
-                options = Options{}; // the options applied to the previous server
+                Options next; // the other options applied to the previous server
+                next.skin = options.skin;
+                next.background = options.background;
+                options = std::move(next);
             }
             options.connection = *chosen;
             must_connect = true;

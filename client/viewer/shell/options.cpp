@@ -5,6 +5,8 @@
 #include "proto/command_line/completion.h"
 #include "proto/command_line/number.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -56,6 +58,20 @@ std::string parse_size(const std::string& text, Options::Size& size) {
            std::to_string(pixels_max);
 }
 
+/// Sets `value` to the value with this name; leaves it if `text` is empty. Returns an error message; empty if the name is
+/// known.
+template <class Value>
+std::string parse_name(const std::string& text, const std::array<std::string_view, 2>& names,
+                       std::optional<Value>& value) {
+    const auto found = std::ranges::find(names, text);
+    if (found != names.end()) {
+        value = static_cast<Value>(found - names.begin());
+    } else if (!text.empty()) {
+        return "got " + text + ", allowed " + std::string{names[0]} + " or " + std::string{names[1]};
+    }
+    return {};
+}
+
 core::Result<Script> read_script(const std::string& path) {
     const auto wrong = [&](const std::string& why) {
         return core::Error{.kind = core::Error::Kind::Usage, .what = "--script: " + path + ":" + why};
@@ -94,6 +110,17 @@ WantedWorld wanted_of(const Options& options, double rate_hz) {
             .replay_generation = options.replay_generation};
 }
 
+ViewOptions view_of(const Options& options, const ViewOptions& stored) {
+    ViewOptions view = stored;
+    if (options.skin && *options.skin != stored.look.skin) {
+        view = default_options({*options.skin, stored.look.background});
+    }
+    if (options.background && view.look.skin == Skin::Vivid) {
+        view.look.background = *options.background;
+    }
+    return view;
+}
+
 std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options options;
     Options::Screenshot screenshot;
@@ -122,11 +149,22 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--scale", &options.scale,
                    "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
+    std::string skin, background;
+    app.add_option(
+        "--skin", &skin,
+        "vivid: filled bodies, leaves and stars; classic: hollow circles and dots on grey;\ndefault: the skin "
+        "used last, or vivid; for images and films: vivid");
+    app.add_option("--background", &background, "background of the skin vivid: dark or light; default: dark");
+    app.add_option("--freezer", &options.freezer,
+                   "folder with frozen organisms and populations; default: ~/.local/share/evod/freezer");
     const auto start = app.add_flag("--start", &options.start, "show the start screen first");
+    const auto tour = app.add_flag("--tour", &options.tour,
+                                   "show the tour of the window; default: once, at the first start without --script");
     const auto script = app.add_option("--script", &options.script_path, "file with actions to perform in the window");
     const auto shot =
         app.add_option("--screenshot", &screenshot.path, "save one frame as this PNG file, without a window")
             .excludes(start)
+            .excludes(tour)
             .excludes(script);
     app.add_option("--at-tick", &screenshot.tick,
                    "tick of the screenshot; the first snapshot of this tick or a later one is saved")
@@ -139,6 +177,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
                ".mp4, .mkv, .webm, .mov, .avi or .gif, as a film created by ffmpeg")
             .excludes(shot)
             .excludes(start)
+            .excludes(tour)
             .excludes(script);
     app.add_option("--record-ticks", &record.ticks,
                    "stop after this many ticks; default: at the end of the run, or with Ctrl+C")
@@ -188,6 +227,15 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {
             return app.reject("--size: " + error);
         }
+    }
+    if (const std::string error = parse_name(skin, skin_names, options.skin); !error.empty()) {
+        return app.reject("--skin: " + error);
+    }
+    if (const std::string error = parse_name(background, background_names, options.background); !error.empty()) {
+        return app.reject("--background: " + error);
+    }
+    if (options.skin == Skin::Classic && options.background) {
+        return app.reject("--background: got " + background + " with --skin classic, allowed only with --skin vivid");
     }
     if (!options.script_path.empty()) {
         auto read = read_script(options.script_path);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/core/connection.h"
+#include "client/viewer/island/island_view.h"
 #include "client/viewer/shell/script.h"
 #include "client/viewer/world/viewed_world.h"
 
@@ -26,10 +27,15 @@ struct Options {
     std::optional<Size> size;
     std::optional<double> scale; // scale of text and widgets; nullopt: chosen by the display
 
+    std::optional<Skin> skin;
+    std::optional<Background> background;
+
     bool server_given = false; // if false and no server answers, the start screen opens
     bool start = false;        // start with the start screen
+    bool tour = false;         // show the tour, even if it was shown before or a script runs
     std::optional<Script> script;
     std::string script_path;
+    std::string freezer; // folder with frozen organisms
 
     /// Options for saving one frame instead of opening a window.
     struct Screenshot {
@@ -54,8 +60,19 @@ struct Options {
 /// Returns the size of the window, screenshot or recording.
 Options::Size size_of(const Options& options, double scale);
 
+/// Returns whether evoview shows the tour: once, at the first start that a user watches.
+///
+/// seen  whether it was shown at an earlier start
+inline bool wants_tour(const Options& options, bool seen) {
+    return options.tour || (!options.script && !seen);
+}
+
 /// Returns the world for the first pane.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);
+
+/// Returns the stored view options with the skin and the background of the command line. Another skin than the stored one
+/// is shown with its default options.
+ViewOptions view_of(const Options& options, const ViewOptions& stored = {});
 
 /// Returns the options. If help, the version or an error was printed, returns the exit status instead.
 std::variant<Options, int> parse_options(int argc, const char* const* argv);

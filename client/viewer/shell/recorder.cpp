@@ -41,7 +41,7 @@ class Recorder {
         , scale_{options.scale.value_or(1)} // independent of any display
         , size_{size_of(options, scale_)}
         , writer_{open_frame_writer(wanted.path, size_.width, size_.height, wanted.fps)}
-        , panes_{wanted_of(options, snapshot_rate_hz), options.beside} {}
+        , panes_{wanted_of(options, snapshot_rate_hz), options.beside, view_of(options)} {}
 
     void run() {
         if (wait_until([&] { return all_have_snapshots(panes_); }, true)) {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -29,18 +30,41 @@ sf::ContextSettings context_settings() {
 /// Gives a script access to the window.
 class Screen::ScriptHost : public Script::Host {
   public:
-    ScriptHost(Screen& screen, const ViewedWorld* world, const WindowRenderer::Frame& frame,
-               const std::function<void()>& draw)
-        : screen_{screen}, world_{world}, frame_{frame}, draw_{draw} {}
+    ScriptHost(Screen& screen, Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw)
+        : screen_{screen}, panes_{panes}, frame_{frame}, draw_{draw} {}
 
     void send(const sf::Event& event) override { screen_.script_events_.push_back(event); }
-    std::optional<Point> find(const std::string& widget) const override {
-        return screen_.renderer_.gui().widget_positions().find(widget);
+    std::vector<const MarkedWidget*> find(const std::string& name) const override { return widgets().find(name); }
+    void reveal(const std::string& widget) override { widgets().reveal(widget); }
+    unsigned hovered() const override { return widgets().hovered(); }
+    bool covered() const override { return screen_.renderer_.gui().captured().mouse; }
+    std::optional<std::string> typed_text() const override { return screen_.renderer_.gui().typed_text(); }
+    std::string key_problem() const override { return screen_.key_problem_; }
+    std::optional<Point> locate(const Script::IslandPlace& place) const override {
+        Pane* pane = pane_of(place.half);
+        const codec::ReceivedSnapshot* snapshot = pane == nullptr ? nullptr : pane->world.feed.snapshot();
+        if (snapshot == nullptr) {
+            return std::nullopt;
+        }
+        Point at{place.at.x * snapshot->about.width_px(), place.at.y * snapshot->about.height_px()};
+        if (place.organism) {
+            const auto index = snapshot->entities->organisms.index_of(*place.organism);
+            if (!index) {
+                return std::nullopt;
+            }
+            const core::SnapshotInterpolator& view = pane->world.feed.view();
+            const auto [x, y] = view.organisms_at(screen_.renderer_.drawn_blend(view))[*index];
+            at = {x, y};
+        }
+        const Point screen = pane->camera().to_screen(at);
+        return pane->camera().viewport().contains(screen) ? std::optional{screen} : std::nullopt;
     }
-    const std::vector<std::string>* choices(const std::string& widget) const override {
-        return screen_.renderer_.gui().widget_positions().choices(widget);
+    bool selects() const override { return screen_.renderer_.panels().tool().kind() == MouseTool::Kind::Select; }
+    std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const override {
+        const Pane* pane = pane_of(half);
+        return pane == nullptr ? std::nullopt : pane->world.feed.selected();
     }
-    const ViewedWorld* world() const override { return world_; }
+    const ViewedWorld* world() const override { return panes_ == nullptr ? nullptr : &panes_->focused().world; }
     std::string save(const std::string& path) override {
         try {
             write_file(path, png_of(screen_.renderer_.capture(frame_, draw_)));
@@ -52,8 +76,16 @@ class Screen::ScriptHost : public Script::Host {
     void close() override { screen_.window_.close(); }
 
   private:
+    WidgetPositions& widgets() const { return screen_.renderer_.gui().widget_positions(); }
+    Pane* pane_of(std::optional<std::size_t> half) const {
+        if (panes_ == nullptr || half.value_or(0) >= panes_->size()) {
+            return nullptr;
+        }
+        return half ? &(*panes_)[*half] : &panes_->focused();
+    }
+
     Screen& screen_;
-    const ViewedWorld* world_;
+    Panes* panes_;
     const WindowRenderer::Frame& frame_;
     const std::function<void()>& draw_;
 };
@@ -89,14 +121,18 @@ Screen::Screen(const Options& options)
     : window_{mode_of(options), "evoview", sf::Style::Default, context_settings()}
     , renderer_{scale_of(options)}
     , settings_{in_state_folder("evoview.ini"), renderer_.panels()}
+    , tour_wanted_{wants_tour(options, renderer_.panels().settings().tour_seen)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
+    renderer_.panels().set_freezer(options.freezer.empty() ? default_freezer_folder()
+                                                           : std::filesystem::path{options.freezer});
     place(window_);
     window_.setVerticalSyncEnabled(true);
 }
 
 bool Screen::poll(sf::Event& event) {
-    if (!script_events_.empty()) {
+    event_from_script_ = !script_events_.empty();
+    if (event_from_script_) {
         event = script_events_.front();
         script_events_.pop_front();
     } else if (!window_.pollEvent(event)) {
@@ -106,16 +142,22 @@ bool Screen::poll(sf::Event& event) {
     return true;
 }
 
+void Screen::report_key(std::string problem) {
+    if (event_from_script_) {
+        key_problem_ = std::move(problem);
+    }
+}
+
 WindowRenderer::Frame Screen::frame(Clock::time_point now) const {
     const sf::Vector2u size = window_.getSize();
     return {
         .width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now, .interactive = true};
 }
 
-void Screen::show(const ViewedWorld* world, const WindowRenderer::Frame& frame, const std::function<void()>& draw) {
+void Screen::show(Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw) {
     draw();
     window_.display();
-    ScriptHost host{*this, world, frame, draw};
+    ScriptHost host{*this, panes, frame, draw};
     advance_script(host, frame.now);
     std::this_thread::sleep_until(frame.now + frame_min);
 }

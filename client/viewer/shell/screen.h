@@ -16,6 +16,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -37,13 +38,24 @@ class Screen {
 
     /// Draws and shows a frame, runs the next step of the script, and waits until the next frame is due.
     ///
-    /// world   the viewed world; null while the start screen is shown
+    /// panes   the shown worlds; null while the start screen is shown
     /// draw    draws the frame; is called again if the script takes a screenshot
     /// Throws std::runtime_error with the script line if a step of the script fails.
-    void show(const ViewedWorld* world, const WindowRenderer::Frame& frame, const std::function<void()>& draw);
+    void show(Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw);
+
+    /// Call after an event of a key has been handled. If the key came from the script and had no effect, the script
+    /// fails.
+    ///
+    /// problem  why the key had no effect; empty if it had one
+    void report_key(std::string problem);
+
+    /// Returns once whether to show the tour.
+    bool take_tour() { return std::exchange(tour_wanted_, false); }
 
     sf::Window& window() { return window_; }
     WindowRenderer& renderer() { return renderer_; }
+    /// The view options that the next window and the next start of evoview use.
+    ViewOptions& stored_view() { return settings_.view(); }
 
   private:
     class ScriptHost;
@@ -52,10 +64,13 @@ class Screen {
     sf::Window window_;
     WindowRenderer renderer_; // declared after window_, because it needs the OpenGL context of the window
     Settings settings_;       // declared after renderer_, whose panels it stores
+    bool tour_wanted_;
     Script script_;
     std::string script_path_;
     std::deque<sf::Event> script_events_;
-    unsigned settled_count_ = 0; // frames since the script's last event was processed
+    bool event_from_script_ = false; // whether poll() has returned an event of the script
+    std::string key_problem_;        // why the last key of the script had no effect
+    unsigned settled_count_ = 0;     // frames since the script's last event was processed
 };
 
 } // namespace evod::viewer

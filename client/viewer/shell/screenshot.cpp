@@ -39,7 +39,7 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     sf::Context context{context_settings(), 1, 1};
     const double scale = options.scale.value_or(1); // independent of any display
     WindowRenderer renderer{scale};
-    Panes panes{wanted_of(options, screenshot_rate_hz), options.beside};
+    Panes panes{wanted_of(options, screenshot_rate_hz), options.beside, view_of(options)};
     bool reported = false;
     const auto late = [&]() -> const ViewedWorld* { // returns a world whose snapshot has not arrived; null: none
         const bool all = all_have_snapshots(panes);

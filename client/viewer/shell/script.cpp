@@ -1,42 +1,22 @@
 #include "client/viewer/shell/script.h"
 
+#include "client/viewer/shell/script_acts.h"
 #include "client/viewer/world/viewed_world.h"
-
-#include <SFML/System/String.hpp>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <iterator>
-#include <memory>
 #include <utility>
 
 namespace evod::viewer {
 
 namespace {
 
-using Key = sf::Keyboard;
+using acts::Acts, acts::in_quotes, acts::number_in, acts::usage, acts::Waits;
 using Host = Script::Host;
-using Acts = std::vector<Script::Act>;
+using Run = Script::Run;
 
 constexpr double timeout_s_default = 60, timeout_s_max = 86'400;
-
-core::Error usage(std::string what) {
-    return {.kind = core::Error::Kind::Usage, .what = std::move(what)};
-}
-
-std::string in_quotes(std::string_view text) {
-    return "\"" + std::string{text} + "\"";
-}
-
-/// Returns the names as a list: "a, b, c".
-std::string comma_list(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        text += (text.empty() ? "" : ", ") + name;
-    }
-    return text;
-}
 
 // ---- words -----------------------------------------------------------------------------------------------------
 
@@ -67,207 +47,6 @@ core::Result<std::vector<std::string>> words_of(std::string_view line) {
     return words;
 }
 
-template <class Number>
-std::optional<Number> number_in(const std::string& word) {
-    Number number{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    return error == std::errc{} && end == word.data() + word.size() ? std::optional{number} : std::nullopt;
-}
-
-// ---- keys ------------------------------------------------------------------------------------------------------
-
-struct KeyName {
-    std::string_view name;
-    Key::Key key;
-};
-constexpr KeyName key_names[] = {
-    {"Space", Key::Space},
-    {"Enter", Key::Enter},
-    {"Escape", Key::Escape},
-    {"Tab", Key::Tab},
-    {"Backspace", Key::Backspace},
-    {"Delete", Key::Delete},
-    {"Home", Key::Home},
-    {"End", Key::End},
-    {"PageUp", Key::PageUp},
-    {"PageDown", Key::PageDown},
-    {"Left", Key::Left},
-    {"Right", Key::Right},
-    {"Up", Key::Up},
-    {"Down", Key::Down},
-    {".", Key::Period},
-};
-
-struct Chord {
-    Key::Key key = Key::Unknown;
-    sf::Uint32 sign = 0; // a typed character; if set, `key` is unused
-    bool control = false, shift = false, alt = false;
-};
-
-/// Parses a key combination such as "F4", "Ctrl+A" or "+". Returns nullopt if there is no such key.
-std::optional<Chord> parse_chord(std::string_view text) {
-    Chord chord;
-    const auto take = [&](std::string_view modifier) {
-        const bool there = text.size() > modifier.size() && text.starts_with(modifier);
-        text.remove_prefix(there ? modifier.size() : 0);
-        return there;
-    };
-    for (bool more = true; more;) {
-        more = false;
-        for (const auto& [modifier, held] :
-             {std::pair{"Ctrl+", &chord.control}, {"Shift+", &chord.shift}, {"Alt+", &chord.alt}}) {
-            if (take(modifier)) {
-                *held = more = true;
-            }
-        }
-    }
-    if (const auto* found = std::ranges::find(key_names, text, &KeyName::name); found != std::end(key_names)) {
-        chord.key = found->key;
-    } else if (text.size() == 1 && text[0] >= 'A' && text[0] <= 'Z') {
-        chord.key = static_cast<Key::Key>(Key::A + (text[0] - 'A'));
-    } else if (text.size() == 1 && std::isgraph(static_cast<unsigned char>(text[0])) != 0 &&
-               std::isalpha(static_cast<unsigned char>(text[0])) == 0) {
-        chord.sign = static_cast<unsigned char>(text[0]);
-    } else if (text.size() > 1 && text[0] == 'F') {
-        const auto number = number_in<int>(std::string{text.substr(1)});
-        if (!number || *number < 1 || *number > 12) {
-            return std::nullopt;
-        }
-        chord.key = static_cast<Key::Key>(Key::F1 + *number - 1);
-    } else {
-        return std::nullopt;
-    }
-    return chord;
-}
-
-void send_key(Host& host, bool pressed, Key::Key key, const Chord& held) {
-    sf::Event event{};
-    event.type = pressed ? sf::Event::KeyPressed : sf::Event::KeyReleased;
-    event.key = {.code = key, .alt = held.alt, .control = held.control, .shift = held.shift, .system = false};
-    host.send(event);
-}
-
-void send_text(Host& host, const std::string& utf8) {
-    for (const sf::Uint32 sign : sf::String::fromUtf8(utf8.begin(), utf8.end())) {
-        sf::Event event{};
-        event.type = sf::Event::TextEntered;
-        event.text.unicode = sign;
-        host.send(event);
-    }
-}
-
-void press(Host& host, const Chord& chord) {
-    if (chord.sign != 0) {
-        send_text(host, std::string(1, static_cast<char>(chord.sign)));
-        return;
-    }
-    const std::pair<bool, Key::Key> modifiers[] = {
-        {chord.control, Key::LControl}, {chord.shift, Key::LShift}, {chord.alt, Key::LAlt}};
-    for (const auto& [held, key] : modifiers) {
-        if (held) {
-            send_key(host, true, key, chord);
-        }
-    }
-    send_key(host, true, chord.key, chord);
-    send_key(host, false, chord.key, chord);
-    for (const auto& [held, key] : modifiers) {
-        if (held) {
-            send_key(host, false, key, {});
-        }
-    }
-}
-
-Script::Act press_act(Chord chord) {
-    return [chord](Host& host) -> core::Result<bool> {
-        press(host, chord);
-        return true;
-    };
-}
-
-Script::Act type_act(std::string text) {
-    return [text = std::move(text)](Host& host) -> core::Result<bool> {
-        send_text(host, text);
-        return true;
-    };
-}
-
-// ---- mouse -----------------------------------------------------------------------------------------------------
-
-/// Moves the mouse to a widget. Returns false if the widget is not on the screen.
-bool move_to(Host& host, const std::string& widget) {
-    const auto place = host.find(widget);
-    if (place) {
-        sf::Event event{};
-        event.type = sf::Event::MouseMoved;
-        event.mouseMove = {static_cast<int>(place->x), static_cast<int>(place->y)};
-        host.send(event);
-    }
-    return place.has_value();
-}
-
-/// Presses and releases the left button on a widget. Returns false if the widget is not on the screen.
-bool click_on(Host& host, const std::string& widget, bool with_control) {
-    const auto place = host.find(widget);
-    if (!place) {
-        return false;
-    }
-    const Chord held{.control = with_control};
-    if (with_control) {
-        send_key(host, true, Key::LControl, held);
-    }
-    for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
-        sf::Event event{};
-        event.type = type;
-        event.mouseButton = {sf::Mouse::Left, static_cast<int>(place->x), static_cast<int>(place->y)};
-        host.send(event);
-    }
-    if (with_control) {
-        send_key(host, false, Key::LControl, {});
-    }
-    return true;
-}
-
-/// Clicks on a widget in two steps: the first moves the mouse there, the second clicks. One frame is drawn between
-/// them.
-Acts click_acts(const std::string& widget) {
-    return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
-            [widget](Host& host) -> core::Result<bool> { return click_on(host, widget, false); }};
-}
-
-/// Sets the value of a widget: replaces the text of a field, or opens a drop-down and clicks on the choice with this
-/// text.
-Acts set_acts(const std::string& widget, const std::string& text) {
-    const std::string choice = widget + ": " + text;
-    // The click determines whether the widget is a drop-down. It must not be determined later, because a choice may
-    // remove the drop-down from the screen.
-    const auto is_drop_down = std::make_shared<bool>(false);
-    return {[widget](Host& host) -> core::Result<bool> { return move_to(host, widget); },
-            [widget, is_drop_down](Host& host) -> core::Result<bool> {
-                *is_drop_down = host.choices(widget) != nullptr;
-                return click_on(host, widget, !*is_drop_down);
-            },
-            [choice, is_drop_down](Host& host) -> core::Result<bool> {
-                if (*is_drop_down) {
-                    return move_to(host, choice);
-                }
-                press(host, {.key = Key::A, .control = true});
-                return true;
-            },
-            [choice, text, is_drop_down](Host& host) -> core::Result<bool> {
-                if (*is_drop_down) {
-                    return click_on(host, choice, false);
-                }
-                send_text(host, text);
-                return true;
-            },
-            [is_drop_down](Host& host) -> core::Result<bool> {
-                if (!*is_drop_down) {
-                    press(host, {.key = Key::Enter});
-                }
-                return true;
-            }};
-}
-
 // ---- conditions ------------------------------------------------------------------------------------------------
 
 const evod::v1::SnapshotFrame* snapshot_of(const Host& host) {
@@ -288,6 +67,10 @@ std::string allowed_states() {
         names += (names.empty() ? "" : ", ") + std::string{name};
     }
     return names;
+}
+
+bool is_visible(const Host& host, const std::string& widget) {
+    return std::ranges::any_of(host.find(widget), &MarkedWidget::visible);
 }
 
 struct Condition {
@@ -329,9 +112,13 @@ const Condition conditions[] = {
          return host.world() != nullptr && host.world()->feed.control().state() == named->second;
      }},
     {"widget", "NAME", "the widget is on the screen", no_fault,
-     [](const Host& host, const std::string& word) { return host.find(word).has_value(); }},
+     [](const Host& host, const std::string& word) { return is_visible(host, word); }},
     {"gone", "NAME", "the widget is not on the screen", no_fault,
-     [](const Host& host, const std::string& word) { return !host.find(word); }},
+     [](const Host& host, const std::string& word) { return !is_visible(host, word); }},
+    {"disabled", "NAME", "the widget is on the screen and disabled", no_fault,
+     [](const Host& host, const std::string& word) {
+         return std::ranges::any_of(host.find(word), [](const MarkedWidget* widget) { return !widget->enabled; });
+     }},
 };
 
 std::string condition_names() {
@@ -355,6 +142,20 @@ core::Error word_error(const ScriptLine& line, std::size_t number, const std::st
                  allowed);
 }
 
+core::Result<Acts> parse_click(ScriptLine& line) {
+    if (line.words.size() == 2) {
+        return acts::click(line.words[1]);
+    }
+    const auto place = acts::island_place(line.words[1], line.words[2]);
+    if (!place) {
+        return word_error(line, 3, "no more words (put a word with spaces in quotes)");
+    }
+    if (!*place) {
+        return word_error(line, 3, place->error().what);
+    }
+    return acts::click(**place);
+}
+
 struct Verb {
     std::string_view name;
     std::string_view words; // the arguments of the verb, in capitals
@@ -369,19 +170,23 @@ const Verb verbs[] = {
      "Shift+ or Alt+",
      1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
-         const auto chord = parse_chord(line.words[1]);
-         if (!chord) {
-             return word_error(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
+         if (auto acts = acts::press(line.words[1])) {
+             return *std::move(acts);
          }
-         return Acts{press_act(*chord)};
+         return word_error(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
      }},
     {"type", "TEXT", "types text into the field that has the keyboard focus", 1, 1,
-     [](ScriptLine& line) -> core::Result<Acts> { return Acts{type_act(line.words[1])}; }},
-    {"click", "NAME", "clicks on a widget, named by the text on it or beside it", 1, 1,
-     [](ScriptLine& line) -> core::Result<Acts> { return click_acts(line.words[1]); }},
+     [](ScriptLine& line) -> core::Result<Acts> { return acts::type(line.words[1]); }},
+    {"click", "NAME",
+     "clicks on a widget, named by the text on it or beside it; or on the island: organism NUMBER, or at X,Y with "
+     "fractions of its width and height",
+     1, 2, parse_click},
+    {"menu", "NAME", "clicks on a widget with the right button, which opens its menu", 1, 1,
+     [](ScriptLine& line) -> core::Result<Acts> { return acts::click(line.words[1], sf::Mouse::Right); }},
     {"set", "NAME TEXT",
-     "replaces the value of a field or slider and presses Enter, or chooses an entry of a drop-down", 2, 2,
-     [](ScriptLine& line) -> core::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
+     "replaces the value of a field or slider and presses Enter, chooses an entry of a drop-down, or switches a check "
+     "box on or off",
+     2, 2, [](ScriptLine& line) -> core::Result<Acts> { return acts::set(line.words[1], line.words[2]); }},
     {"wait", "CONDITION", "waits until the condition holds", 1, 2,
      [](ScriptLine& line) -> core::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
@@ -399,7 +204,26 @@ const Verb verbs[] = {
          if (const std::string allowed = condition->fault(word); !allowed.empty()) {
              return word_error(line, 3, allowed);
          }
-         return Acts{[condition, word](Host& host) -> core::Result<bool> { return condition->holds(host, word); }};
+         return Acts{[condition, word](Run& run) -> Waits {
+             return condition->holds(run.host, word) ? "" : "the condition does not hold";
+         }};
+     }},
+    {"actions", "N",
+     "fails if more than N clicks, keys, typed texts and turns of the wheel were needed since the last line of this "
+     "kind",
+     1, 1,
+     [](ScriptLine& line) -> core::Result<Acts> {
+         const auto most = number_in<unsigned>(line.words[1]);
+         if (!most) {
+             return word_error(line, 2, "a whole number");
+         }
+         return Acts{[most = *most](Run& run) -> Waits {
+             const unsigned needed = std::exchange(run.actions, 0);
+             if (needed > most) {
+                 return usage(std::to_string(needed) + " actions were needed");
+             }
+             return "";
+         }};
      }},
     {"timeout", "SECONDS", "sets the time limit of each of the following lines; 60 by default", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
@@ -412,18 +236,18 @@ const Verb verbs[] = {
      }},
     {"screenshot", "FILE", "saves the window as a PNG file", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> {
-         return Acts{[path = line.words[1]](Host& host) -> core::Result<bool> {
-             if (std::string trouble = host.save(path); !trouble.empty()) {
+         return Acts{[path = line.words[1]](Run& run) -> Waits {
+             if (std::string trouble = run.host.save(path); !trouble.empty()) {
                  return usage(std::move(trouble));
              }
-             return true;
+             return "";
          }};
      }},
     {"quit", "", "closes the window", 0, 0,
      [](ScriptLine&) -> core::Result<Acts> {
-         return Acts{[](Host& host) -> core::Result<bool> {
-             host.close();
-             return true;
+         return Acts{[](Run& run) -> Waits {
+             run.host.close();
+             return "";
          }};
      }},
 };
@@ -476,7 +300,6 @@ core::Result<Script> Script::parse(std::string_view text) {
         for (Act& act : *acts) {
             script.steps_.push_back({.line = number,
                                      .text = std::string{whole},
-                                     .drop_down = line.words[0] == "set" ? line.words[1] : "",
                                      .timeout = std::chrono::duration<double>{timeout_s},
                                      .act = std::move(act)});
         }
@@ -490,24 +313,22 @@ core::Result<void> Script::advance(Host& host, Clock::time_point now) {
     }
     Step& step = steps_.front();
     const auto place = [&] { return std::to_string(step.line) + ": " + step.text + ": "; };
-    const auto acted = step.act(host);
-    if (!acted) {
-        return usage(place() + acted.error().what);
+    Run run{host, actions_, scrolled_};
+    const auto waits = step.act(run);
+    if (!waits) {
+        return usage(place() + waits.error().what);
     }
-    if (*acted) {
+    if (waits->empty()) {
         steps_.pop_front();
         waiting_since_.reset();
+        scrolled_ = false;
         return {};
     }
     if (!waiting_since_) {
         waiting_since_ = now;
     } else if (now - *waiting_since_ > step.timeout) {
-        std::string what =
-            place() + "not done within " + std::to_string(static_cast<long long>(step.timeout.count())) + " s";
-        if (const auto* choices = host.choices(step.drop_down); choices != nullptr && !choices->empty()) {
-            what += "; " + in_quotes(step.drop_down) + " offers " + comma_list(*choices);
-        }
-        return usage(std::move(what));
+        return usage(place() + "not done within " + std::to_string(static_cast<long long>(step.timeout.count())) +
+                     " s: " + *waits);
     }
     return {};
 }

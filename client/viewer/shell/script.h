@@ -12,8 +12,8 @@
 //     quit
 //
 // A line contains a verb and its arguments. An argument that contains spaces is put in double quotes. Each line waits
-// until it can be executed; a click, for example, waits until its widget is on the screen. script.cpp contains the
-// tables of verbs and conditions.
+// until it can be executed; a click, for example, waits until its widget is on the screen and enabled. A line that has
+// no effect fails. script.cpp contains the tables of verbs and conditions.
 //
 // Owner        Screen, which executes one step at a time, after the effect of the previous step has been drawn.
 // Threads      none.
@@ -21,10 +21,13 @@
 
 #include "client/core/connection.h"
 #include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/widgets.h"
 
 #include <SFML/Window/Event.hpp>
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -38,6 +41,13 @@ class ViewedWorld;
 
 class Script {
   public:
+    /// A place in a shown island that a script clicks.
+    struct IslandPlace {
+        std::optional<std::size_t> half;       // 0: left, 1: right; nullopt: the half with the focus
+        std::optional<std::uint32_t> organism; // the centre of this organism; nullopt: `at`
+        Point at;                              // from {0, 0}, the upper left corner, to {1, 1}
+    };
+
     using Clock = std::chrono::steady_clock;
 
     /// The interface through which a script acts on the window.
@@ -46,12 +56,24 @@ class Script {
         virtual ~Host() = default;
         /// Adds an event, as if the user had caused it.
         virtual void send(const sf::Event& event) = 0;
-        /// Returns the centre of the widget that was registered under this name by widgets::mark(); nullopt if it is
-        /// not on the screen.
-        virtual std::optional<Point> find(const std::string& widget) const = 0;
-        /// Returns the choices of the drop-down with this name. Each choice is registered as "drop-down: choice". Empty
-        /// while the drop-down is closed; null if the widget is not a drop-down.
-        virtual const std::vector<std::string>* choices(const std::string& widget) const = 0;
+        /// Returns the widgets with this name: "name" or "Panel/name".
+        virtual std::vector<const MarkedWidget*> find(const std::string& name) const = 0;
+        /// Scrolls the widget with this full name into view.
+        virtual void reveal(const std::string& widget) = 0;
+        /// Returns the widget of Dear ImGui under the mouse, as in MarkedWidget::id; 0: none.
+        virtual unsigned hovered() const = 0;
+        /// Returns whether a panel, dialog or list is under the mouse.
+        virtual bool covered() const = 0;
+        /// Returns the text in the field that has the keyboard focus; nullopt: no field has it.
+        virtual std::optional<std::string> typed_text() const = 0;
+        /// Returns why the last key that was sent had no effect; empty if it had one.
+        virtual std::string key_problem() const = 0;
+        /// Returns the place of an island in the window; nullopt if it is not visible.
+        virtual std::optional<Point> locate(const IslandPlace& place) const = 0;
+        /// Returns whether a click on an organism selects it; false while a tool for placing or removing is chosen.
+        virtual bool selects() const { return true; }
+        /// Returns the organism selected in a half of the window.
+        virtual std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const = 0;
         /// Returns the viewed world; null while the start screen is shown.
         virtual const ViewedWorld* world() const = 0;
         /// Saves the window as a PNG file. Returns an error message; empty on success.
@@ -71,20 +93,28 @@ class Script {
     /// Returns the verbs and conditions with their arguments and meanings, one per line, for the documentation.
     static std::string reference();
 
-    /// Performs a part of a step. Returns true when the part is done, false if it must be called again.
-    using Act = std::function<core::Result<bool>(Host&)>;
+    /// What an act uses and counts.
+    struct Run {
+        Host& host;
+        unsigned& actions; // clicks, keys, typed texts and turns of the wheel since the last line `actions`
+        bool& scrolled;    // whether the current line has turned the wheel
+    };
+    /// Performs a part of a step. Returns an empty text when the part is done. Otherwise returns what it waits for, and
+    /// must be called again.
+    using Act = std::function<core::Result<std::string>(Run&)>;
 
   private:
     struct Step {
         unsigned line;
-        std::string text;      // the complete line
-        std::string drop_down; // the drop-down that the line sets; empty: none
+        std::string text; // the complete line
         std::chrono::duration<double> timeout;
         Act act;
     };
 
     std::deque<Step> steps_;
     std::optional<Clock::time_point> waiting_since_;
+    unsigned actions_ = 0;
+    bool scrolled_ = false;
 };
 
 } // namespace evod::viewer

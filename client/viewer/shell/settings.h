@@ -1,4 +1,5 @@
-// Settings: stores the sidebar and the places of detached panels in a file, from one start of evoview to the next.
+// Settings: stores the sidebar, the places of detached panels and the view options in a file, from one start of evoview
+// to the next.
 //
 // The file has the format of Dear ImGui's settings files: sections of lines "name=value". Unknown sections and lines
 // are ignored. If the file cannot be read or written, evoview starts with the defaults.
@@ -8,6 +9,7 @@
 // Threads      used by the thread that draws.
 #pragma once
 
+#include "client/viewer/island/island_view.h"
 #include "client/viewer/panels/panels.h"
 
 #include <filesystem>
@@ -30,9 +32,16 @@ class Settings {
     Settings(const Settings&) = delete;
     Settings& operator=(const Settings&) = delete;
 
+    /// The view options that were read from the file and will be written to it.
+    ViewOptions& view() { return view_; }
+
   private:
+    void add_sidebar();
+    void add_view();
+
     std::optional<std::filesystem::path> file_;
     Panels& panels_;
+    ViewOptions view_;
 };
 
 } // namespace evod::viewer

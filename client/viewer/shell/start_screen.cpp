@@ -103,20 +103,19 @@ bool StartScreen::build_fields(const Gui& gui) {
     }
     entered |= ImGui::InputTextWithHint("##server", "host, host:port or [IPv6]:port", address_.data(), address_.size(),
                                         on_enter | ImGuiInputTextFlags_AutoSelectAll);
-    widgets::mark("Server");
+    widgets::mark_field("Server", address_.data());
     label("Token");
     entered |= ImGui::InputTextWithHint("##token", "none", token_.data(), token_.size(),
                                         on_enter | ImGuiInputTextFlags_Password);
-    widgets::mark("Token");
+    widgets::mark_field("Token", token_.data());
     widgets::explain("Identifies you; the server's administrator issues it. It is sent to the server and not saved.");
     label("");
-    ImGui::Checkbox("TLS", &tls_);
-    widgets::mark("TLS");
+    widgets::checkbox("TLS", tls_);
     widgets::explain("Encrypts the connection and checks the server's identity.");
     if (tls_) {
         label("CA file");
         entered |= ImGui::InputTextWithHint("##ca", "the system's certificates", ca_.data(), ca_.size(), on_enter);
-        widgets::mark("CA file");
+        widgets::mark_field("CA file", ca_.data());
         widgets::explain("PEM file with the certificate that signed the server's certificate, such as its evod.crt.");
     }
     return entered;

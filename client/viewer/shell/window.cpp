@@ -5,10 +5,18 @@
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace evod::viewer {
 
 namespace {
+
+/// Returns whether the event is a pressed key or a typed character. Ctrl, Shift and Alt alone do not count.
+bool is_key(const sf::Event& event) {
+    using Key = sf::Keyboard;
+    return event.type == sf::Event::TextEntered ||
+           (event.type == sf::Event::KeyPressed && (event.key.code < Key::LControl || event.key.code > Key::RSystem));
+}
 
 void toggle(bool& shown) {
     shown = !shown;
@@ -20,7 +28,14 @@ Window::Window(Screen& screen, const Options& options)
     : screen_{screen}
     , window_{screen.window()}
     , renderer_{screen.renderer()}
-    , panes_{wanted_of(options), options.beside} {}
+    , panes_{wanted_of(options), options.beside, view_of(options, screen.stored_view())}
+    , stores_view_{!options.skin && !options.background} {}
+
+Window::~Window() {
+    if (stores_view_) {
+        screen_.stored_view() = panes_.focused().island_view.options;
+    }
+}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = core::SnapshotInterpolator::Clock;
@@ -46,10 +61,14 @@ Window::Ending Window::run(bool must_connect, const std::function<void()>& conne
                 renderer_.overlay().notice(std::move(notice), now_);
             }
         }
+        if (panes_.focused().world.feed.snapshot() != nullptr && screen_.take_tour()) {
+            renderer_.panels().set_tour_seen();
+            renderer_.overlay().tour().start();
+        }
         WindowRenderer::Frame next = screen_.frame(now_);
         next.interpolate = true;
         next.pointed_at = renderer_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
-        screen_.show(&panes_.focused().world, next, [&] { renderer_.draw(panes_, next); });
+        screen_.show(&panes_, next, [&] { renderer_.draw(panes_, next); });
     }
     return {.to_start_screen = to_start_screen_ && window_.isOpen(), .reason = ""};
 }
@@ -58,19 +77,64 @@ void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
         const Captured captured = renderer_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
-            panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
+            const Point place{double(event.mouseButton.x), double(event.mouseButton.y)};
+            panes_.focus_at(place);
+            // A running organism moves on before the button is released.
+            pressed_organism_ = renderer_.organism_drawn_at(panes_.focused(), place);
+        }
+        if (event.type == sf::Event::KeyPressed && !captured.keyboard &&
+            renderer_.overlay().tour().handle(event.key.code)) {
+            screen_.report_key("");
+            continue;
         }
         Camera& camera = event.type == sf::Event::MouseWheelScrolled
                              ? panes_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})
                              : panes_.focused().camera();
         const auto action = input_.handle(event, captured, camera);
         panes_.link_cameras(camera);
-        if (action) {
+        const std::string problem = action ? problem_of(*action) : "";
+        if (action && problem.empty()) {
             carry_out(*action);
+        } else if (action) {
+            renderer_.overlay().notice(problem, now_);
+        }
+        if (is_key(event)) {
+            const bool used = action || captured.keyboard || Input::moves_camera(event);
+            screen_.report_key(used ? problem : "this key has no effect");
         }
         if (const auto click = input_.take_click()) {
-            renderer_.select_at(panes_.focused(), *click);
+            renderer_.click_at(panes_.focused(), *click, pressed_organism_);
         }
+    }
+}
+
+std::string Window::problem_of(Action action) {
+    if (const auto panel = panel_of(action)) {
+        return *panel < renderer_.panels().titles().size() ? "" : "This key shows no panel";
+    }
+    ViewedWorld& world = panes_.focused().world;
+    switch (action) {
+    case Action::PauseOrResume:
+    case Action::StepOne:
+    case Action::StepMany:
+    case Action::Faster:
+    case Action::Slower:
+    case Action::RealTime:
+    case Action::MaxSpeed:
+        return std::string{world.commands.read_only_reason()};
+    case Action::NextIsland:
+    case Action::PreviousIsland:
+    case Action::AllIslands:
+        return world.feed.island_count() > 1 ? "" : "This world has only one island";
+    case Action::PreviousGeneration:
+    case Action::NextGeneration:
+        return world.replay.info() != nullptr ? "" : "Only a replay has a time line: press P to open one";
+    case Action::OtherPane:
+        return panes_.size() > 1 ? "" : "Only one world is shown: press B to show a second one";
+    case Action::Follow:
+        return world.feed.selected() ? "" : "No organism is selected: click one first";
+    default:
+        return "";
     }
 }
 
@@ -149,8 +213,11 @@ void Window::close_front() {
     if (renderer_.gui().close_popup()) {
         return;
     }
+    MouseTool& tool = renderer_.panels().tool();
     if (renderer_.overlay().help()) {
         renderer_.overlay().toggle_help();
+    } else if (tool.kind() != MouseTool::Kind::Select) {
+        tool.choose(MouseTool::Kind::Select);
     } else if (renderer_.panels().close_front()) {
         return;
     } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {

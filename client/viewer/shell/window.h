@@ -9,7 +9,9 @@
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/screen.h"
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace evod::viewer {
@@ -22,6 +24,10 @@ class Window {
     };
 
     Window(Screen& screen, const Options& options);
+    /// Stores how the island is shown, unless the command line set its look.
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
 
     /// Shows worlds until the user closes the window or evoview must return to the start screen.
     ///
@@ -31,6 +37,8 @@ class Window {
 
   private:
     void handle_events();
+    /// Returns why this action would have no effect now; empty if it would have one.
+    std::string problem_of(Action action);
     void carry_out(Action action);
     void close_front();
     void save_screenshot();
@@ -39,7 +47,9 @@ class Window {
     sf::Window& window_;
     WindowRenderer& renderer_;
     Panes panes_;
+    bool stores_view_;
     Input input_;
+    std::optional<std::uint32_t> pressed_organism_; // the organism under the mouse when the button was pressed
     core::SnapshotInterpolator::Clock::time_point now_{};
     core::SnapshotInterpolator::Clock::time_point
         asked_to_quit_{}; // time of the first Esc; a second Esc soon after it quits

@@ -3,29 +3,45 @@
 #include "client/viewer/text/numbers.h"
 #include "client/viewer/world/parameter_edits.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <span>
+#include <utility>
 
 namespace evod::viewer {
 
 namespace {
 
 /// Returns a sentence about how the selection method chooses parents.
-std::string selection_text(const std::string& selection) {
+std::string selection_text(const std::string& selection, bool shuffled) {
+    if (shuffled) {
+        return "Fitness is shuffled among the organisms before the selection, so fitter organisms have no more "
+               "offspring than others.";
+    }
     if (selection == "random") {
         return "Parents are chosen at random, whatever their fitness.";
     }
     if (selection == "truncation") {
         return "Only the fittest have offspring.";
     }
-    return "Fitter organisms have more offspring (" +
+    return "On average, fitter organisms have more offspring (" +
            (selection == "stochastic_universal" ? std::string{"stochastic universal"} : selection) + " selection).";
 }
 
-std::string fitness_text(const std::string& fitness) {
-    if (fitness == "life") {
-        return "Fitness is the time lived plus the health at the end.";
+/// Returns "is 2 × the time lived plus the health at the end": a sum of the parts whose weight is not 0.
+std::string weighted_sum_text(std::span<const std::pair<double, const char*>> parts) {
+    std::string text;
+    for (const auto& [weight, part] : parts) {
+        if (weight == 0) {
+            continue;
+        }
+        const char* sign = text.empty() ? (weight < 0 ? " −" : " ") : weight < 0 ? " minus " : " plus ";
+        const double size = std::abs(weight);
+        text += sign + (size == 1 ? "" : shown_number(size) + " × ") + part;
     }
-    return "Fitness is computed from the genes alone (" + fitness + ").";
+    return text.empty() ? "is 0 for all organisms" : "is" + text;
 }
 
 } // namespace
@@ -37,10 +53,20 @@ std::string experiment_text(const evod::v1::ParameterSet& set) {
     }
     const auto number = [&](const char* name) { return shown_number(number_of(values[name])); };
     const auto choice = [&](const char* name) { return values[name].choice(); };
+    const auto weighted = [&](const char* name, const char* part) { return std::pair{number_of(values[name]), part}; };
+    const std::string fitness =
+        choice("fitness") != "life"
+            ? "is computed from the genes alone (" + choice("fitness") + ")"
+            : weighted_sum_text(std::array{weighted("fitness_per_second", "the time lived"),
+                                           weighted("fitness_per_health", "the health at the end"),
+                                           weighted("fitness_per_food", "the food eaten"),
+                                           weighted("fitness_per_poison", "the poison eaten")});
+    const bool has_gene_costs = std::ranges::any_of(
+        values, [](const auto& value) { return value.first.ends_with("_cost") && number_of(value.second) != 0; });
     return number("population_size") + " organisms seek food (+" + number("food_health") +
            " health) and avoid poison (−" + number("poison_harm") + "). Each loses " + number("health_loss_per_s") +
-           " health per second and dies at 0. " + fitness_text(choice("fitness")) + " " +
-           selection_text(choice("selection"));
+           " health per second" + (has_gene_costs ? ", more or less with its genes," : "") + " and dies at 0. " +
+           "Fitness " + fitness + ". " + selection_text(choice("selection"), values["shuffle_fitness"].flag());
 }
 
 void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {

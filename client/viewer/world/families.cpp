@@ -10,6 +10,7 @@ Families::Families(std::span<const std::uint32_t> founders) {
     for (const std::uint32_t founder : founders) {
         if (founder != unknown) {
             ++sizes[founder];
+            ++size_;
         }
     }
     for (const auto& [founder, size] : sizes) {

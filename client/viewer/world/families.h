@@ -30,13 +30,15 @@ class Families {
     const std::vector<Family>& shown() const { return shown_; }
     /// Returns the number of all families.
     std::size_t count() const { return count_; }
+    /// Returns the number of organisms in all families.
+    std::size_t size() const { return size_; }
     /// Returns the family of an organism, as an index in shown(), or `none`.
     std::uint8_t of(std::uint32_t id) const { return id < of_.size() ? of_[id] : none; }
 
   private:
     std::vector<Family> shown_;
     std::vector<std::uint8_t> of_;
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, size_ = 0;
 };
 
 } // namespace evod::viewer

@@ -25,7 +25,7 @@ enum Column {
     fitness_column
 };
 
-constexpr std::array<std::string_view, 4> origin_names{"initial", "elite", "survivor", "child"};
+constexpr std::array<std::string_view, 5> origin_names{"initial", "elite", "survivor", "child", "placed"};
 constexpr std::uint32_t islands_max = 65'536; // no world can have as many islands
 
 std::vector<std::string_view> cells_of(std::string_view line) {

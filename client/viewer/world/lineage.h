@@ -26,7 +26,7 @@ class Lineage {
     static constexpr std::size_t organisms_max = 500'000;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    enum class Origin : std::uint8_t { Initial, Elite, Survivor, Child };
+    enum class Origin : std::uint8_t { Initial, Elite, Survivor, Child, Placed };
     struct Organism {
         /// Indices of the parents in the previous generation; `none` if unknown. If the organism has one parent, both
         /// are equal.

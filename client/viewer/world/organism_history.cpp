@@ -1,5 +1,8 @@
 #include "client/viewer/world/organism_history.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace evod::viewer {
 
 void OrganismHistory::add(const codec::ReceivedSnapshot& snapshot) {
@@ -54,6 +57,55 @@ void OrganismHistory::add(const Population& population) {
         }
         children_->push_back(child);
     }
+}
+
+std::optional<evod::v1::GetBreeding> OrganismHistory::wanted_picks(bool has_bred) const {
+    evod::v1::GetBreeding request;
+    // The answer contains no rows of these lists.
+    request.set_first_pick(std::numeric_limits<std::uint32_t>::max());
+    request.set_first_descendant(std::numeric_limits<std::uint32_t>::max());
+    if (info_) {
+        for (const std::uint32_t parent : info_->parents()) {
+            if (picks_of_parent(parent) == nullptr) {
+                request.set_generation(generation_ - 1);
+                request.set_first_contender(parent);
+                return request;
+            }
+        }
+    }
+    if (has_bred && !picks_) {
+        request.set_generation(generation_);
+        request.set_first_contender(id_);
+        return request;
+    }
+    return std::nullopt;
+}
+
+void OrganismHistory::add(const evod::v1::GetBreeding& request, const evod::v1::Breeding& breeding) {
+    if (breeding.contenders().empty() || breeding.generation() != request.generation()) {
+        return;
+    }
+    const evod::v1::Contender& contender = breeding.contenders(0);
+    Picks picks{.organism = request.first_contender(),
+                .count = contender.copies(),
+                .all = breeding.pick_count(),
+                .expected = contender.expected_copies()};
+    if (contender.has_migrant()) {
+        picks.migrant = contender.migrant();
+    }
+    if (breeding.generation() == generation_) {
+        picks_ = std::move(picks);
+    } else if (breeding.generation() + 1 == generation_) {
+        origin_ = id_ < breeding.elite_count()      ? Origin::Elite
+                  : id_ < breeding.survivor_count() ? Origin::Survivor
+                                                    : Origin::Child;
+        parent_picks_.push_back(std::move(picks));
+    }
+}
+
+const OrganismHistory::Picks* OrganismHistory::picks_of_parent(std::uint32_t parent) const {
+    const auto found = std::ranges::find(parent_picks_, parent, &Picks::organism);
+    return found == parent_picks_.end() ? nullptr : &*found;
 }
 
 } // namespace evod::viewer

@@ -1,11 +1,12 @@
 // OrganismHistory: the data about one organism that were received since it was selected: its health over time, its
-// death and its children.
+// death, its children, and how often it and its parents were picked for breeding.
 //
 // Owner        IslandView.
 // Threads      none; used by the thread that draws.
 #pragma once
 
 #include "client/viewer/world/population.h"
+#include "evod/v1/commands.pb.h"
 #include "proto/codec/snapshot_codec.h"
 
 #include <cstddef>
@@ -30,6 +31,17 @@ class OrganismHistory {
         bool same_genes = false;                     // the child is an unchanged copy
     };
 
+    /// How often an organism was picked when its generation bred.
+    struct Picks {
+        std::uint32_t organism = 0;
+        std::uint32_t count = 0, all = 0; // the organism's picks, and all picks of the breeding
+        double expected = 0;              // expected number of the organism's picks
+        /// The organism of another island of which this organism is a copy; nullopt: it lived on this island.
+        std::optional<evod::v1::Migrant> migrant{};
+    };
+    /// How the organism itself came into its generation.
+    enum class Origin { Unknown, Elite, Survivor, Child };
+
     OrganismHistory(std::uint32_t id, std::uint64_t generation) : id_{id}, generation_{generation} {}
 
     /// Adds a point of health from a snapshot of the organism's island. A snapshot of another generation ends the
@@ -40,6 +52,19 @@ class OrganismHistory {
     void add(const evod::v1::OrganismInfo& info);
     /// Reads a population: the ranges of the genes from the organism's own generation, the children from the next one.
     void add(const Population& population);
+    /// Reads the picks of the organism or of its parents. The lists of the answer begin at an organism that
+    /// wanted_picks() has named.
+    void add(const evod::v1::GetBreeding& request, const evod::v1::Breeding& breeding);
+
+    /// Returns the next request for picks, without world and island; nullopt if nothing is missing.
+    ///
+    /// has_bred  whether the organism's own generation has bred
+    std::optional<evod::v1::GetBreeding> wanted_picks(bool has_bred) const;
+    /// Returns the organism's own picks; null until known.
+    const Picks* picks() const { return picks_ ? &*picks_ : nullptr; }
+    /// Returns the picks of this parent; null until known.
+    const Picks* picks_of_parent(std::uint32_t parent) const;
+    Origin origin() const { return origin_; }
 
     std::uint32_t id() const { return id_; }
     std::uint64_t generation() const { return generation_; }
@@ -61,6 +86,9 @@ class OrganismHistory {
     std::optional<evod::v1::OrganismInfo> info_;
     std::vector<Population::Range> ranges_;
     std::optional<std::vector<Child>> children_;
+    std::optional<Picks> picks_;
+    std::vector<Picks> parent_picks_;
+    Origin origin_ = Origin::Unknown;
     bool ended_ = false, too_late_ = false;
 };
 

@@ -43,6 +43,12 @@ constexpr Topic topics[] = {
     {"migration", "Migration"},
 };
 
+constexpr std::string_view most_used_names[] = {
+    "selection", "tournament_size", "mutation_chance", "mutation_step", "population_size", "food_count", "poison_count",
+};
+
+constexpr std::size_t unit_length_max = 10; // longer units do not fit into a field
+
 std::string plain(std::string_view text) {
     std::string lower{text};
     for (char& sign : lower) {
@@ -128,8 +134,41 @@ std::string allowed_text(const ParameterDescription& parameter) {
     }
 }
 
-bool matches(const ParameterDescription& parameter, std::string_view search) {
-    const std::string text = plain(parameter.name() + " " + parameter.unit() + " " + parameter.help());
+std::string label_of(const ParameterDescription& parameter) {
+    std::string_view name = parameter.name();
+    for (const auto& [unit, end] :
+         {std::pair<std::string_view, std::string_view>{"s", "_s"}, {"px", "_px"}, {"px/s", "_px_s"}, {"kg", "_kg"}}) {
+        if (parameter.unit() == unit && name.ends_with(end)) {
+            name.remove_suffix(end.size());
+        }
+    }
+    std::string label = plain(name);
+    if (!label.empty()) {
+        label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
+    }
+    return label;
+}
+
+std::string label_of_choice(std::string_view choice) {
+    return plain(choice);
+}
+
+std::string unit_text(const ParameterDescription& parameter, double number) {
+    std::string unit = parameter.unit();
+    if (parameter.kind() == evod::v1::PARAMETER_KIND_COUNT && number == 1 && unit.ends_with('s')) {
+        unit.pop_back();
+    }
+    return unit.empty() || unit.size() > unit_length_max ? "" : " " + unit;
+}
+
+bool matches(const ParameterDescription& parameter, std::string_view group, std::string_view search) {
+    std::string all = parameter.name() + " " + parameter.unit() + " " + parameter.help() + " " + std::string{group};
+    for (const auto* texts : {&parameter.choices(), &parameter.choice_help()}) {
+        for (const std::string& choice : *texts) {
+            all += " " + choice;
+        }
+    }
+    const std::string text = plain(all);
     const std::string words = plain(search);
     for (std::size_t begin = 0; begin < words.size();) {
         const std::size_t end = std::min(words.find(' ', begin), words.size());
@@ -141,17 +180,28 @@ bool matches(const ParameterDescription& parameter, std::string_view search) {
     return true;
 }
 
+ParameterGroup most_used(std::span<const ParameterDescription> registry) {
+    ParameterGroup most{"Most used", {}};
+    for (const std::string_view name : most_used_names) {
+        const auto found = std::ranges::find(
+            registry, name, [](const auto& parameter) -> std::string_view { return parameter.name(); });
+        if (found != registry.end()) {
+            most.members.push_back(static_cast<std::size_t>(found - registry.begin()));
+        }
+    }
+    return most;
+}
+
 std::vector<ParameterGroup> group(std::span<const ParameterDescription> registry) {
     std::vector<ParameterGroup> groups;
     for (std::size_t i = 0; i < registry.size(); ++i) {
         const auto* topic = std::ranges::find(topics, registry[i].name(), &Topic::first);
         if (topic != std::end(topics)) {
-            groups.push_back({topic->title, i, i + 1});
+            groups.push_back({topic->title, {}});
         } else if (groups.empty()) {
-            groups.push_back({"General", i, i + 1});
-        } else {
-            groups.back().end = i + 1;
+            groups.push_back({"General", {}});
         }
+        groups.back().members.push_back(i);
     }
     return groups;
 }

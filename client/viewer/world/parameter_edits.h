@@ -38,15 +38,26 @@ bool spans_decades(const evod::v1::ParameterDescription& parameter);
 /// Returns the allowed values as text: "0.01 to 1", "roulette, tournament", "on or off".
 std::string allowed_text(const evod::v1::ParameterDescription& parameter);
 
-/// Returns whether the name, unit or help of the parameter contains every word of `search`. Case is ignored; _ counts
-/// as a space.
-bool matches(const evod::v1::ParameterDescription& parameter, std::string_view search);
+/// Returns the name for people, without the unit at its end: "Mutation chance", "Tick" for tick_s.
+std::string label_of(const evod::v1::ParameterDescription& parameter);
+/// Returns the name of a choice for people: "stochastic universal".
+std::string label_of_choice(std::string_view choice);
+/// Returns the unit after a number, with a space before it: " px", " island" after 1, " islands" after 2. Empty if
+/// there is no unit, or if it is too long for a field.
+std::string unit_text(const evod::v1::ParameterDescription& parameter, double number);
 
-/// A part of the registry that is shown under one heading.
+/// Returns whether the parameter or the title of its group contains every word of `search`: in the name, the unit, the
+/// help, the choices or their help. Case is ignored; _ counts as a space.
+bool matches(const evod::v1::ParameterDescription& parameter, std::string_view group, std::string_view search);
+
+/// Parameters that are shown under one heading.
 struct ParameterGroup {
     std::string_view title;
-    std::size_t first, end; // parameter indices
+    std::vector<std::size_t> members; // parameter indices
 };
+
+/// Returns the parameters that users change most often, in the order in which they are shown.
+ParameterGroup most_used(std::span<const evod::v1::ParameterDescription> registry);
 
 /// Groups the registry by topic, in the order of the registry. A parameter that evoview does not know belongs to the
 /// topic of the parameter before it.

@@ -9,6 +9,8 @@ namespace evod::viewer {
 
 namespace {
 
+constexpr std::uint32_t no_founder = ~std::uint32_t{0}; // the ancestor is an organism that a user placed
+
 std::uint32_t number_at(std::string_view bytes, std::size_t index) {
     std::uint32_t number = 0;
     for (unsigned i = 0; i < 4; ++i) {

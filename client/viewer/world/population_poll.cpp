@@ -41,7 +41,7 @@ bool PopulationPoll::update(ViewedWorld& world, const Of& of, bool wanted, Clock
 }
 
 void PopulationPoll::take(const evod::v1::Population& page) {
-    const bool ended = incomplete_.next() > 0 && page.generation() != incomplete_.generation();
+    const bool ended = incomplete_.is_outdated_by(page);
     const auto wrong = ended ? std::nullopt : incomplete_.add(page);
     unreadable_ = wrong ? "The server's answer is invalid: " + *wrong : "";
     if (wrong) {

@@ -1,8 +1,11 @@
 #include "client/viewer/world/replay_control.h"
 
+#include "client/viewer/world/new_world.h"
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -194,18 +197,32 @@ void ReplayControl::select_newborn() {
 
 // ---- forking ---------------------------------------------------------------------------------------------------
 
-void ReplayControl::fork(const std::string& name) {
+void ReplayControl::fork() {
     if (!server_.may_create()) {
-        server_.notice("Only the role admin may create worlds");
+        server_.notice(std::string{no_creation_text});
         return;
     }
+    evod::v1::Request request;
+    request.mutable_list_worlds(); // for a name that no world has
+    server_.send(std::move(request), [this](const core::Result<evod::v1::Response>& response) {
+        if (server_.report_if_refused(response)) {
+            std::vector<std::string> used;
+            for (const evod::v1::WorldInfo& world : response->worlds().worlds()) {
+                used.push_back(world.name());
+            }
+            send_fork(unused_name(present_.value_or(feed_.name()), used));
+        }
+    });
+}
+
+void ReplayControl::send_fork(const std::string& name) {
     evod::v1::Request request;
     request.mutable_fork_world()->set_world(feed_.name());
     request.mutable_fork_world()->set_name(name);
     server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
         if (server_.report_if_refused(response)) {
-            forked_ = name;
-            server_.notice("Forked the world " + name + " from this moment; B shows it in the other half");
+            forked_ = new_fork_ = name;
+            server_.notice("Forked the world " + name + " from this moment");
         }
     });
 }

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -54,8 +55,10 @@ class ReplayControl {
     /// Returns the target of the newest seek; null if no seek is running.
     const evod::v1::RunMoment* target() const { return seeks_.target(); }
 
-    /// Creates a world that starts from the moment shown.
-    void fork(const std::string& name);
+    /// Creates a world that starts from the moment shown. Its name is that of the live world with a number.
+    void fork();
+    /// Returns the name of the fork that the server has created, once; empty if there is no new one.
+    std::string take_new_fork() { return std::exchange(new_fork_, {}); }
     /// Returns the newest world forked from the viewed world, its replay or its live world. Empty if there is none or
     /// it has been deleted.
     const std::string& forked() const { return forked_; }
@@ -76,6 +79,7 @@ class ReplayControl {
 
   private:
     void show(std::string world);
+    void send_fork(const std::string& name);
     void send_seek(std::optional<evod::v1::RunMoment> to);
     void take_opened();
     void select_newborn();
@@ -96,7 +100,7 @@ class ReplayControl {
     bool opening_at_start_;                                 // the pending replay was requested at the start of evoview
     std::optional<std::string> open_refusal_;
     WorldFeed::Clock::time_point range_requested_{};
-    std::string forked_;
+    std::string forked_, new_fork_;
 };
 
 } // namespace evod::viewer

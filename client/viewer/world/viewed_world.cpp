@@ -28,6 +28,9 @@ bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
     // Process answers before events, because an event may report something that happened after an answer.
     server.take_answers();
     replay.update(now);
+    if (std::string fork = replay.take_new_fork(); !fork.empty()) {
+        beside_ = std::move(fork);
+    }
     feed.take_events();
     for (const evod::v1::Event& event : feed.events()) {
         take_event(event);
@@ -66,10 +69,16 @@ void ViewedWorld::show_next_world() {
         next_world_wanted_ = true; // the request is sent as soon as the server has answered the Hello
         return;
     }
-    find_next_world([this](const std::string& world) { show(world, 0); });
+    find_next_world([this](const std::optional<std::string>& world) {
+        if (world) {
+            show(*world, 0);
+        } else {
+            server.notice("There is no other world: New world … in the panel Worlds (F2) creates one");
+        }
+    });
 }
 
-void ViewedWorld::find_next_world(std::function<void(const std::string& world)> found) {
+void ViewedWorld::find_next_world(std::function<void(const std::optional<std::string>& world)> found) {
     if (!server.was_connected()) {
         server.notice("The worlds are not known yet: not connected to the server");
         return;
@@ -77,30 +86,47 @@ void ViewedWorld::find_next_world(std::function<void(const std::string& world)> 
     evod::v1::Request request;
     request.mutable_list_worlds();
     server.send(std::move(request), [this, found = std::move(found)](const core::Result<evod::v1::Response>& response) {
-        if (!server.report_if_refused(response)) {
-            return;
-        }
-        if (const auto world = world_after_this(response->worlds())) {
-            found(*world);
+        if (server.report_if_refused(response)) {
+            found(world_after_this(response->worlds()));
         }
     });
 }
 
-/// The world after the viewed one in the server's list. If there is none, adds a notice and returns nullopt.
-std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) {
+/// The world after the viewed one in the server's list; nullopt if there is no other world.
+std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) const {
     const auto& list = worlds.worlds();
-    if (list.empty()) {
-        server.notice("This server has no world yet: create one with evoctl create NAME");
-        return std::nullopt;
-    }
     const std::string shown = replay.present().value_or(feed.name());
     const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
     const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
-    if (next == here) {
-        server.notice("This is the only world: create another with evoctl create NAME");
-        return std::nullopt;
-    }
-    return next->name();
+    return next == here || next == list.end() ? std::nullopt : std::optional{next->name()};
+}
+
+void ViewedWorld::create(evod::v1::Request request, bool beside, std::function<void(const std::string& refusal)> done) {
+    server.send(
+        std::move(request), [this, beside, done = std::move(done)](const core::Result<evod::v1::Response>& response) {
+            const std::string refusal = refusal_of(response);
+            done(refusal);
+            if (!refusal.empty()) {
+                return;
+            }
+            const evod::v1::WorldInfo& created = response->world();
+            server.notice("Created the world " + created.name() + ", with seed " + std::to_string(created.seed()));
+            if (beside) {
+                beside_ = created.name();
+            } else {
+                show(created.name(), 0);
+            }
+        });
+}
+
+void ViewedWorld::remove(const std::string& name) {
+    evod::v1::Request request;
+    request.mutable_delete_world()->set_world(name);
+    server.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
+        if (server.report_if_refused(response) && (name == feed.world() || name == feed.name())) {
+            show_next_world();
+        }
+    });
 }
 
 std::optional<std::string> ViewedWorld::refusal() const {
@@ -134,6 +160,16 @@ void ViewedWorld::toggle_replay() {
         now.set_tick(snapshot->about.tick());
     }
     replay.open(std::move(now));
+}
+
+void ViewedWorld::show_generation(std::uint64_t generation) {
+    evod::v1::RunMoment first;
+    first.set_generation(generation);
+    if (replay.info() != nullptr) {
+        replay.seek(std::move(first));
+    } else {
+        replay.open(std::move(first));
+    }
 }
 
 } // namespace evod::viewer

@@ -16,6 +16,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -35,11 +36,25 @@ class ViewedWorld {
     /// Shows the world after this one in the server's list.
     void show_next_world();
     /// Asks the server which world comes after this one in its list. A later update() calls the handler with the name
-    /// of that world. If there is none, the window shows a notice with a suggestion.
-    void find_next_world(std::function<void(const std::string& world)> found);
+    /// of that world, or with nullopt if there is no other world.
+    void find_next_world(std::function<void(const std::optional<std::string>& world)> found);
+
+    /// Creates a world and shows it, here or in the other half of the window. A later update() calls the handler with
+    /// the reason why the server has refused the request, or with an empty text.
+    void create(evod::v1::Request request, bool beside, std::function<void(const std::string& refusal)> done);
+    /// Deletes a world. If it is the viewed one, shows the next world.
+    void remove(const std::string& name);
+    /// Returns the world that was created or forked to be shown in the other half, once; empty if there is none.
+    std::string take_beside() { return std::exchange(beside_, {}); }
+
+    /// Makes the window offer to create a second world, to be shown beside this one.
+    void offer_new_world() { new_world_offered_ = true; }
+    bool take_new_world_offer() { return std::exchange(new_world_offered_, false); }
 
     /// Opens a replay of the world at the tick shown, or returns from it to the live world.
     void toggle_replay();
+    /// Shows the first tick of a generation of the run, in a replay.
+    void show_generation(std::uint64_t generation);
 
     /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }
@@ -50,8 +65,10 @@ class ViewedWorld {
 
   private:
     void take_event(const evod::v1::Event& event);
-    std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds);
+    std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds) const;
 
+    std::string beside_;
+    bool new_world_offered_ = false;
     bool next_world_wanted_ = false; // show the next world as soon as connected
 };
 

@@ -24,7 +24,7 @@ struct IslandViewTest : testing::Test {
         Options options;
         options.connection.server = core::parse_endpoint(server.address()).value();
         options.world = "default";
-        panes.emplace(wanted_of(options));
+        panes.emplace(wanted_of(options), std::nullopt, default_options({Skin::Classic}));
     }
 
     sf::Image draw() {
@@ -97,7 +97,7 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsGene) {
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // the gene is 100 + id, and ids are 0 to 9
     for (const std::uint32_t id : snapshot.entities->organisms.id) {
-        colours.push_back(palette::at(palette::Ramp::Viridis, std::round(id / 9.0 * 255) / 255));
+        colours.push_back(palette::at(palette::Ramp::Violet, std::round(id / 9.0 * 255) / 255));
     }
     expect_colours(image, colours);
 }
@@ -115,9 +115,9 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
 TEST_F(IslandViewTest, ForceLinesLeadToTheTargets) {
     const sf::Image before = draw_when([&] { return world().feed.snapshot() != nullptr; });
     EXPECT_EQ(count(before, palette::seeks), 0u);
-    island_view().options.forces = true;
+    island_view().options.forces = island_view().options.of_all = true;
     const sf::Image image = draw_with_population();
-    EXPECT_GT(count(image, palette::seeks), 100u);
+    EXPECT_GT(count(image, palette::seeks), 30u);
     // Organism 9 at (790, 590) has its target at (9, 18): a line across the island, one pixel wide.
     const auto near_line = [&](double share) {
         unsigned found = 0;
@@ -134,7 +134,7 @@ TEST_F(IslandViewTest, ForceLinesLeadToTheTargets) {
 
 TEST_F(IslandViewTest, RadiiAreRingsOfTheGenesSize) {
     const sf::Image before = draw_when([&] { return world().feed.snapshot() != nullptr; });
-    island_view().options.radii = true;
+    island_view().options.radii = island_view().options.of_all = true;
     const sf::Image image = draw_with_population();
     // Organism 4 at (500, 300.5) perceives food up to 104 px away; nothing else is drawn inside.
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {-0.6, 0.8}}) {
@@ -156,19 +156,123 @@ TEST_F(IslandViewTest, DrawsTheMinimapWhenPartIsOutOfSight) {
         return pixel_at(image, static_cast<unsigned>(screen.x), static_cast<unsigned>(screen.y));
     };
     draw(); // a window of widgets gets its position in the first frame
-    const sf::Image image = draw();
-    EXPECT_EQ(pixel(image, {place.screen.left + 60, place.screen.top + 10}), palette::strip);
+    const sf::Image with = draw();
     island_view().options.minimap = false;
-    EXPECT_NE(pixel(draw(), {place.screen.left + 60, place.screen.top + 10}), palette::strip);
+    const sf::Image without = draw();
+    unsigned changed = 0;
+    for (double y = 0; y < place.screen.height; ++y) {
+        for (double x = 0; x < place.screen.width; ++x) {
+            const Point point{place.screen.left + x, place.screen.top + y};
+            changed += pixel(with, point) != pixel(without, point);
+        }
+    }
+    EXPECT_GT(changed, 500u);
 }
 
 TEST_F(IslandViewTest, AClickSelectsAndHighlightsAnOrganism) {
     draw_when([&] { return world().feed.snapshot() != nullptr; });
-    renderer.select_at(panes->focused(), camera().to_screen({502, 300}));
+    const auto click = [&](Point place) {
+        const Point screen = camera().to_screen(place);
+        renderer.click_at(panes->focused(), screen, renderer.organism_drawn_at(panes->focused(), screen));
+    };
+    click({502, 300});
     EXPECT_EQ(world().feed.selected(), 4u);
     EXPECT_GT(count(draw(), palette::selected), 20u);
-    renderer.select_at(panes->focused(), camera().to_screen({400, 50}));
+    click({400, 50});
     EXPECT_EQ(world().feed.selected(), std::nullopt);
+}
+
+// ---- the vivid skin --------------------------------------------------------------------------------------------
+
+struct VividTest : IslandViewTest {
+    VividTest() { island_view().options = default_options({}); }
+    const palette::IslandColours& colours = palette::of({});
+    sf::Image draw_snapshot() {
+        return draw_when([&] { return world().feed.snapshot() != nullptr; });
+    }
+    /// The place at a distance from another, in pixels, clockwise from the top in turns.
+    Point around(Point world, double pixels, double turns) {
+        const double angle = 2 * std::acos(-1) * turns, px = pixels / camera().zoom();
+        return {world.x + px * std::sin(angle), world.y - px * std::cos(angle)};
+    }
+};
+
+TEST_F(VividTest, FoodIsALeafAndPoisonIsAStar) {
+    const sf::Image image = draw_snapshot();
+    const double radius = snapshot.about.item_radius_px() * camera().zoom();
+    const Point food{640, 200}, poison{700, 100};
+    EXPECT_NE(at(image, around(food, 1.4 * radius, 0.125)), colours.ground) << "the tip at the upper right";
+    EXPECT_EQ(at(image, around(food, 0.6 * radius, 0.375)), colours.food) << "beside the vein";
+    EXPECT_EQ(at(image, around(food, 1.4 * radius, 0.375)), colours.ground) << "no tip at the lower right";
+    for (const double turns : {0.125, 0.375, 0.625, 0.875}) {
+        EXPECT_EQ(at(image, around(poison, 1.2 * radius, turns)), colours.poison) << turns;
+        EXPECT_EQ(at(image, around(poison, 1.5 * radius, turns + 0.125)), colours.ground) << turns;
+    }
+}
+
+TEST_F(VividTest, TheArcShowsTheHealth) {
+    const sf::Image image = draw_snapshot();
+    const Point organism{300.3, 450}; // number 3: radius 20 px, health 63.2 of 100
+    const double ring = 20 * camera().zoom() + 1.1 * styles_of({}).organism.edge_pixels;
+    for (const double turns : {0.05, 0.3, 0.55}) {
+        EXPECT_EQ(at(image, around(organism, ring, turns)), colours.arc) << turns;
+    }
+    for (const double turns : {0.7, 0.95}) {
+        EXPECT_NE(at(image, around(organism, ring, turns)), colours.arc) << turns;
+    }
+}
+
+TEST_F(VividTest, GeneColoursAreExactAtTheCentre) {
+    island_view().options.colour_by = ColourBy::Gene;
+    island_view().options.gene = 1; // 100 + id, and ids are 0 to 9
+    const sf::Image image = draw_with_population();
+    for (const std::size_t i : {0, 1}) {
+        const codec::Entities& all = snapshot.entities->organisms;
+        const Colour expected = palette::at(palette::Ramp::Violet, std::round(all.id[i] / 9.0 * 255) / 255);
+        const Colour is = at(image, {all.x_px(i), all.y_px(i)});
+        EXPECT_NEAR(is.red, expected.red, 2);
+        EXPECT_NEAR(is.green, expected.green, 2);
+        EXPECT_NEAR(is.blue, expected.blue, 2);
+    }
+}
+
+TEST_F(VividTest, RadiiAreDrawnOfTheSelectedOrganismOnly) {
+    draw_snapshot();
+    world().feed.select(4);
+    const sf::Image image = draw_with_population();
+    const auto ring_at = [&](Point organism, double radius_px) {
+        unsigned changed = 0;
+        for (double px = radius_px - 2; px <= radius_px + 2; px += 0.5) {
+            changed += at(image, {organism.x - px, organism.y}) != colours.ground;
+        }
+        return changed > 0;
+    };
+    EXPECT_TRUE(ring_at({500, 300.5}, 104));
+    EXPECT_FALSE(ring_at({300.3, 450}, 103)) << "of organism 3";
+}
+
+TEST_F(VividTest, TheSidebarShowsTheMarksOfTheSkin) {
+    const auto sidebar_has = [&](Colour colour) {
+        const sf::Image image = renderer.capture(
+            *panes,
+            {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now(), .interactive = true});
+        unsigned found = 0;
+        for (unsigned y = 0; y < 200; ++y) {
+            for (unsigned x = window_width - 390; x < window_width; ++x) {
+                found += pixel_at(image, x, y) == colour;
+            }
+        }
+        return found > 10;
+    };
+    draw_snapshot();
+    sidebar_has(colours.food); // widgets get their places in the first frame
+    for (const Look look : {Look{}, Look{Skin::Vivid, Background::Light}, Look{Skin::Classic}}) {
+        island_view().options = default_options(look);
+        const palette::IslandColours& of = palette::of(look);
+        for (const Colour colour : {of.ground, of.food, of.poison, of.arc}) {
+            EXPECT_TRUE(sidebar_has(colour));
+        }
+    }
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -47,6 +48,68 @@ struct PanelsTest : testing::Test {
 
     TemporaryFolder folder;
 };
+
+/// Returns the answer to a request, which the server must accept.
+evod::v1::Response ask(RealServer& server, const evod::v1::Request& request) {
+    auto response = server.connection->request(request, hang).value();
+    EXPECT_TRUE(core::accepted(response)) << core::to_text(response.status());
+    return response;
+}
+
+TEST_F(PanelsTest, LeadsFromAnOrganismToThePickOfItsParent) {
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
+    server.run_generations("", 3);
+    evod::v1::OrganismInfo healthiest;
+    for (std::uint32_t id = 0; id < 50; ++id) {
+        evod::v1::Request request;
+        request.mutable_get_organism()->set_organism(id);
+        const auto response = ask(server, request);
+        if (response.organism().health() > healthiest.health()) {
+            healthiest = response.organism();
+        }
+    }
+    ASSERT_FALSE(healthiest.parents().empty());
+    const std::uint32_t parent = healthiest.parents(0);
+    evod::v1::Request request;
+    request.mutable_get_breeding()->set_generation(healthiest.generation() - 1);
+    const auto response = ask(server, request);
+    const auto& picks = response.breeding().picks();
+    const auto pick = std::ranges::find(picks, parent, &evod::v1::Pick::organism);
+    ASSERT_NE(pick, picks.end());
+    const std::string id = std::to_string(parent);
+    const std::string why = "wait snapshot\nkey F6\nclick \"Organism " + std::to_string(healthiest.id()) +
+                            "\"\nclick \"Why " + id + "?\"\nwait widget \"Pick " +
+                            std::to_string(pick - picks.begin() + 1) + "\"\nkey F6\n";
+    const std::string replay = "click \"Go to parent " + id +
+                               "\"\nwait widget \"Back to live\"\nwait widget \"Show its picks\"\n"
+                               "key P\nwait gone \"Back to live\"\nquit\n";
+    const Ran ran = play(server.address(), why + replay);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, BetsAreScoredAfterTheLastPick) {
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
+    server.run_generations("", 2);
+    const Ran ran = play(server.address(), R"script(
+wait snapshot
+key F8
+click "bet first"
+set Generation 1
+click "bet on 43"
+click "bet on 9"
+click Step
+wait gone score
+set steps/s 200
+click "Play the picks"
+wait widget score
+wait gone "bet on 43"
+key Home
+wait gone score
+wait gone "bet on 43"
+quit
+)script");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
 
 double chance_of(const evod::v1::ParameterSet& set) {
     for (const auto& parameter : set.parameters()) {
@@ -219,8 +282,6 @@ wait widget "ticks is refused"
 set generations 0
 click "Run generations"
 wait widget "generations is refused"
-set speed -5
-wait widget "speed is refused"
 set seed 99999999999999999999
 click "Reset …"
 click "Reset the world"
@@ -231,7 +292,10 @@ quit
     const auto world = server.state();
     EXPECT_EQ(world.state(), evod::v1::RUN_STATE_WAITING);
     EXPECT_EQ(world.tick(), 0u);
-    EXPECT_EQ(world.speed().real_time_factor(), 1);
+    const Ran negative = play(server.address(), "wait snapshot\ntimeout 0.5\nset speed -5\n");
+    EXPECT_EQ(negative.status, 1);
+    EXPECT_THAT(negative.output, HasSubstr("script:3: set speed -5: not done within 0 s: \"speed\" is \"1\""));
+    EXPECT_EQ(server.state().speed().real_time_factor(), 1);
 }
 
 TEST_F(PanelsTest, EscClosesADialogThenTheOwnWindow) {
@@ -277,11 +341,30 @@ quit
     EXPECT_EQ(second.status, 0) << second.output;
 }
 
+TEST_F(PanelsTest, TheLookIsStoredUnlessTheCommandLineSetsIt) {
+    RealServer server{{"--seed", "7"}};
+    const Ran first = play(server.address(), "wait snapshot\nkey F5\nset skin classic\n"
+                                             "click \"flashes of meals and deaths\"\nquit\n");
+    EXPECT_EQ(first.status, 0) << first.output;
+    std::ifstream stored{folder.file("state/evod/evoview.ini")};
+    const std::string text{std::istreambuf_iterator<char>{stored}, {}};
+    EXPECT_NE(text.find("skin=classic\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("trails=0\nflashes=1\n"), std::string::npos) << text;
+    const Ran vivid = play(server.address() + " --skin vivid --background light",
+                           "wait snapshot\nkey F5\nwait widget View/background\nquit\n");
+    EXPECT_EQ(vivid.status, 0) << vivid.output;
+    const Ran second = play(server.address(), "wait snapshot\nkey F5\nwait widget View/skin\n"
+                                              "wait gone View/background\nquit\n");
+    EXPECT_EQ(second.status, 0) << second.output;
+}
+
 TEST_F(PanelsTest, ADamagedSettingsFileIsIgnored) {
     RealServer server{{"--seed", "7"}};
     std::filesystem::create_directories(folder.file("state/evod"));
-    std::ofstream{folder.file("state/evod/evoview.ini")} << "[Sidebar][Data]\nwidth=nan\nwidth=-5\nwidth=1e30\n"
-                                                            "collapsed\ntab=no such panel\n\n[Sidebar\n=\n\xff\x01";
+    std::ofstream{folder.file("state/evod/evoview.ini")}
+        << "[Sidebar][Data]\nwidth=nan\nwidth=-5\nwidth=1e30\n"
+           "collapsed\ntab=no such panel\n\n[Island][Data]\nskin=neon\n"
+           "gene=-1\ncolour_by=gene\ntrails\n\n[Sidebar\n=\n\xff\x01";
     const Ran ran = play(server.address(), "wait snapshot\nkey F4\nwait widget Parameters/Search\nquit\n");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
@@ -405,14 +488,13 @@ wait snapshot
 key F4
 wait widget "Revision 1"
 set Search "mutation chance"
-set mutation_chance 0.9
-click Apply
-key F4
+wait disabled mutation_chance
+wait disabled Apply
 key F3
-click "as fast as possible"
-click Sidebar/Run
-click "Run generations"
-click "Reset …"
+wait disabled "as fast as possible"
+wait disabled Sidebar/Run
+wait disabled "Run generations"
+wait disabled "Reset …"
 key F2
 wait widget default
 screenshot )" + folder.file("viewer.png") +
@@ -443,6 +525,136 @@ TEST_F(PanelsTest, TheStartScreenExplainsAFailureAndReturns) {
                             "wait snapshot\nkey Ctrl+Backspace\nset Server elsewhere:1\nwait widget error\nclick " +
                             address + "click Connect\nwait snapshot\nquit\n");
     ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, ALineWithoutEffectFails) {
+    RealServer server{{"--seed", "7"}};
+    const auto error_of = [&](const std::string& line) {
+        const Ran ran = play(server.address(), "wait snapshot\nkey F3\nwait widget seed\ntimeout 0.4\n" + line + "\n");
+        EXPECT_EQ(ran.status, 1) << line;
+        return ran.output;
+    };
+    EXPECT_THAT(error_of("key F4\nclick Apply"), HasSubstr("\"Apply\" is disabled: There are no edits"));
+    EXPECT_THAT(error_of("click World"), HasSubstr("\"World\" does not react to clicks"));
+    EXPECT_THAT(error_of("click Run"), HasSubstr("2 widgets have the name \"Run\": Sidebar/Run, Tabs/Run"));
+    EXPECT_THAT(error_of("set ticks abc"), HasSubstr("\"ticks\" does not accept this text; it contains \"60\""));
+    EXPECT_THAT(error_of("set Reset abc"), HasSubstr("no widget \"Reset\" is on the screen"));
+    EXPECT_THAT(error_of("set \"Step ticks\" 5"), HasSubstr("is not a field"));
+    EXPECT_THAT(error_of("type 5"), HasSubstr("no field has the keyboard focus"));
+    EXPECT_THAT(error_of("key A"), HasSubstr("key A: this key has no effect"));
+    EXPECT_THAT(error_of("key Tab"), HasSubstr("key Tab: This world has only one island"));
+    EXPECT_THAT(error_of("key ["), HasSubstr("key [: Only a replay has a time line"));
+    EXPECT_THAT(error_of("click organism 99"), HasSubstr("organism 99 is not on the screen"));
+    EXPECT_THAT(error_of("click right/at 0.5,0.5"), HasSubstr("this place is not on the screen"));
+}
+
+TEST_F(PanelsTest, EveryKindOfWidgetIsSetByTheTextBesideIt) {
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("data")}};
+    evod::v1::Request run;
+    run.mutable_run()->set_generations(3);
+    server.ask(run);
+    const Ran ran = play(server.address(), R"script(
+wait generation 3
+wait state waiting
+key P
+wait widget left/Present
+set generation 2
+set left/generation 1
+key P
+wait gone left/Present
+actions 9
+key .
+wait generation 4
+click organism 12
+wait widget "keep it centred (L)"
+set "keep it centred (L)" on
+key F5
+set palette cividis
+key F7
+set compare nothing
+set "image width" 800
+key F8
+set "Glass box/Generation" 2
+set "play each" on
+actions 19
+click left/at 0.5,0.5
+quit
+)script");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, AWidgetOutOfSightIsScrolledIntoView) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait snapshot
+key F4
+wait widget "Revision 1"
+wait gone migrant_count
+set migrant_count 3
+wait widget "1 edited"
+actions 5
+quit
+)");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, TheTourExplainsTheWidgetsAndEnds) {
+    RealServer server{{"--seed", "7"}};
+    std::filesystem::remove(folder.file("state/evod/evoview.ini")); // it says that the tour was shown
+    const Ran tour = play(server.address() + " --tour", R"(
+wait widget "Tour/The island"
+wait disabled Tour/Back
+key Right
+wait widget "Tour/Run and pause"
+key Left
+click Tour/Next
+key Enter
+key Space
+wait state running
+wait widget Tour/Speed
+key Right
+wait widget Tour/Fitness
+key Right
+wait widget Tour/Panels
+key Right
+click Tour/Done
+wait gone Tour/Done
+key H
+click "Show the tour"
+wait gone Keys
+key Escape
+wait gone Tour/Next
+quit
+)");
+    EXPECT_EQ(tour.status, 0) << tour.output;
+    EXPECT_THAT(read_file(folder.file("state/evod/evoview.ini")), HasSubstr("tour_seen=1"));
+    const Ran script = play(server.address(), "wait snapshot\nwait widget \"Revision 1\"\nwait gone Tour/Next\nquit\n");
+    EXPECT_EQ(script.status, 0) << script.output;
+}
+
+TEST_F(PanelsTest, SelectionChangesWithThreeActions) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait snapshot
+wait widget "Revision 1"
+set selection tournament
+click Apply
+wait widget "Revision 2"
+actions 3
+set Selection "stochastic universal"
+click Apply
+wait widget "Revision 3"
+set "apply at once" on
+set Search "selection"
+set "Tournament size" 4
+wait widget "Revision 4"
+menu "Tournament size"
+click "Default: 3"
+wait widget "Revision 5"
+quit
+)");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(selection_of(server.parameters()), "stochastic_universal");
 }
 
 TEST_F(PanelsTest, AFailingLineEndsEvoviewAndIsPrinted) {
@@ -478,19 +690,13 @@ TEST_F(PanelsTest, AnEndlessLookUpDoesNotBlockTheWindow) {
 
 TEST_F(PanelsTest, ATypedTickLengthIsClamped) {
     RealServer server{{"--seed", "7"}};
-    const Ran ran = play(server.address(), R"(
-wait snapshot
-key F9
-click "Bodies of this island"
-set "tick, ms" 0
-wait widget "10,000 steps"
-set "tick, ms" -7
-wait widget "10,000 steps"
-set "tick, ms" 1e30
-wait widget "10 steps"
-quit
-)");
-    ASSERT_EQ(ran.status, 0) << ran.output;
+    for (const auto& [typed, used] : {std::pair{"0", "1"}, {"-7", "1"}, {"1e30", "1000"}}) {
+        const std::string line = std::string{"set \"tick, ms\" "} + typed;
+        const Ran ran = play(server.address(), "wait snapshot\nkey F9\nclick \"Bodies of this island\"\n"
+                                               "wait widget \"tick, ms\"\ntimeout 0.5\n" +
+                                                   line + "\n");
+        EXPECT_THAT(ran.output, HasSubstr(line + ": not done within 0 s: \"tick, ms\" is \"" + used + "\""));
+    }
 }
 
 TEST_F(PanelsTest, TextAndWidgetsFollowTheScale) {

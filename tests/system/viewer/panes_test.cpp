@@ -37,7 +37,8 @@ struct PanesTest : testing::Test {
     std::string path = folder.file("frame.png");
 
     sf::Image screenshot(const std::string& arguments) {
-        const Ran ran = run_evoview("--server " + server.address() + " " + arguments + " --screenshot " + path);
+        const Ran ran =
+            run_evoview("--server " + server.address() + " --skin classic " + arguments + " --screenshot " + path);
         EXPECT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         EXPECT_TRUE(image.loadFromFile(path));
@@ -58,13 +59,14 @@ TEST_F(PanesTest, DrawsAllIslandsAsTiles) {
     make_world(server, "one", 130, 3, 5);
     sf::Image image = screenshot("--world one --all-islands");
     const auto first = snapshot_of(server, "one");
+    const Colour outside = palette::of({Skin::Classic}).outside;
     const auto places = in_tiles(viewport_of(1280, 720), 5, first->about.width_px() / first->about.height_px());
     for (std::uint32_t island = 0; island < 5; ++island) {
         const Rectangle place = places[island];
         for (unsigned y = 0; y < 24; ++y) { // the label of the island is above its wall
             for (unsigned x = 0; x < 80; ++x) {
                 image.setPixel(static_cast<unsigned>(place.left) + x, static_cast<unsigned>(place.top) + y,
-                               sf::Color{palette::background.red, palette::background.green, palette::background.blue});
+                               sf::Color{outside.red, outside.green, outside.blue});
             }
         }
         expect_shown(*snapshot_of(server, "one", island), place, image);
@@ -101,8 +103,8 @@ quit
 struct TimelineTest : PanesTest {
     TimelineTest() {
         make_world(server, "one", 421);
-        evoview.emplace(EVOVIEW,
-                        std::vector<std::string>{"--server", server.address(), "--world", "one", "--size", "800x500"});
+        evoview.emplace(EVOVIEW, std::vector<std::string>{"--server", server.address(), "--world", "one", "--size",
+                                                          "800x500", "--skin", "classic"});
         EXPECT_TRUE(person.finds_window());
         EXPECT_TRUE(person.sees(palette::organism));
         person.press(XK_F12); // collapses the sidebar

@@ -112,7 +112,7 @@ struct PlotsTest : testing::Test {
     RealServer server{{"--seed", "7"}};
 };
 
-constexpr int csv_button_x = 40, png_button_x = 130;
+constexpr int csv_button_x = 70, png_button_x = 145;
 
 TEST_F(PlotsTest, SavesTheNumbersOfTheServer) {
     make_world();
@@ -154,7 +154,9 @@ key F7
 wait widget "3 generations, up to 3"
 click "image width"
 key Q
-set "image width" 5
+key Ctrl+A
+type 5
+key Enter
 set "image height" 300
 click "Save PNG"
 quit
@@ -180,6 +182,33 @@ quit
     ASSERT_EQ(ran.status, 0) << ran.output;
     sf::Image image;
     EXPECT_TRUE(image.loadFromFile(path_of("selection", 3) + ".png"));
+}
+
+TEST_F(PlotsTest, AChangeOfParametersIsMarked) {
+    make_world();
+    run(3);
+    const auto saved = [&](std::uint64_t generation) {
+        std::ofstream{folder.file("script")} << "wait snapshot\nkey F7\nwait widget \"" << generation
+                                             << " generations, up to " << generation
+                                             << "\"\nclick \"Save PNG\"\nscreenshot window.png\nquit\n";
+        const Ran ran = run_evoview(server.address() + " --world lab --script " + folder.file("script"));
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        sf::Image plot, window;
+        EXPECT_TRUE(plot.loadFromFile(path_of("fitness", generation) + ".png"));
+        EXPECT_TRUE(window.loadFromFile(folder.file("window.png")));
+        return std::pair{count(plot, palette::plot_mark), count(window, palette::plot_mark)};
+    };
+    EXPECT_EQ(saved(3), std::pair(std::size_t{0}, std::size_t{0})) << "no parameter has changed";
+    evod::v1::Request change; // before the viewer connects
+    change.mutable_set_parameters()->set_world("lab");
+    auto& assignment = *change.mutable_set_parameters()->add_parameters();
+    assignment.set_name("mutation_chance");
+    assignment.mutable_value()->set_real(0.2);
+    server.ask(change);
+    run(3);
+    const auto [on_plot, in_window] = saved(6);
+    EXPECT_GT(on_plot, 150u) << "a dashed line as high as the plot, and a triangle";
+    EXPECT_GT(in_window, 80u) << "in the panel and in the sidebar's curve";
 }
 
 TEST_F(PlotsTest, AScriptComparesWithAnotherWorld) {
@@ -216,6 +245,45 @@ struct PlotUnderTheMouse {
 
     void move(int x) { host.move(x, height / 2); }
 };
+
+TEST(PlotWidget, ItsNoteIsBesideThePlot) {
+    const std::vector<double> x{1, 2, 3}, y{4, 9, 5};
+    const std::vector<Mark> marks{{2, "generation 2: mutation_chance 0.01 → 0.2 by alice"}};
+    Plot plot{.x_label = "generation", .series = {{.name = "y", .x = x, .y = y}}, .marks = {{marks}}};
+    PlotView view;
+    constexpr int left = 420; // of the plot
+    PanelHost host{width, height, [&](Gui&) {
+                       ImGui::SetNextWindowPos({left, 0});
+                       ImGui::SetNextWindowSize({width - left, height});
+                       ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+                       ImGui::Begin("plot", nullptr, ImGuiWindowFlags_NoDecoration);
+                       ImGui::PopStyleVar();
+                       plot_widget("plot", plot, view, height);
+                       ImGui::End();
+                   }};
+    host.draw();
+    const sf::Image before = host.draw();
+    const auto changed = [&](int mouse) {
+        host.move(mouse, height / 2);
+        host.draw();
+        const sf::Image now = host.draw();
+        std::pair<std::size_t, std::size_t> pixels{0, 0}; // beside the plot, on the plot
+        for (unsigned row = 0; row < height; ++row) {
+            for (unsigned column = 0; column < width; ++column) {
+                if (pixel_at(now, column, row) != pixel_at(before, column, row)) {
+                    ++(column < left ? pixels.first : pixels.second);
+                }
+            }
+        }
+        return pixels;
+    };
+    const auto [beside, on] = changed(left + 60);
+    EXPECT_GT(beside, 500u) << "the note";
+    EXPECT_LT(on, 2 * height + 50u) << "only the cursor and its dot";
+    EXPECT_GT(on, height / 2) << "the cursor";
+    const auto at_mark = changed(left + (width - left) / 2 + 10);
+    EXPECT_GT(at_mark.first, beside + 500) << "the note also contains the change of generation 2";
+}
 
 TEST(PlotWidget, ZoomsMovesAndFitsWithTheMouse) {
     std::vector<double> x, y;

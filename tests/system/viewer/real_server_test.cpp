@@ -22,7 +22,7 @@ TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
         const TemporaryFolder folder;
         const std::string path = folder.file("frame.png");
         std::string arguments = "--server " + server.address();
-        arguments.append(" --world ").append(world).append(" --screenshot ").append(path);
+        arguments.append(" --skin classic --world ").append(world).append(" --screenshot ").append(path);
         arguments.append(" --at-tick ").append(std::to_string(tick));
         const Ran ran = run_evoview(arguments);
         ASSERT_EQ(ran.status, 0) << ran.output;
@@ -41,7 +41,7 @@ TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
 
 TEST(RealServer, KeysCommandTheWorld) {
     RealServer server{{"--seed", "7"}};
-    Process evoview{EVOVIEW, {"--server", server.address(), "--size", "800x500"}};
+    Process evoview{EVOVIEW, {"--server", server.address(), "--size", "800x500", "--skin", "classic"}};
     Person person;
     ASSERT_TRUE(person.finds_window());
     ASSERT_TRUE(person.sees(palette::organism));
@@ -81,8 +81,9 @@ TEST(RealServer, TheWindowOpensInTheMiddleOfTheScreen) {
 }
 
 TEST(RealServer, ShowsNoRunningStateWithoutAServer) {
+    const TemporaryFolder folder; // of the settings
     RealServer server{{"--seed", "7"}};
-    Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500"}};
+    Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500", "--skin", "classic"}};
     Person person;
     ASSERT_TRUE(person.finds_window());
     ASSERT_TRUE(person.sees(palette::organism));

@@ -21,8 +21,8 @@ struct RecordTest : testing::Test {
     std::string frames = folder.file("frames");
 
     Ran record(const std::string& path, const std::string& arguments) {
-        return run_evoview("--server " + server.address() + " --world one --size 640x400 --record " + path + " " +
-                           arguments);
+        return run_evoview("--server " + server.address() + " --world one --skin classic --size 640x400 --record " +
+                           path + " " + arguments);
     }
     evod::v1::WorldInfo state() { return server.state("one"); }
     void expect_frame(std::size_t number, std::uint64_t tick) { expect_frame(number, tick, at_tick(tick)); }
@@ -82,9 +82,9 @@ TEST_F(RecordTest, TwoWorldsAdvanceByTheSameTicks) {
     make_world(server, "one", 50);
     make_world(server, "other", 200, 8);
     // Large enough for the smallest item to be a pixel wide.
-    const Ran ran =
-        run_evoview("--server " + server.address() + " --world one --beside other --size 1280x720 --record " + frames +
-                    " --record-ticks 20 --every 10");
+    const Ran ran = run_evoview("--server " + server.address() +
+                                " --world one --skin classic --beside other --size 1280x720 --record " + frames +
+                                " --record-ticks 20 --every 10");
     ASSERT_EQ(ran.status, 0) << ran.output;
     EXPECT_EQ(frame_count(), 3);
     const auto halves = side_by_side({0, 0, 1280, 720}, 2);

@@ -24,8 +24,8 @@ TEST_F(ScreenshotTest, EveryPixelMatchesTheSnapshot) {
     const auto snapshot = known_snapshot();
     for (const auto& [size, width, height] : {std::tuple{"1280x720", 1280u, 720u}, {"641x479", 641u, 479u}}) {
         PlayingServer server{snapshot};
-        const Ran ran = run_evoview("--server " + server.address() + " --size " + size + " --screenshot " + path +
-                                    " --at-tick 36000 --timeout 600");
+        const Ran ran = run_evoview("--server " + server.address() + " --skin classic --size " + size +
+                                    " --screenshot " + path + " --at-tick 36000 --timeout 600");
         ASSERT_EQ(ran.status, 0) << ran.output;
         EXPECT_EQ(server.command_count(), 0u) << "a screenshot sends no command";
         sf::Image image;
@@ -44,7 +44,8 @@ TEST_F(ScreenshotTest, EveryPixelMatchesTheSnapshot) {
 TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
     const auto snapshot = known_snapshot();
     PlayingServer server{snapshot};
-    const Ran ran = run_evoview("--server " + server.address() + " --screenshot " + path + " --timeout 600");
+    const Ran ran =
+        run_evoview("--server " + server.address() + " --skin classic --screenshot " + path + " --timeout 600");
     ASSERT_EQ(ran.status, 0) << ran.output;
     sf::Image image;
     ASSERT_TRUE(image.loadFromFile(path));

@@ -30,6 +30,14 @@ TEST(PopulationCsv, IslandsAreReadInOrder) {
                 ElementsAre(ElementsAre(1, 2, 3, 4, 5, 6.5f, 7, 8, 9, 10, 11, 12), ElementsAre(10, -2, 3, 4, 5, 0.1f)));
 }
 
+TEST(PopulationCsv, AWrittenPopulationIsReadBackExactly) {
+    const std::vector<std::vector<float>> islands{{1, 2, 3, 4, 5, 6.5f, 0.1f, 1e-7f, -3.4e38f, 10, 11, 12},
+                                                  {1.0f / 3, -2, 3, 4, 5, 0}};
+    const std::string text = population_text(islands);
+    EXPECT_THAT(text, StartsWith(heading + "0,0,1,2,3,4,5,6.5\n0,1,0.1,1e-07,"));
+    EXPECT_EQ(read(text).value(), islands);
+}
+
 TEST(PopulationCsv, ErrorsNameTheLine) {
     const std::string good = heading + "0,0,1,2,3,4,5,6\n";
     EXPECT_THAT(wrong(""), StartsWith("line 1: got \"\", allowed the heading island,"));

@@ -38,12 +38,14 @@ class FakeSession {
     void send(const v1::ServerMessage& message) { write(codec::encode_frame(codec::Channel::Control, message)); }
     void send(const v1::SnapshotFrame& frame) { write(codec::encode_frame(codec::Channel::Stream, frame)); }
 
-    void welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED) {
+    void welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED,
+                 const std::vector<std::string>& features = {}) {
         EXPECT_TRUE(read().has_hello());
         v1::ServerMessage message;
         message.mutable_welcome()->set_protocol_version(1);
         message.mutable_welcome()->set_server_version("fake");
         message.mutable_welcome()->set_role(role);
+        message.mutable_welcome()->mutable_features()->Assign(features.begin(), features.end());
         message.mutable_welcome()->mutable_limits()->set_requests_in_flight_max(requests_in_flight_max);
         send(message);
     }

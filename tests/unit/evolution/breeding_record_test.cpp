@@ -53,6 +53,10 @@ std::array<float, gene_count> made_of(const BreedingRecord::Descendant& descenda
     for (unsigned gene = 0; gene < gene_count; ++gene) {
         mixed[gene] =
             (descendant.from_second >> gene & 1) != 0 ? descendant.second_genes[gene] : descendant.first_genes[gene];
+        if (descendant.second_share > 0) {
+            const double first = double{descendant.first_genes[gene]}, second = double{descendant.second_genes[gene]};
+            mixed[gene] = static_cast<float>(first + descendant.second_share * (second - first));
+        }
     }
     for (unsigned gene = 0; gene < gene_count; ++gene) {
         genes[gene] = mixed[descendant.order ? (*descendant.order)[gene] : gene];
@@ -175,6 +179,27 @@ TEST(BreedingRecord, ContainsTheClampedGenesOfTheElite) {
     }
 }
 
+TEST(BreedingRecord, ContainsTheWeightOfEachBlend) {
+    StageChoice choice;
+    choice.crossover = CrossoverMethod::Blend;
+    choice.crossover_chance = 0.7;
+    choice.mutation_chance = 0;
+    const BreedingRecord record = Case{choice, 300, 300, 885}.record();
+    std::uint32_t blended = 0, copied = 0;
+    for (std::uint32_t id = record.places.survivors; id + 1 < 300; id += 2) {
+        const auto &child = record.descendants[id], &sibling = record.descendants[id + 1];
+        ASSERT_EQ(child.crossed, child.second_share > 0);
+        ASSERT_LE(child.second_share, 0.5);
+        ASSERT_EQ(child.second_share, sibling.second_share);
+        ASSERT_EQ(child.from_second, 0u);
+        ASSERT_EQ(sibling.parents, (Parents{child.parents.second, child.parents.first}));
+        blended += child.crossed;
+        copied += !child.crossed;
+    }
+    EXPECT_GT(blended, 30u);
+    EXPECT_GT(copied, 5u);
+}
+
 RC_GTEST_PROP(BreedingRecord, OfSomeRowsEqualsThatPartOfTheWhole, ()) {
     const auto choices = stage_choices();
     const Parameters choice = *rc::gen::elementOf(choices);
@@ -206,6 +231,7 @@ RC_GTEST_PROP(BreedingRecord, OfSomeRowsEqualsThatPartOfTheWhole, ()) {
         RC_ASSERT(descendant.id == of_whole.id);
         RC_ASSERT(descendant.parents == of_whole.parents);
         RC_ASSERT(descendant.from_second == of_whole.from_second);
+        RC_ASSERT(descendant.second_share == of_whole.second_share);
         RC_ASSERT(descendant.crossed == of_whole.crossed);
         RC_ASSERT(descendant.order == of_whole.order);
         RC_ASSERT(descendant.changes == of_whole.changes);

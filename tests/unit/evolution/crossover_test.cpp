@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <set>
 
 namespace evod::evolution {
@@ -24,7 +25,9 @@ std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t dra
     std::vector<std::uint64_t> counts(64);
     for (std::uint32_t i = 0; i < draws; ++i) {
         base::RandomStream random = stream_of(seed, i);
-        ++counts.at(crossover.draw(random).value_or(0));
+        Mixture mixture;
+        crossover.draw(mixture, random);
+        ++counts.at(mixture.from_second);
     }
     return counts;
 }
@@ -106,6 +109,60 @@ RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
         RC_ASSERT(child[gene] == (from_second ? second : first)[gene]);
         RC_ASSERT(sibling[gene] == (from_second ? first : second)[gene]);
     }
+}
+
+TEST(Crossover, BlendDrawsAUniformWeight) {
+    // Law: with probability 0.8 uniform in (0, 1), otherwise no crossover. Chi-square over 100 cells and the pairs without
+    // crossover, 100 degrees of freedom.
+    const Crossover crossover{with(CrossoverMethod::Blend, 2, 0.8)};
+    std::vector<std::uint64_t> counts(101);
+    for (std::uint32_t i = 0; i < 500'000; ++i) {
+        base::RandomStream random = stream_of(188, i);
+        Mixture mixture;
+        if (!crossover.draw(mixture, random)) {
+            ++counts[100];
+            continue;
+        }
+        const double share = mixture.second_share;
+        ASSERT_GT(share, 0);
+        ASSERT_LT(share, 0.5);
+        ASSERT_TRUE(mixture.from_second == 0 || mixture.from_second == all_genes);
+        ++counts[static_cast<std::size_t>((mixture.from_second == 0 ? share : 1 - share) * 100)];
+    }
+    std::vector<double> law(101, 0.008);
+    law[100] = 0.2;
+    EXPECT_GT(p_value_of_law(counts, law), alpha);
+}
+
+RC_GTEST_PROP(Crossover, BlendedSiblingsHaveTheMeanOfTheirParents, ()) {
+    std::array<float, gene_count> first, second, child, sibling;
+    const auto draw = [] {
+        const auto size = static_cast<float>(*rc::gen::inRange(0, 1 << 24));
+        return std::ldexp(*rc::gen::arbitrary<bool>() ? size : -size, *rc::gen::inRange(-30, -8));
+    };
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
+        first[gene] = draw();
+        second[gene] = draw();
+    }
+    const double share = (*rc::gen::inRange(0u, 0x7fff'ffffu) + 0.5) * 0x1p-32;
+    blend(first, second, share, child);
+    blend(second, first, share, sibling);
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
+        const double a = double{first[gene]}, b = double{second[gene]};
+        const double one = double{child[gene]}, other = double{sibling[gene]};
+        const double largest = std::max(std::abs(a), std::abs(b));
+        RC_ASSERT(std::abs(one + other - (a + b)) <= 0x1p-23 * largest); // these sums are exact
+        RC_ASSERT(one >= std::min(a, b));
+        RC_ASSERT(one <= std::max(a, b));
+        RC_ASSERT(std::abs(one - (a + share * (b - a))) <= 0x1p-23 * largest);
+    }
+}
+
+TEST(Crossover, BlendingEqualParentsCopiesThem) {
+    const std::array<float, gene_count> parent = {20, 33.3f, 1e-3f, 99.99f, 0, 250};
+    std::array<float, gene_count> child{};
+    blend(parent, parent, 0.3, child);
+    EXPECT_EQ(child, parent);
 }
 
 } // namespace

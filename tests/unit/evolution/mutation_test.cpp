@@ -183,6 +183,66 @@ TEST(Reset, IsUniformWithinTheBoundsOfEachGene) {
     }
 }
 
+TEST(Scale, MultipliesOneGeneByAUniformFactor) {
+    // Law: with probability 0.6 one of the 6 genes, each equally likely, is multiplied by a factor uniform in (0.75, 1.25).
+    // Chi-square over 6 × 50 cells and the chromosomes without a change, 300 degrees of freedom; the factor of 1 itself has
+    // probability 1e-7.
+    Parameters parameters = still();
+    parameters.scale_chance = 0.6;
+    parameters.scale_range = 0.25;
+    constexpr Values start = {100, 200, 300, 400, 500, 600};
+    std::vector<std::uint64_t> counts(301);
+    mutants(parameters, start, 600'000, 210, [&](const Values& genes, unsigned clamped) {
+        ASSERT_EQ(clamped, 0u);
+        std::size_t cell = 300;
+        for (unsigned gene = 0; gene < gene_count; ++gene) {
+            if (genes[gene] == start[gene]) {
+                continue;
+            }
+            ASSERT_EQ(cell, 300u) << "one gene at most";
+            const double factor = double{genes[gene]} / double{start[gene]};
+            ASSERT_GE(factor, 0.75 - 1e-6);
+            ASSERT_LE(factor, 1.25 + 1e-6);
+            cell = gene * 50 + std::min<std::size_t>(49, static_cast<std::size_t>(std::max(factor - 0.75, 0.0) * 100));
+        }
+        ++counts[cell];
+    });
+    std::vector<double> law(301, 0.6 / 300);
+    law[300] = 0.4;
+    EXPECT_GT(p_value_of_law(counts, law), alpha);
+}
+
+TEST(Scale, FollowsCreepAndPrecedesTheBounds) {
+    Parameters parameters; // the bounds of the default world
+    parameters.mutation_chance = 1;
+    parameters.scale_chance = 1;
+    parameters.scale_range = 1;
+    const GeneBounds bounds = gene_bounds(parameters);
+    const ValueMutation mutation{parameters};
+    std::uint32_t clamped = 0;
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        Values genes = {100, 100, 100, 100, 100, 100}, same = genes;
+        base::RandomStream random = stream_of(211, i), again = random;
+        std::vector<GeneChange> changes;
+        const unsigned counted = mutation.apply(genes, random, changes);
+        ASSERT_EQ(mutation.apply(same, again), counted);
+        ASSERT_EQ(same, genes);
+        ASSERT_EQ(changes.size(), gene_count + 1 + counted);
+        const GeneChange& scaled = changes[gene_count];
+        ASSERT_EQ(scaled.kind, ChangeKind::Scale);
+        ASSERT_EQ(scaled.before, changes[scaled.gene].after) << "of the creep mutation";
+        ASSERT_GE(genes[scaled.gene], bounds.min[scaled.gene]);
+        ASSERT_LE(genes[scaled.gene], bounds.max[scaled.gene]);
+        for (std::size_t k = gene_count + 1; k < changes.size(); ++k) {
+            ASSERT_EQ(changes[k].kind, ChangeKind::Clamp);
+            ASSERT_EQ(changes[k].gene, scaled.gene) << "creep alone cannot leave the bounds";
+        }
+        clamped += counted;
+    }
+    EXPECT_GT(clamped, 200u);
+    EXPECT_LT(clamped, 800u); // factors below 0.2 to 0.4, and some above 2
+}
+
 TEST(BitFlip, EveryBitFlipsWithItsChanceIndependently) {
     // Law: p^k (1−p)^(3−k) for each of the 8 sets of flipped bits of a 3-bit gene, p = 0.2. Chi-square, 7 degrees of
     // freedom for each gene.

@@ -151,7 +151,7 @@ TEST(Price, EqualsTheWrittenEquationForEveryChoice) {
              {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal, SelectionMethod::Tournament,
               SelectionMethod::Random, SelectionMethod::Truncation}) {
             for (const auto crossover : {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint,
-                                         CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
+                                         CrossoverMethod::MultiPoint, CrossoverMethod::Blend, CrossoverMethod::None}) {
                 for (const bool mutation : {false, true}) {
                     for (const bool mutate_survivors : {false, true}) {
                         for (const bool migration : {false, true}) {
@@ -230,6 +230,14 @@ TEST(Price, SiblingsWithoutMutationDoNotChangeTheMean) {
             EXPECT_EQ(gene.change, gene.selection);
             EXPECT_NE(gene.selection, 0);
         }
+    }
+    // Blended siblings have the sum of their parents' genes except for rounding: at most 2^-23 of a gene per pair.
+    Case of{.parameters = {}, .wanted = 48};
+    of.parameters.crossover = CrossoverMethod::Blend;
+    of.parameters.mutation_chance = 0;
+    for (const GeneAccount& gene : breed(of).account) {
+        EXPECT_LE(std::abs(gene.transmission), 0x1p-23 * 250 * 12 / 48);
+        EXPECT_GT(std::abs(gene.selection), 0.001);
     }
 }
 

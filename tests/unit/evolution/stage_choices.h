@@ -92,6 +92,7 @@ inline std::vector<StageChoice> stage_choices() {
     add("elite_count=10", [](Parameters& parameters) { parameters.elite_count = 10; });
     add("survivors=0.001", [](Parameters& parameters) { parameters.survivors = 0.001; });
     choices.push_back(slowest_choices());
+    add("scale_chance=0.5", [](Parameters& parameters) { parameters.scale_chance = 0.5; });
     return choices;
 }
 

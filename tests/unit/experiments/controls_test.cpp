@@ -42,6 +42,16 @@ TEST(Controls, RandomSelectionIgnoresFitness) {
     EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=generational selection=random");
 }
 
+TEST(Controls, HarmlessPoisonDoesNotAffectFitness) {
+    Parameters world;
+    world.fitness_per_poison = -10;
+    EXPECT_EQ(changes(world, ControlKind::HarmlessPoison), "fitness_per_poison=0 poison_harm=0");
+    world.poison_harm = 0;
+    EXPECT_EQ(changes(world, ControlKind::HarmlessPoison), "fitness_per_poison=0");
+    world.fitness_per_poison = 0;
+    EXPECT_EQ(control_of(world, ControlKind::HarmlessPoison).cannot_differ, "poison_harm is already 0");
+}
+
 TEST(Controls, KeepTheScheduleOfOtherParameters) {
     parameters::Schedule schedule;
     schedule.add(30, {"mutation_chance", 0.05});
@@ -65,8 +75,9 @@ TEST(Controls, RemoveTheirParametersFromTheSchedule) {
     world.elite_count = 3;
     world.island_count = 2;
     world.migration = evolution::Topology::Ring;
-    world.reset_chance = world.bit_flip_chance = world.rearrange_chance = 0.1;
+    world.reset_chance = world.bit_flip_chance = world.scale_chance = world.rearrange_chance = 0.1;
     world.rearranging = evolution::OrderMutationMethod::Swap;
+    world.fitness_per_poison = -10;
     for (const ControlKind kind : all_controls) {
         const Control control = control_of(world, kind);
         for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
@@ -115,9 +126,10 @@ TEST(Controls, MutationOffTurnsOffAllMutationOperators) {
     Parameters world;
     world.reset_chance = 0.1;
     world.bit_flip_chance = 0.1;
+    world.scale_chance = 0.1;
     world.rearranging = evolution::OrderMutationMethod::Swap;
     EXPECT_EQ(changes(world, ControlKind::MutationOff),
-              "rearranging=none mutation_chance=0 reset_chance=0 bit_flip_chance=0");
+              "rearranging=none mutation_chance=0 reset_chance=0 scale_chance=0 bit_flip_chance=0");
 }
 
 TEST(Controls, SayWhyTheyCannotDiffer) {

@@ -26,10 +26,12 @@ TEST(BreedingMessage, IsConvertedCompletely) {
                                       .first_genes = genes,
                                       .second_genes = genes,
                                       .from_second = 3,
+                                      .second_share = 0.25,
                                       .crossed = true,
                                       .order = {{1, 0, 2, 3, 4, 5}},
                                       .changes = {{1, evolution::ChangeKind::Creep, 2, 3},
                                                   {1, evolution::ChangeKind::Reset, 2, 3},
+                                                  {1, evolution::ChangeKind::Scale, 2, 3},
                                                   {1, evolution::ChangeKind::BitFlip, 2, 3},
                                                   {1, evolution::ChangeKind::Clamp, 2, 3}},
                                       .genes = genes});
@@ -54,7 +56,7 @@ TEST(BreedingMessage, IsConvertedCompletely) {
     for (const auto& mutation : message.descendants(0).mutations()) {
         kinds.insert(mutation.kind());
     }
-    EXPECT_EQ(kinds.size(), 4u);
+    EXPECT_EQ(kinds.size(), 5u);
     EXPECT_FALSE(kinds.contains(v1::MUTATION_KIND_UNSPECIFIED));
     std::set<std::string> parameter_names;
     for (const auto& assignment : message.parameters()) {

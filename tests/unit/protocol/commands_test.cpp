@@ -82,7 +82,7 @@ TEST(Requests, RefuseNanAndInfinityInEveryNumber) {
             poison_doubles(request, part, poison, poisoned);
         }
     }
-    EXPECT_EQ(poisoned, 3 * 13); // two lists of parameters, a schedule, a speed, a rate, two regions
+    EXPECT_EQ(poisoned, 3 * 17); // two lists of parameters, a schedule, a speed, a rate, two regions, two positions
 }
 
 TEST(Requests, NameAllFaultsAtOnce) {

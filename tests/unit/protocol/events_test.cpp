@@ -70,6 +70,12 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
         ASSERT_TRUE(event);
         cases.insert(event->kind_case());
     }
+    const simulation::EntityIds ids{.island = 1, .generation = 2, .food = {3}, .poison = {4}, .organisms = {5}};
+    const simulation::Applied changed{.world = "w", .tick = 3, .parameters = {}, .placed = ids, .removed = ids};
+    for (const simulation::Command& command : {simulation::Command{simulation::PlaceEntities{.world = "w"}},
+                                               simulation::Command{simulation::RemoveEntities{.world = "w"}}}) {
+        cases.insert(event_of(command, changed, by, laboratory)->kind_case());
+    }
     cases.insert(event_of(simulation::Storage{}).kind_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
     // All but the two events that the network itself creates.

@@ -48,6 +48,36 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
     EXPECT_EQ(row_bytes_max(request), 0u);
 }
 
+TEST_F(Queries, OfAHistoryListTheChangesOfParameters) {
+    const std::vector<parameters::Assignment> assignments{{"mutation_chance", 0.5}, {"food_count", 7u}};
+    ASSERT_TRUE(
+        laboratory.apply(simulation::SetParameters{"w", assignments, false, {}, {}, "alice: evoctl 127.0.0.1:5"}));
+    v1::Request request;
+    request.mutable_get_history();
+    const v1::History history = answer(request).history();
+    ASSERT_EQ(history.changes_size(), 1);
+    const v1::AppliedChange& change = history.changes(0);
+    EXPECT_EQ(change.by().user(), "alice");
+    EXPECT_EQ(change.by().client(), "evoctl");
+    ASSERT_EQ(change.values_size(), 2);
+    EXPECT_EQ(change.values(0).name(), "food_count");
+    EXPECT_EQ(change.values(0).after().count(), 7u);
+    EXPECT_EQ(change.values(1).after().real(), 0.5);
+
+    v1::Response response;
+    add_rows(answer_query(request, laboratory, true, response), response);
+    EXPECT_EQ(response.history().changes(0).by().user(), "alice");
+    EXPECT_EQ(response.history().changes(0).by().client(), "") << "a viewer sees only the user";
+
+    request.mutable_get_history()->set_first_generation(change.generation() + 1);
+    EXPECT_EQ(answer(request).history().changes_size(), 0);
+    request.mutable_get_history()->set_first_generation(change.generation());
+    EXPECT_EQ(answer(request).history().changes_size(), 1);
+    request.mutable_get_history()->clear_first_generation();
+    request.mutable_get_history()->set_last_generation(change.generation() - 1);
+    EXPECT_EQ(answer(request).history().changes_size(), 0);
+}
+
 TEST_F(Queries, ThatFailNameTheirField) {
     v1::Request request;
     request.mutable_get_organism()->set_island(9);

@@ -46,6 +46,10 @@ TEST_F(RerunTest, AWorldContinuesExactly) {
         if (round % 2 == 1) {
             run.command(set_parameter("shuffle_fitness", true));
         }
+        if (round % 3 == 0) { // eaten items become part of the state in the next generation
+            run.command(set_parameter("fitness_per_food", 5.0));
+            run.command(set_parameter("fitness_per_poison", -7.5));
+        }
         run.advance(random() % 200);
         run.command(set_parameter("food_health", 3.0));
         run.command(set_parameter("population_size", 17u)); // from the next generation on

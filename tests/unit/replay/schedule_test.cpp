@@ -2,6 +2,7 @@
 
 #include "server/parameters/experiment.h"
 #include "server/replay/fork.h"
+#include "server/replay/past_changes.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
@@ -74,6 +75,8 @@ TEST_F(StoredScheduleTest, ItContinuesAfterAKillAtAnyMoment) {
             ASSERT_EQ(again.hash(), run.world().hash());
         }
         EXPECT_TRUE(again.parameters().active == run.world().parameters().active) << ticks;
+        EXPECT_EQ(again.changes().all(), run.world().changes().all()) << ticks;
+        EXPECT_GT(again.changes().all().size(), 1u);
         expect_agrees(*file);
     }
 }
@@ -234,6 +237,7 @@ TEST_F(StoredScheduleTest, PlannedChangesSurviveAKillAtAnyMoment) {
             EXPECT_EQ(again.planned()[i].assignments, run.world().planned()[i].assignments);
             EXPECT_EQ(again.planned()[i].by, "alice") << "with the name of its client";
         }
+        EXPECT_EQ(again.changes().all(), run.world().changes().all()) << ticks;
         EXPECT_EQ(again.plan({.id = 0, .at = {.generation = 99, .tick = {}}, .assignments = {}, .by = {}}), 6u);
         while (again.moment().tick < 600) {
             again.advance_tick(three_threads);
@@ -249,12 +253,14 @@ TEST_F(StoredScheduleTest, PlannedChangesSurviveAKillAtAnyMoment) {
         EXPECT_EQ(held.food_count, 40u);
         EXPECT_EQ(held.impulse_min, 20);
         EXPECT_EQ(held.respawn_s, 2);
+        EXPECT_EQ(again.changes().all(), run.world().changes().all()) << ticks;
         expect_agrees(*file);
     }
 }
 
 TEST_F(StoredScheduleTest, EveryMomentWithPlannedChangesIsReproduced) {
     std::vector<base::StateHash> hashes;
+    std::deque<simulation::Change> changes;
     {
         RecordedRun run{data, *thread};
         for (std::uint64_t tick = 0; tick <= 600; ++tick) {
@@ -273,6 +279,8 @@ TEST_F(StoredScheduleTest, EveryMomentWithPlannedChangesIsReproduced) {
             }
             run.advance(1);
         }
+        changes = run.world().changes().all();
+        EXPECT_EQ(changes.size(), 3u);
     }
     const auto file = file_left();
     expect_agrees(*file);
@@ -281,12 +289,15 @@ TEST_F(StoredScheduleTest, EveryMomentWithPlannedChangesIsReproduced) {
         ASSERT_TRUE(rerun) << to_text(rerun.error());
         rerun->advance_to(600, executor);
         EXPECT_EQ(rerun->world().hash(), hashes[600]) << generation;
+        EXPECT_EQ(rerun->world().changes().all(), changes) << generation;
     }
     auto rerun = Rerun::before(*file, 310, executor);
     ASSERT_TRUE(rerun) << to_text(rerun.error());
     EXPECT_EQ(rerun->world().moment().tick, 300u);
     EXPECT_EQ(rerun->world().planned().size(), 2u);
+    EXPECT_EQ(rerun->world().changes().all().size(), 1u) << "the change for generation 3";
     rerun->advance_to(600, executor);
+    EXPECT_EQ(rerun->world().changes().all(), changes);
     EXPECT_EQ(rerun->world().hash(), hashes[600]);
 
     // A fork has no planned changes of its origin.
@@ -296,6 +307,7 @@ TEST_F(StoredScheduleTest, EveryMomentWithPlannedChangesIsReproduced) {
     auto recovered = recover(**forked, executor);
     ASSERT_TRUE(recovered) << to_text(recovered.error());
     EXPECT_TRUE(recovered->world.planned().empty());
+    EXPECT_TRUE(recovered->world.changes().all().empty());
     while (recovered->world.moment().tick < 600) {
         recovered->world.advance_tick(executor);
     }

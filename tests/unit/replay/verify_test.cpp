@@ -146,6 +146,31 @@ TEST_F(VerifyTest, ARunWhoseFitnessWasShuffledForAWhileAgrees) {
     EXPECT_NE(parents[0], parents[1]);
 }
 
+TEST_F(VerifyTest, ARunWhoseFitnessWeightsChangeAgrees) {
+    {
+        StorageThread thread{{}};
+        RecordedRun run{data, thread};
+        run.advance(70);
+        run.command(set_parameter("fitness_per_food", 10.0)); // in generations 2 and 3
+        run.command(set_parameter("fitness_per_second", 0.0));
+        run.advance(230);
+        run.command(set_parameter("fitness_per_food", 0.0));
+        run.command(set_parameter("fitness_per_poison", -3.0));
+        run.advance(240);
+        run.recorder().close_all(run.laboratory());
+    }
+    for (base::Executor* executor : std::initializer_list<base::Executor*>{&one_thread, &many}) {
+        const auto result = verified(*executor);
+        ASSERT_TRUE(result) << to_text(result.error());
+        EXPECT_FALSE(result->difference) << result->difference->part;
+        EXPECT_EQ(result->ticks, 540u);
+    }
+    auto ended = **file()->generations().outcome_of(3);
+    ended.outcomes[0].fitness[3] += 10; // one more meal
+    write(ended);
+    expect_difference(3, 360, "the fitness of organism 3 on island 0", 360);
+}
+
 TEST_F(VerifyTest, ARunAgreesAfterAKillAtAnyMoment) {
     for (const std::uint64_t ticks : {0, 1, 59, 60, 119, 120, 121, 180, 239, 240, 241, 299, 300, 301}) {
         record(ticks);

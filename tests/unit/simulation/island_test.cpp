@@ -171,17 +171,84 @@ TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
     EXPECT_LE(island.food().present_count(), left);
 }
 
+/// Chromosomes of a crowded island on which organisms of both kinds of items eat and some die.
+std::vector<evolution::Chromosome> hungry() {
+    std::vector<evolution::Chromosome> chromosomes;
+    for (int i = 0; i < 30; ++i) {
+        chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
+    }
+    return chromosomes;
+}
+
+TEST_F(SmallIsland, FitnessIsTheWeightedSum) {
+    parameters.island_width_px = parameters.island_height_px = 600;
+    parameters.food_count = parameters.poison_count = 40;
+    begin(hungry());
+    while (island.alive_count() > 20) {
+        tick();
+    }
+    const auto sum = [&](std::uint32_t id, double second, double of_health, double food, double poison) {
+        const bool lives = island.body_of(id).has_value();
+        const double seconds = (lives ? now : island.fate().lived_ticks[id]) * parameters.tick_s;
+        return second * seconds + of_health * (lives ? static_cast<double>(health(id)) : 0) +
+               food * island.fate().food_eaten[id] + poison * island.fate().poison_eaten[id];
+    };
+    const std::vector<double> by_default = fitness();
+    parameters.fitness_per_second = 0.5;
+    parameters.fitness_per_health = -2;
+    parameters.fitness_per_food = 10;
+    parameters.fitness_per_poison = -3.25;
+    const std::vector<double> weighted = fitness();
+    std::uint32_t food = 0, poison = 0;
+    for (std::uint32_t id = 0; id < 30; ++id) {
+        EXPECT_EQ(by_default[id], sum(id, 1, 1, 0, 0));
+        EXPECT_EQ(weighted[id], sum(id, 0.5, -2, 10, -3.25));
+        food += island.fate().food_eaten[id];
+        poison += island.fate().poison_eaten[id];
+    }
+    EXPECT_GT(food, 0u);
+    EXPECT_GT(poison, 0u);
+}
+
+TEST_F(SmallIsland, HashCoversEatenItemsThatHaveAWeight) {
+    parameters.island_width_px = parameters.island_height_px = 600;
+    parameters.food_count = parameters.poison_count = 40;
+    const auto play = [&](double per_food, double per_poison) {
+        parameters.fitness_per_food = per_food;
+        parameters.fitness_per_poison = per_poison;
+        now = 0;
+        begin(hungry());
+        while (island.counts().food_eaten < 3 || island.counts().poison_eaten < 3) {
+            tick();
+        }
+        base::StateHash of_eaten;
+        for (std::uint32_t id = 0; id < 30; ++id) {
+            const std::uint32_t food = per_food != 0 ? island.fate().food_eaten[id] : 0;
+            const std::uint32_t poison = per_poison != 0 ? island.fate().poison_eaten[id] : 0;
+            if (food + poison > 0) {
+                of_eaten += base::EntityHash{6, id}.add(food, poison).finish();
+            }
+        }
+        base::StateHash rest = island.hash();
+        rest -= of_eaten;
+        return std::pair{rest, of_eaten};
+    };
+    const auto [plain, nothing] = play(0, 0);
+    EXPECT_EQ(nothing, base::StateHash{});
+    for (const auto& [food, poison] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {2.0, -3.0}}) {
+        const auto [rest, of_eaten] = play(food, poison);
+        EXPECT_EQ(rest, plain) << "the weights change nothing else in a generation";
+        EXPECT_NE(of_eaten, base::StateHash{});
+    }
+}
+
 TEST_F(SmallIsland, HashCoversEverything) {
     parameters.island_width_px = parameters.island_height_px = 600;
     parameters.food_count = parameters.poison_count = 40;
     parameters.crate_count = 3;
     parameters.obstacle_count = 2;
     parameters.respawn_s = 0.3;
-    std::vector<evolution::Chromosome> chromosomes;
-    for (int i = 0; i < 30; ++i) {
-        chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
-    }
-    begin(chromosomes);
+    begin(hungry());
     const auto recomputed = [&] {
         base::StateHash sum;
         for (std::uint32_t id = 0; id < 30; ++id) {

@@ -171,6 +171,19 @@ TEST_F(OneWorld, KeepsItsLeaseWhenAnEarlierOneEnds) {
     EXPECT_FALSE(entry().control.leased);
 }
 
+TEST_F(OneWorld, AnOldLeaseDoesNotEndANewOneAfterAReset) {
+    const auto grant = [&] {
+        EXPECT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+        EXPECT_TRUE(laboratory.apply(RunUntilTick{"w", 3}).has_value());
+        return entry().control.lease;
+    };
+    const std::uint64_t first = grant();
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
+    EXPECT_NE(grant(), first);
+    EXPECT_FALSE(laboratory.apply(ReleaseLease{"w", first}).has_value());
+    EXPECT_TRUE(entry().control.leased);
+}
+
 TEST_F(OneWorld, LosesItsLeaseWhenRunControlChanges) {
     for (const Command& command : {Command{simulation::Run{"w", {}}}, Command{Pause{"w"}}, Command{Resume{"w"}},
                                    Command{ResetWorld{.world = "w", .seed = {}, .run_id = {}}}}) {

@@ -46,6 +46,10 @@ std::vector<parameters::Parameters> varied_worlds() {
               {"island_width_px", 8000.0},
               {"food_count", 900u},
               {"generation_s", 3.0}}),
+        with({{"fitness_per_second", 0.0},
+              {"fitness_per_food", 10.0},
+              {"fitness_per_poison", -5.0},
+              {"respawn_s", 1.0}}),
         with({{"fitness", std::string{"rastrigin"}}, {"island_count", 2u}}),
     };
 }
@@ -194,7 +198,7 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 1e12f; }},
         {"lived_ticks", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
         {"death", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
-        {"death", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(3); }},
+        {"death", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(4); }},
         {"death", [&](WorldState& s) { s.islands[0].organisms[gone].health = 1; }},
         {"dead", [&](WorldState& s) { s.islands[0].fate.cause[gone] = CauseOfDeath::Starved; }},
         {"food", [](WorldState& s) { s.islands[0].food.pop_back(); }},
@@ -202,7 +206,9 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
         {"food", [](WorldState& s) { s.islands[0].food[3].x = s.islands[0].food[3].y = 0; }},
         {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 200; }},
         {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 321; }},
-        {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = Items::none; }},
+        {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = Items::none - 1; }},
+        {"food", [](WorldState& s) { s.islands[0].placed_food = 1; }},
+        {"number of organisms", [](WorldState& s) { s.islands[0].placed.resize(1); }},
     };
     for (const auto& [what, spoil] : wrongs) {
         WorldState state = sound;

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import weakref
-from typing import Any, Mapping, Sequence, TypeVar
+from typing import Any, Iterable, Mapping, Sequence, TypeVar
 
 import numpy.typing
 
@@ -20,7 +20,7 @@ from evod.experiment import Experiment
 from evod.genes import GENE_NAMES
 from evod.generations import Generation, History, Population
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.results import Breeding, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
+from evod.results import Breeding, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
 from evod.snapshots import Snapshot
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
@@ -437,6 +437,91 @@ class World(ParameterAttributes):
             The server has already applied, dropped or cancelled the change.
         """
         return await self._link.perform(self._plans.cancel_change(self.name, change))
+
+    # ---- items and organisms --------------------------------------------------------------------------------------
+
+    async def place(
+        self,
+        *,
+        food: numpy.typing.ArrayLike = (),
+        poison: numpy.typing.ArrayLike = (),
+        organisms: Iterable[tuple[float, float, object]] = (),
+        island: int = 0,
+    ) -> EntityIds:
+        """Places food, poison and organisms in the current generation. If one of them is refused, places nothing.
+
+        Placed items exist until they are eaten or removed, or until the generation ends; they do not reappear. Placed
+        organisms breed like the others. The next generation has ``population_size`` organisms again.
+
+        Parameters
+        ----------
+        food, poison
+            The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside the
+            walls and clear of crates and obstacles.
+        organisms
+            Triples (x, y, genes). `genes` are 6 numbers in the order of `evod.GENE_NAMES`, or numbers by gene name. The
+            place must also be clear of other organisms.
+        island
+            The index of the island.
+
+        Returns
+        -------
+        EntityIds
+            The ids of the placed items and organisms.
+
+        Raises
+        ------
+        InvalidArgument
+            `violations` lists every position and gene that is not allowed: ``food[2]``, ``organisms[0].body_size``.
+        FailedPrecondition
+            The generation is over, the world is a replay, or its fitness depends only on the chromosome.
+
+        Examples
+        --------
+        >>> import evod.aio
+        >>> async with evod.aio.local(seed=1) as lab:
+        ...     world = await lab.world()
+        ...     placed = await world.place(food=[(30, 40), (50.5, 40)])
+        ...     removed = await world.remove(food=placed.food, generation=placed.generation)
+        >>> removed.food == placed.food
+        True
+        """
+        return await self._link.perform(self._plans.place(self.name, island, food, poison, organisms))
+
+    async def remove(
+        self,
+        *,
+        food: Iterable[int] = (),
+        poison: Iterable[int] = (),
+        organisms: Iterable[int] = (),
+        island: int = 0,
+        generation: int | None = None,
+    ) -> EntityIds:
+        """Removes items and organisms from the current generation. If one id is refused, removes nothing.
+
+        A removed item does not reappear in this generation. A removed organism is dead; its fitness is the time that it
+        lived.
+
+        Parameters
+        ----------
+        food, poison, organisms
+            Ids of present items and of living organisms, as in `Snapshot` and `EntityIds`.
+        island
+            The index of the island.
+        generation
+            The generation to which the ids belong. By default the current generation.
+
+        Raises
+        ------
+        InvalidArgument
+            `violations` lists every id that is not present.
+        Aborted
+            `generation` is not the current generation.
+        FailedPrecondition
+            As for `place`.
+        """
+        plan = self._plans.remove(self.name, island, generation, food, poison, organisms)
+        return await self._link.perform(plan)
 
     # ---- running --------------------------------------------------------------------------------------------------
 

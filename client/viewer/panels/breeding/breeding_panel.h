@@ -6,6 +6,7 @@
 // Threads      none; used on the drawing thread.
 #pragma once
 
+#include "client/viewer/panels/breeding/bets.h"
 #include "client/viewer/panels/breeding/breeding_record.h"
 #include "client/viewer/panels/breeding/comparison.h"
 #include "client/viewer/panels/breeding/generation_hold.h"
@@ -20,9 +21,11 @@ namespace evod::viewer {
 
 class BreedingPanel : public Panel {
   public:
-    std::string_view title() const override { return "Glass box"; }
+    static constexpr std::string_view name = "Glass box";
+    std::string_view title() const override { return name; }
     Size first_size() const override { return {900, 620}; }
     float width_min() const override { return 640; }
+    float height_min() const override { return 520; }
     std::span<const Key> keys() const override;
     bool takes_keys() const override { return shown_.has_value(); }
     void build(Context& context) override;
@@ -36,10 +39,21 @@ class BreedingPanel : public Panel {
     void show_next();
     void hold_world(ViewedWorld& world);
 
+    /// Steps to the first pick of the sought organism as soon as this pick has been received.
+    void seek_pick();
+    /// Returns the number of picks made until the moment shown.
+    std::uint32_t picks_made() const;
+    bool picks_complete() const;
+
     void build_generation(const Context& context);
+    void build_options(const Context& context);
     void build_transport(const Gui& gui);
     void take_keys();
     void build_stage(const Context& context);
+    void build_first_step(const Gui& gui);
+    void build_bets(const Gui& gui);
+    void build_score();
+    void build_picking(const Gui& gui, std::uint32_t index);
     void build_theory(const Gui& gui);
 
     std::optional<BreedingRecord> shown_, next_; // next_ replaces shown_ when the first page of next_ has arrived
@@ -48,10 +62,19 @@ class BreedingPanel : public Panel {
     std::string error_; // why no further data can be shown
     Poll poll_;
 
-    std::uint64_t newest_ = 0; // the last generation that has bred; 0: none yet
+    std::uint64_t newest_ = 0; // the generation before the shown one; 0: none yet
+    std::uint64_t last_ = 0;   // the last generation that has bred; in a replay, it may be later than the shown one
     std::uint64_t chosen_ = 0;
     bool follow_ = true, play_each_ = false;
     Time next_change_{}; // earliest time to show a newer generation
+
+    std::optional<std::uint32_t> sought_; // show the first pick of this organism; nullopt: no request
+
+    bool betting_ = false;     // the user bets before the first pick
+    bool bets_closed_ = false; // a pick of this breeding has been shown
+    Bets bets_;
+    bool field_active_ = false; // a field was in use in the last frame
+    bool theory_shown_ = false; // in a narrow panel: show the theory in place of the step
 
     GenerationHold hold_;
 };

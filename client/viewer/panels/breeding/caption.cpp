@@ -27,33 +27,14 @@ std::string organism_text(const BreedingRecord& record, std::uint32_t organism) 
         return print("organism %u", organism);
     }
     std::string text =
-        print("organism %u (rank %u, fitness %.4g", organism, contender->rank() + 1, contender->fitness());
+        print("organism %u (rank %u, fitness ", organism, contender->rank() + 1) + three_digits(contender->fitness());
     if (contender->has_own_fitness()) {
-        text += print(" assigned by shuffling, own fitness %.4g", contender->own_fitness());
+        text += " assigned by shuffling, own fitness " + three_digits(contender->own_fitness());
     }
     if (contender->has_migrant()) {
         text += print(", migrated from island %u", contender->migrant().island());
     }
     return text + ")";
-}
-
-std::string scaling_caption(const BreedingRecord& record) {
-    const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
-    if (method == "tournament") {
-        return print("Fitness by rank. Each tournament draws %g contestants at random; the fittest contestants win.",
-                     record.number("tournament_size").value_or(0));
-    }
-    if (method == "random") {
-        return "Fitness by rank. Uniform random selection ignores the fitness.";
-    }
-    if (method == "truncation") {
-        return "Fitness by rank. Truncation picks the best in order, repeatedly.";
-    }
-    if (scaling == "none") {
-        return "Fitness by rank, not scaled: the slots of the wheel are proportional to the fitness.";
-    }
-    return "Fitness by rank, and its weight after " + shown_choice(scaling) +
-           ": the slots of the wheel are proportional to the weight.";
 }
 
 std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
@@ -65,11 +46,12 @@ std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
     }
     const std::string winner = organism_text(record, pick->organism());
     if (pick->has_turns()) {
-        text += print("The pointer stopped at %.4f turns, in the slot of ", pick->turns()) + winner;
+        text += "The pointer stopped in the slot of " + winner;
         const evod::v1::Contender* contender = record.contender(pick->organism());
         return text + (contender == nullptr
                            ? "."
-                           : print(", %.2f %% of the wheel.", 100 * (contender->slot_end() - contender->slot_begin())));
+                           : ", " + three_digits(100 * (contender->slot_end() - contender->slot_begin())) +
+                                 " % of the wheel.");
     }
     if (pick->has_tournament()) {
         text += "Tournament " + with_separators(std::uint64_t{pick->tournament()} + 1);
@@ -101,7 +83,10 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
         text += "a child of organisms " + std::to_string(descendant->first_parent()) + " and " +
                 std::to_string(descendant->second_parent()) +
                 (descendant->first_parent() == descendant->second_parent() ? ", the same organism twice" : "") +
-                (descendant->crossed() ? "" : ", not crossed");
+                (descendant->second_share() > 0 ? print(", blended with weights %.3f and %.3f",
+                                                        1 - descendant->second_share(), descendant->second_share())
+                 : descendant->crossed()        ? ""
+                                                : ", not crossed");
         const auto mutated = std::ranges::count_if(descendant->mutations(), [](const evod::v1::Mutation& mutation) {
             return mutation.kind() != evod::v1::MUTATION_KIND_CLAMP;
         });
@@ -120,6 +105,35 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
 std::string shown_choice(std::string choice) {
     std::ranges::replace(choice, '_', ' ');
     return choice;
+}
+
+std::string selection_law_text(const BreedingRecord& record) {
+    const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
+    if (method == "tournament") {
+        const double size = record.number("tournament_size").value_or(0),
+                     winners = record.number("tournament_winners").value_or(1);
+        return "Tournament: " + three_digits(size) + " organisms are drawn at random, and the fittest " +
+               (winners > 1 ? three_digits(winners) + " of them are picked." : "of them is picked.") +
+               " Larger tournaments favour the fittest more.";
+    }
+    if (method == "random") {
+        return "Random: every organism has the same chance in every pick. Fitness does not matter.";
+    }
+    if (method == "truncation") {
+        return "Truncation: the best organisms are picked in order of rank, then again from the first, until all picks "
+               "are made. There is no luck.";
+    }
+    const std::string law =
+        method == "stochastic_universal"
+            ? "Universal sampling: one spin sets all pointers at equal distances, so each organism is picked its "
+              "expected number of times, rounded up or down."
+            : "Roulette wheel: the wheel is spun for each pick. An organism with twice the weight is picked twice as "
+              "often on average.";
+    const bool any_negative = std::ranges::any_of(
+        record.breeding().contenders(), [](const evod::v1::Contender& contender) { return contender.fitness() < 0; });
+    return law + (scaling == "none" && !any_negative            ? " The weight is the fitness."
+                  : scaling == "none" || scaling == "windowing" ? " The weight is the fitness minus the lowest fitness."
+                                                                : " The weight depends on the rank alone.");
 }
 
 std::string breeding_summary(const BreedingRecord& record) {
@@ -154,7 +168,7 @@ std::string caption(const BreedingRecord& record, Moment moment) {
     }
     switch (moment.stage) {
     case BreedingStage::Scaling:
-        return scaling_caption(record);
+        return selection_law_text(record);
     case BreedingStage::Picking:
         return picking_caption(record, moment.index);
     case BreedingStage::Breeding:
@@ -162,7 +176,10 @@ std::string caption(const BreedingRecord& record, Moment moment) {
     case BreedingStage::Done:
         break;
     }
-    return "The next generation. Bars: how often each rank was picked; lines: the expected number of picks.";
+    const evod::v1::Breeding& breeding = record.breeding();
+    return "The next generation: " + counted(breeding.survivor_count(), "survivor", "survivors") + " and " +
+           counted(breeding.descendant_count() - breeding.survivor_count(), "child", "children") +
+           ". A dot marks each organism that was picked.";
 }
 
 } // namespace evod::viewer

@@ -15,6 +15,15 @@ Colour parent_colour(bool second) {
     return second ? palette::second_parent : palette::first_parent;
 }
 
+/// Returns the colour of a gene: that of its parent, or between the colours of both parents if it was blended.
+Colour gene_colour(const GeneOrigin& gene) {
+    const Colour first = parent_colour(false), second = parent_colour(true);
+    const auto middle = [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>((a + b) / 2); };
+    return gene.blended ? Colour{middle(first.red, second.red), middle(first.green, second.green),
+                                 middle(first.blue, second.blue)}
+                        : parent_colour(gene.from_second);
+}
+
 /// Draws a family from top to bottom. Each part begins at the lower edge of the part above it.
 class FamilyDrawing {
   public:
@@ -74,7 +83,7 @@ void FamilyDrawing::draw_parent(bool second, const char* role) {
     const auto& genes = second ? descendant_.second_genes() : descendant_.first_genes();
     draw_label(print("%s %u", role, second ? descendant_.second_parent() : descendant_.first_parent()));
     for (std::size_t gene = 0; gene < count_; ++gene) {
-        const bool given = family_.crossed[gene].from_second == second;
+        const bool given = family_.crossed[gene].blended || family_.crossed[gene].from_second == second;
         draw_gene(gene, faint(parent_colour(second), given ? 255 : 110), genes.Get(static_cast<int>(gene)));
     }
     y_ += bar_ + 4;
@@ -93,7 +102,7 @@ void FamilyDrawing::draw_parents() {
     y_ += 6;
     draw_label("crossed");
     for (std::size_t gene = 0; gene < count_; ++gene) {
-        draw_gene(gene, parent_colour(family_.crossed[gene].from_second), family_.crossed[gene].value);
+        draw_gene(gene, gene_colour(family_.crossed[gene]), family_.crossed[gene].value);
     }
     y_ += bar_;
     for (const std::uint32_t cut : family_.cuts) {
@@ -119,7 +128,7 @@ void FamilyDrawing::draw_order_mutation() {
     }
     y_ = to_y + 2;
     for (std::size_t gene = 0; gene < count_; ++gene) {
-        draw_gene(gene, parent_colour(family_.arranged[gene].from_second), family_.arranged[gene].value);
+        draw_gene(gene, gene_colour(family_.arranged[gene]), family_.arranged[gene].value);
     }
     y_ += bar_ + 4;
 }
@@ -166,7 +175,7 @@ void FamilyDrawing::draw_organism() {
         const float value = gene < static_cast<std::size_t>(descendant_.genes_size())
                                 ? descendant_.genes(static_cast<int>(gene))
                                 : family_.genes[gene];
-        draw_gene(gene, parent_colour(family_.arranged[gene].from_second), value);
+        draw_gene(gene, gene_colour(family_.arranged[gene]), value);
         if (changed[gene]) {
             sheet_.list.AddRect({left_of(gene) - 1, y_ - 1}, {left_of(gene) + cell_ - 1, y_ + bar_ + 1},
                                 ink(palette::glass_mutated), 0, 0, 3);

@@ -18,8 +18,14 @@ Family family_of(const evod::v1::Descendant& descendant) {
     }
     const auto from_second = [&](int gene) { return (descendant.from_second() >> gene & 1) != 0; };
     for (int gene = 0; gene < count; ++gene) {
+        if (!alone && descendant.second_share() > 0) {
+            const double first = double{descendant.first_genes(gene)}, second = double{descendant.second_genes(gene)};
+            family.crossed.push_back({static_cast<float>(first + descendant.second_share() * (second - first)), false,
+                                      true, static_cast<std::uint32_t>(gene)});
+            continue;
+        }
         const bool second = from_second(gene);
-        family.crossed.push_back({second ? descendant.second_genes(gene) : descendant.first_genes(gene), second,
+        family.crossed.push_back({second ? descendant.second_genes(gene) : descendant.first_genes(gene), second, false,
                                   static_cast<std::uint32_t>(gene)});
         if (gene > 0 && second != from_second(gene - 1)) {
             family.cuts.push_back(static_cast<std::uint32_t>(gene));
@@ -55,6 +61,8 @@ const char* shown_mutation(evod::v1::MutationKind kind) {
         return "creep";
     case evod::v1::MUTATION_KIND_RESET:
         return "reset";
+    case evod::v1::MUTATION_KIND_SCALE:
+        return "scale";
     case evod::v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case evod::v1::MUTATION_KIND_CLAMP:

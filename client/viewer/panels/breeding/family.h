@@ -15,7 +15,8 @@ namespace evod::viewer {
 
 struct GeneOrigin {
     float value = 0;
-    bool from_second = false; // false: from the first parent
+    bool from_second = false; // false: from the first parent, or blended from both parents
+    bool blended = false;     // a weighted mean of the genes of both parents
     std::uint32_t gene = 0;   // index of the gene in that parent
 };
 
@@ -45,7 +46,7 @@ struct Family {
 /// Computes the family of a descendant. Returns a family without genes if the lists in `descendant` are malformed.
 Family family_of(const evod::v1::Descendant& descendant);
 
-/// Returns the kind as text: "creep", "reset", "bit flip", "clamped".
+/// Returns the kind as text: "creep", "reset", "scale", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);
 /// Returns a difference as text, with its sign and four significant digits: "+7.31", "−0.4".
 std::string shown_delta(double delta);

@@ -14,13 +14,17 @@ namespace evod::viewer {
 
 namespace {
 
-std::string tooltip_of(std::uint32_t organism, const evod::v1::Contender& contender) {
-    std::string text = print("organism %u\nrank %u, fitness %.5g", organism, contender.rank() + 1, contender.fitness());
+std::string tooltip_of(std::uint32_t organism, const evod::v1::Contender& contender, bool complete) {
+    std::string text =
+        print("organism %u\nrank %u, fitness ", organism, contender.rank() + 1) + three_digits(contender.fitness());
     if (contender.slot_end() > contender.slot_begin()) {
-        text += print("\nweight %.5g: %.3g %% of the wheel", contender.weight(),
-                      100 * (contender.slot_end() - contender.slot_begin()));
+        text += "\nweight " + three_digits(contender.weight()) + ": " +
+                three_digits(100 * (contender.slot_end() - contender.slot_begin())) + " % of the wheel";
     }
-    text += print("\nexpected copies %.3g, observed %u", contender.expected_copies(), contender.copies());
+    text += "\nexpected picks " + three_digits(contender.expected_copies());
+    if (complete) {
+        text += print(", observed %u", contender.copies());
+    }
     if (contender.has_migrant()) {
         text += print("\ncame from island %u, organism %u there", contender.migrant().island(),
                       contender.migrant().organism());
@@ -32,7 +36,7 @@ std::string tooltip_of(std::uint32_t organism, const evod::v1::Contender& conten
 template <class ValueOf, class OrganismOf>
 void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, ValueOf value_of,
                OrganismOf organism_of, const BreedingRecord& record, std::span<const std::uint32_t> copies,
-               const evod::v1::Pick* current) {
+               const evod::v1::Pick* current, bool complete) {
     sheet.write(sheet.corner, palette::text, title);
     const float top = sheet.corner.y + 2 * sheet.line_height(), bottom = sheet.end().y - 2;
     if (count == 0 || bottom - top < 10 || sheet.size.x < 10) {
@@ -71,13 +75,14 @@ void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, 
         }
         if (end - first == 1 && pointed_at({left, top - 12}, {left + width, bottom})) {
             if (const auto* contender = record.contender(organism_of(first))) {
-                ImGui::SetTooltip("%s", tooltip_of(organism_of(first), *contender).c_str());
+                ImGui::SetTooltip("%s", tooltip_of(organism_of(first), *contender, complete).c_str());
             }
         }
     }
     sheet.list.AddLine({sheet.corner.x, y_of(0)}, {sheet.end().x, y_of(0)}, ink(palette::text_quiet));
     sheet.write_to_the_left({sheet.end().x, sheet.corner.y}, palette::text_quiet,
-                            print("%.5g (rank 1) to %.5g (rank %zu)", value_of(0), value_of(count - 1), count));
+                            three_digits(value_of(0)) + " (rank 1) to " + three_digits(value_of(count - 1)) +
+                                print(" (rank %zu)", count));
 }
 
 float angle_of(double turns) {
@@ -98,7 +103,7 @@ void stroke_arc(const Sheet& sheet, ImVec2 centre, float radius, double begin, d
 } // namespace
 
 void draw_ranking(const Sheet& sheet, const BreedingRecord& record, const Comparison& comparison,
-                  std::span<const std::uint32_t> copies, const evod::v1::Pick* current) {
+                  std::span<const std::uint32_t> copies, const evod::v1::Pick* current, bool complete) {
     const std::size_t count = comparison.organisms.size();
     const auto organism_of = [&](std::size_t rank) { return comparison.organisms[rank]; };
     const auto fitness_of = [&](std::size_t rank) { return comparison.fitness[rank]; };
@@ -111,12 +116,12 @@ void draw_ranking(const Sheet& sheet, const BreedingRecord& record, const Compar
         Sheet lower = sheet;
         lower.corner.y += sheet.size.y / 2 + 6;
         lower.size.y = sheet.size.y / 2 - 6;
-        draw_bars(lower, "Weight", count, weight_of, organism_of, record, {}, nullptr);
+        draw_bars(lower, "Weight", count, weight_of, organism_of, record, {}, nullptr, complete);
     }
-    draw_bars(upper, "Fitness", count, fitness_of, organism_of, record, copies, current);
+    draw_bars(upper, "Fitness", count, fitness_of, organism_of, record, copies, current, complete);
 }
 
-void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index) {
+void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index, bool complete) {
     const evod::v1::Breeding& breeding = record.breeding();
     const float outer = std::min(sheet.size.x, sheet.size.y) / 2 - 26;
     if (outer < 30) {
@@ -173,7 +178,8 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
         sheet.write_centred(centre, palette::text,
                             print("rank %u of %u", chosen->rank() + 1, breeding.contender_count()));
         sheet.write_centred({centre.x, centre.y + line}, palette::text,
-                            print("%.3g %% of the wheel", 100 * (chosen->slot_end() - chosen->slot_begin())));
+                            three_digits(100 * (chosen->slot_end() - chosen->slot_begin())) +
+                                (inner > 5 * sheet.font.FontSize ? " % of the wheel" : " %"));
     }
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const float x = mouse.x - centre.x, y = mouse.y - centre.y, radius = std::hypot(x, y);
@@ -182,14 +188,14 @@ void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
         if (const auto* slot = slot_at(breeding.contenders(), turns < 0 ? turns + 1 : turns)) {
             for (int i = 0; i < breeding.contenders_size(); ++i) {
                 if (&breeding.contenders(i) == slot) {
-                    ImGui::SetTooltip("%s", tooltip_of(static_cast<std::uint32_t>(i), *slot).c_str());
+                    ImGui::SetTooltip("%s", tooltip_of(static_cast<std::uint32_t>(i), *slot, complete).c_str());
                 }
             }
         }
     }
 }
 
-void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index) {
+void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index, bool complete) {
     const std::vector<Contestant> contestants = contestants_of(record, index);
     if (contestants.empty()) {
         return;
@@ -205,14 +211,16 @@ void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint
     const float row_height = sheet.line_height() + 4;
     const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(sheet.size.y / row_height));
     const std::size_t columns = (contestants.size() + rows - 1) / rows;
+    const std::size_t used_rows = std::min(rows, contestants.size());
     const float width = sheet.size.x / static_cast<float>(columns),
-                height = columns > 1 ? row_height : 1.4f * row_height;
+                height = std::clamp(sheet.size.y / static_cast<float>(used_rows), row_height, 4 * row_height);
     const float label_width = 4.4f * sheet.font.FontSize, bar_width = width - 9.7f * sheet.font.FontSize;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
         const Contestant& contestant = contestants[i];
         const ImVec2 corner{sheet.corner.x + static_cast<float>(i / rows) * width,
                             sheet.corner.y + static_cast<float>(i % rows) * height};
-        sheet.write({corner.x, corner.y + 2}, palette::text, print("%u", contestant.organism));
+        const float text_y = corner.y + (height - 4 - sheet.font.FontSize) / 2; // beside the middle of the bar
+        sheet.write({corner.x, text_y}, palette::text, print("%u", contestant.organism));
         const auto* contender = record.contender(contestant.organism);
         if (contender == nullptr) {
             continue;
@@ -225,10 +233,10 @@ void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint
                                ink(contestant.picked_now ? palette::glass_current : palette::text), 0, 0,
                                contestant.picked_now ? 3.f : 1.5f);
         }
-        sheet.write({end.x + 6, begin.y}, contestant.won ? palette::text : palette::text_quiet,
-                    print("%.4g%s", contender->fitness(), contestant.won ? " won" : ""));
+        sheet.write({end.x + 6, text_y}, contestant.won ? palette::text : palette::text_quiet,
+                    three_digits(contender->fitness()) + (contestant.won ? " won" : ""));
         if (pointed_at(corner, {corner.x + width, corner.y + height})) {
-            ImGui::SetTooltip("%s", tooltip_of(contestant.organism, *contender).c_str());
+            ImGui::SetTooltip("%s", tooltip_of(contestant.organism, *contender, complete).c_str());
         }
     }
 }
@@ -255,35 +263,42 @@ void draw_picks(const Sheet& sheet, const BreedingRecord& record, std::uint32_t 
 }
 
 void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<const std::uint32_t> copies,
-                 double expected_share) {
-    const float line = sheet.line_height();
-    const float height = sheet.size.y - 3 * line;
-    if (height < 60 || sheet.size.x < 60) {
+                 double expected_share, bool complete) {
+    const float line = sheet.line_height(), margin = 1.6f * sheet.font.FontSize; // the margin contains "+2" and "−2"
+    const float height = sheet.size.y - (complete ? 3 : 2) * line, right_end = sheet.end().x - margin;
+    if (height < 40 || right_end - sheet.corner.x < 40) {
         return;
     }
-    const auto most_columns = static_cast<std::size_t>(sheet.size.x / 3);
+    const auto most_columns = static_cast<std::size_t>((right_end - sheet.corner.x) / 3);
     const std::vector<RankColumn> columns = rank_columns(comparison, copies, expected_share, most_columns);
     double most = 1;
     for (const RankColumn& column : columns) {
         most = std::max({most, column.copies, column.expected});
     }
-    const float top = sheet.corner.y + line, bottom = top + height * 0.62f;
-    const float width = sheet.size.x / static_cast<float>(columns.size()), gap = width > 5 ? 1.f : 0.f;
+    const float top = sheet.corner.y + line, bottom = top + height * (complete ? 0.62f : 1.f);
+    const float width = (right_end - sheet.corner.x) / static_cast<float>(columns.size()), gap = width > 5 ? 1.f : 0.f;
     const auto y_of = [&](double value) { return bottom - static_cast<float>(value / most) * (bottom - top); };
-    sheet.write(sheet.corner, palette::text, "Copies by rank");
-    sheet.write_to_the_left({sheet.end().x, sheet.corner.y}, palette::text_quiet, print("up to %.4g", most));
+    sheet.write(sheet.corner, palette::text, "Picks by rank; line: expected");
+    if (right_end - sheet.corner.x > 16 * sheet.font.FontSize) {
+        sheet.write_to_the_left({right_end, sheet.corner.y}, palette::text_quiet, "up to " + three_digits(most));
+    }
 
-    // The deviations are computed after all picks. The axis ends at four standard errors; larger deviations are drawn
-    // at its end.
+    // The axis of the deviations ends at four standard errors; larger deviations are drawn at its end.
     constexpr double deviation_max = 4;
     const float lower_top = bottom + 2 * line, lower_bottom = sheet.end().y, zero = (lower_top + lower_bottom) / 2;
     const auto deviation_y = [&](double deviation) {
         return zero - static_cast<float>(std::clamp(deviation, -deviation_max, deviation_max) / deviation_max) *
                           (lower_bottom - lower_top) / 2;
     };
-    sheet.list.AddRectFilled({sheet.corner.x, deviation_y(2)}, {sheet.end().x, deviation_y(-2)},
-                             ink(faint(palette::text_quiet, 36)));
-    sheet.list.AddLine({sheet.corner.x, zero}, {sheet.end().x, zero}, ink(palette::text_quiet));
+    if (complete) {
+        sheet.list.AddRectFilled({sheet.corner.x, deviation_y(2)}, {right_end, deviation_y(-2)},
+                                 ink(faint(palette::text_quiet, 36)));
+        sheet.list.AddLine({sheet.corner.x, zero}, {right_end, zero}, ink(palette::text_quiet));
+        sheet.write({sheet.corner.x, lower_top - line}, palette::text, "Deviation in standard errors");
+        for (const auto& [deviation, label] : {std::pair{2.0, "+2"}, std::pair{-2.0, "−2"}}) {
+            sheet.write_to_the_left({sheet.end().x, deviation_y(deviation) - line / 2}, palette::text_quiet, label);
+        }
+    }
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const RankColumn& column = columns[i];
         const float left = sheet.corner.x + static_cast<float>(i) * width, right = left + width - gap;
@@ -292,25 +307,29 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
                                                  static_cast<std::uint32_t>(comparison.organisms.size()))));
         sheet.list.AddLine({left, y_of(column.expected)}, {left + width, y_of(column.expected)},
                            ink(palette::glass_current), 2);
-        sheet.list.AddRectFilled({left, deviation_y(std::max(column.deviation, 0.0))},
-                                 {right, deviation_y(std::min(column.deviation, 0.0)) + 1},
-                                 ink(std::abs(column.deviation) > 2 ? palette::glass_current : palette::text_quiet));
-        if (pointed_at({left, top}, {left + width, lower_bottom})) {
-            const std::string ranks = column.first == column.last
-                                          ? print("rank %zu: organism %u, fitness %.5g", column.first + 1,
-                                                  comparison.organisms[column.first], comparison.fitness[column.first])
-                                          : print("ranks %zu to %zu", column.first + 1, column.last + 1);
-            ImGui::SetTooltip("%s\ncopies %.0f, expected %.3g\nafter all picks %+.2f standard errors", ranks.c_str(),
-                              column.copies, column.expected, column.deviation);
+        if (complete) {
+            sheet.list.AddRectFilled(
+                {left, deviation_y(std::max(column.deviation, 0.0))},
+                {right, deviation_y(std::min(column.deviation, 0.0)) + 1},
+                ink(std::abs(column.deviation) > 2 ? palette::glass_current : palette::text_quiet));
+        }
+        if (pointed_at({left, top}, {left + width, complete ? lower_bottom : bottom})) {
+            std::string note =
+                column.first == column.last
+                    ? print("rank %zu: organism %u, fitness ", column.first + 1, comparison.organisms[column.first]) +
+                          three_digits(comparison.fitness[column.first])
+                    : print("ranks %zu to %zu", column.first + 1, column.last + 1);
+            note += print("\npicks %.0f, expected ", column.copies) + three_digits(column.expected);
+            if (complete) {
+                note += print("\n%+.3g standard errors", column.deviation);
+            }
+            ImGui::SetTooltip("%s", note.c_str());
         }
     }
-    sheet.list.AddLine({sheet.corner.x, bottom}, {sheet.end().x, bottom}, ink(palette::text_quiet));
+    sheet.list.AddLine({sheet.corner.x, bottom}, {right_end, bottom}, ink(palette::text_quiet));
     sheet.write({sheet.corner.x, bottom + 2}, palette::text_quiet, "rank 1");
-    sheet.write_to_the_left({sheet.end().x, bottom + 2}, palette::text_quiet,
+    sheet.write_to_the_left({right_end, bottom + 2}, palette::text_quiet,
                             print("rank %zu", comparison.organisms.size()));
-    sheet.write({sheet.corner.x, lower_top - line}, palette::text, "Deviation in standard errors, all picks");
-    sheet.write_to_the_left({sheet.end().x, deviation_y(2) - line}, palette::text_quiet, "+2");
-    sheet.write_to_the_left({sheet.end().x, deviation_y(-2)}, palette::text_quiet, "−2");
 }
 
 } // namespace evod::viewer

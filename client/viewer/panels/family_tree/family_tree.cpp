@@ -261,6 +261,14 @@ void FamilyTree::find_common_ancestors() {
     }
 }
 
+std::size_t FamilyTree::placed_count() const {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        count += static_cast<std::size_t>(std::ranges::count(rows_[i], none, &Spot::first));
+    }
+    return count;
+}
+
 std::uint32_t FamilyTree::place_of(std::uint64_t generation, std::uint32_t organism) const {
     if (!contains(generation)) {
         return none;

@@ -23,8 +23,8 @@ constexpr std::size_t named_organisms_max = 200;                 // organisms th
 
 constexpr std::array<const char*, 3> kind_names{"lines of first parents", "both parents",
                                                 "ancestors of the selected organism"};
-constexpr std::array<const char*, 4> origin_texts{"in the first generation", "elite: an unchanged copy",
-                                                  "survivor: lives on", "child"};
+constexpr std::array<const char*, 5> origin_texts{"in the first generation", "elite: an unchanged copy",
+                                                  "survivor: lives on", "child", "placed by a user"};
 
 std::string count_of(std::size_t count, const char* noun) {
     return with_separators(count) + " " + noun + (count == 1 ? "" : "s");
@@ -167,6 +167,10 @@ std::string FamilyTreePanel::sentence(const Context& context) const {
     } else {
         text = print("The %s descend from %s of generation %s.", roots.c_str(),
                      count_of(tree_.row(tree_.first()).size(), "organism").c_str(), first.c_str());
+        if (const std::size_t placed = tree_.placed_count(); placed > 0) {
+            text.back() = ' ';
+            text += "and from " + count_of(placed, "organism") + " that a user placed.";
+        }
     }
     if (lineage.first() > 1 && tree_.first() == lineage.first()) {
         text += " Generations before " + with_separators(lineage.first()) + " are not loaded.";

@@ -25,7 +25,8 @@ void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     const std::vector<double> measure = history.curve(of);
     Plot plot{.title = std::move(title)};
     plot.series.push_back({.colour = palette::organism, .x = tick, .y = measure});
-    curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
+    curve_widget(plot.title.c_str(), plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)},
+                 4 * ImGui::GetFontSize());
 }
 
 /// Draws a collapsible header. Returns whether it is open.
@@ -138,10 +139,10 @@ void PhysicsPanel::build_demo() {
     const char* rate_label = spring_ ? "ω, 1/s" : "damping, 1/s";
     changed |= ImGui::SliderFloat(rate_label, &rate_per_s_, 0.5f, 10, "%.1f",
                                   ImGuiSliderFlags_AlwaysClamp); // prevents a rate of 0 and a division by 0
-    widgets::mark(rate_label);
+    widgets::mark_field(rate_label, rate_per_s_);
     changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
                                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    widgets::mark("tick, ms");
+    widgets::mark_field("tick, ms", tick_ms_);
     if (!history_.empty() && widgets::button("use the tick of this world")) {
         tick_ms_ = std::clamp(static_cast<float>(history_.last().tick_s() * 1000), tick_ms_min, tick_ms_max);
         changed = true;
@@ -163,8 +164,8 @@ void PhysicsPanel::build_demo() {
     }
     const double reach = spring_ ? 200 : 150 / rate;
     const float height = 7 * ImGui::GetFontSize();
-    curve_widget(x, {spring_ ? -reach : 0, reach}, height);
-    curve_widget(energy, {0, 3}, height);
+    curve_widget("##x", x, {spring_ ? -reach : 0, reach}, height);
+    curve_widget("##energy", energy, {0, 3}, height);
     for (std::size_t i = curves_.size(); i-- > 0;) {
         widgets::small_text(curves_[i].name, curves_[i].colour);
         if (i > 0) {

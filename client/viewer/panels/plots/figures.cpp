@@ -19,45 +19,54 @@ Colour pale(Colour colour) {
 
 class FigureBuilder {
   public:
-    FigureBuilder(const Subject& subject, const Subject* other) : subject_{subject}, other_{other} {}
+    FigureBuilder(const Subject& subject, const Subject* other, std::size_t window)
+        : subject_{subject}, other_{other}, window_{window} {
+        plot().marks.push_back({subject.changes, other != nullptr ? subject.name : ""});
+        if (other != nullptr) {
+            plot().marks.push_back({other->changes, other->name});
+        }
+        plot().smoothed = "mean of " + std::to_string(window);
+    }
 
     Figure take() { return std::move(figure_); }
     Plot& plot() { return figure_.plot; }
 
     /// Adds a line for a column of the subject; if `compared`, also one for the same column of the other subject.
-    void line(const std::string& column, const std::string& name, Colour colour, bool compared) {
-        add(subject_, Series::Kind::Line, column, named(name, subject_), colour);
+    void line(const std::string& column, const std::string& name, Colour colour, bool compared, bool whole = false) {
+        add_line(subject_, Series::Kind::Line, column, name, colour, whole);
         if (other_ != nullptr && compared) {
-            add(*other_, Series::Kind::Dashes, column, named(name, *other_), colour);
+            add_line(*other_, Series::Kind::Dashes, column, name + ", " + other_->name, colour, whole);
+            plot().solid = subject_.name;
+            plot().dashed = other_->name;
         }
     }
 
-    /// Adds a band of one standard deviation on either side of the mean.
-    void band(const std::string& of, Colour colour) {
+    /// Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the values.
+    void band(const std::string& of, const std::string& least, const std::string& greatest, Colour colour) {
         const auto mean = column(subject_, of + "_mean"), deviation = column(subject_, of + "_deviation");
+        const auto min = column(subject_, least), max = column(subject_, greatest);
         if (mean.empty() || mean.size() != deviation.size()) {
             return;
         }
-        auto& low = figure_.numbers.emplace_back(mean.begin(), mean.end());
-        auto& high = figure_.numbers.emplace_back(mean.begin(), mean.end());
+        std::vector<double> low(mean.size()), high(mean.size());
         for (std::size_t i = 0; i < mean.size(); ++i) {
-            low[i] -= deviation[i];
-            high[i] += deviation[i];
+            low[i] = std::max(mean[i] - deviation[i], min[i]);
+            high[i] = std::min(mean[i] + deviation[i], max[i]);
         }
         figure_.plot.series.push_back({.kind = Series::Kind::Band,
-                                       .name = "± one deviation",
+                                       .name = "± 1 standard deviation",
                                        .colour = pale(colour),
                                        .x = column(subject_, "generation"),
-                                       .y = high,
-                                       .low = low});
+                                       .y = figure_.numbers.emplace_back(running_mean(high, window_)),
+                                       .low = figure_.numbers.emplace_back(running_mean(low, window_))});
     }
 
     void stack(const std::string& column, const std::string& name, Colour colour) {
-        add(subject_, Series::Kind::Stack, column, named(name, subject_), colour);
+        add(subject_, Series::Kind::Stack, column, named(name, subject_), colour, true);
     }
     void compare(const std::string& column, const std::string& name, Colour colour) {
         if (other_ != nullptr) {
-            add(*other_, Series::Kind::Dashes, column, named(name, *other_), colour);
+            add(*other_, Series::Kind::Dashes, column, named(name, *other_), colour, true);
         }
     }
 
@@ -70,35 +79,62 @@ class FigureBuilder {
     std::string named(const std::string& name, const Subject& subject) const {
         return other_ == nullptr ? name : name + ", " + subject.name;
     }
-    void add(const Subject& subject, Series::Kind kind, const std::string& name, std::string legend, Colour colour) {
+    /// Adds a line, with its running mean; the legend names a line of the compared history only by its dashes.
+    void add_line(const Subject& subject, Series::Kind kind, const std::string& column, std::string name, Colour colour,
+                  bool whole) {
+        if (!add(subject, kind, column, std::move(name), colour, whole)) {
+            return;
+        }
+        Series& series = figure_.plot.series.back();
+        series.in_legend = kind == Series::Kind::Line;
+        if (window_ > 1) {
+            series.raw = series.y;
+            series.y = figure_.numbers.emplace_back(running_mean(series.raw, window_));
+        }
+    }
+    /// Returns false if the history contains no such numbers.
+    bool add(const Subject& subject, Series::Kind kind, const std::string& name, std::string legend, Colour colour,
+             bool whole) {
         const auto x = column(subject, "generation"), y = column(subject, name);
         const bool known = std::ranges::any_of(y, [](double number) { return std::isfinite(number); });
         if (x.size() == y.size() && known) {
             figure_.plot.series.push_back(
-                {.kind = kind, .name = std::move(legend), .colour = colour, .x = x, .y = y, .low = {}});
+                {.kind = kind, .name = std::move(legend), .colour = colour, .x = x, .y = y, .whole = whole});
+            return true;
         }
+        return false;
     }
 
     const Subject& subject_;
     const Subject* other_;
+    std::size_t window_; // generations of the running mean
     Figure figure_;
 };
 
+/// Returns whether an axis from 0 leaves the curves of fitness at least half of its height.
+bool starts_at_zero(const Subject& subject) {
+    const auto worst = range_of(FigureBuilder::column(subject, "fitness_worst"));
+    const auto best = range_of(FigureBuilder::column(subject, "fitness_best"));
+    return worst && best && worst->min < best->max / 2;
+}
+
 } // namespace
 
-Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene) {
-    FigureBuilder make{subject, other};
+Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene,
+                 std::size_t window) {
+    FigureBuilder make{subject, other, window};
     make.plot().x_label = "generation";
     make.plot().counted_x = true;
     switch (quantity) {
     case Quantity::Fitness:
         make.plot().title = "Fitness";
         make.plot().y_label = "fitness";
-        make.band("fitness", palette::series_blue);
-        make.line("fitness_worst", "worst", palette::series_grey, false);
-        make.line("fitness_median", "median", palette::series_sky, false);
-        make.line("fitness_mean", "mean", palette::series_blue, true);
+        make.plot().from_zero = starts_at_zero(subject);
         make.line("fitness_best", "best", palette::series_vermilion, true);
+        make.line("fitness_mean", "mean", palette::series_blue, true);
+        make.line("fitness_median", "median", palette::series_sky, false);
+        make.line("fitness_worst", "worst", palette::series_grey, false);
+        make.band("fitness", "fitness_worst", "fitness_best", palette::series_blue);
         break;
     case Quantity::Genes:
         make.plot().y_label = "gene units";
@@ -110,10 +146,10 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
             }
         } else {
             make.plot().title = "Gene " + gene;
-            make.band(gene, palette::series_green);
-            make.line(gene + "_min", "least", palette::series_grey, false);
-            make.line(gene + "_max", "greatest", palette::series_grey, false);
             make.line(gene + "_mean", "mean", palette::series_green, true);
+            make.line(gene + "_max", "greatest", palette::series_grey, false);
+            make.line(gene + "_min", "least", palette::series_grey, false);
+            make.band(gene, gene + "_min", gene + "_max", palette::series_green);
         }
         break;
     case Quantity::Selection:
@@ -124,17 +160,17 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
             for (std::size_t i = 0; i < names.size(); ++i) {
                 make.line(names[i] + "_selection", names[i], gene_colours[i % std::size(gene_colours)], true);
             }
-        } else { // the change is the sum of the other series and is drawn last
+        } else { // the change is the sum of the other series
             make.plot().title = "Causes of change in the mean of " + gene;
-            make.line(gene + "_migration", "migration", palette::series_purple, true);
-            make.line(gene + "_transmission", "transmission", palette::series_orange, true);
-            make.line(gene + "_selection", "selection", palette::series_blue, true);
             make.line(gene + "_change", "change", palette::series_grey, true);
+            make.line(gene + "_selection", "selection", palette::series_blue, true);
+            make.line(gene + "_transmission", "transmission", palette::series_orange, true);
+            make.line(gene + "_migration", "migration", palette::series_purple, true);
         }
         break;
     case Quantity::Diversity:
         make.plot().title = "Diversity";
-        make.plot().y_label = "mean standard deviation of the genes, as a share of their allowed range";
+        make.plot().y_label = "mean standard deviation, as a share of the gene's range";
         make.plot().from_zero = true;
         make.line("diversity", "diversity", palette::series_purple, true);
         break;
@@ -142,8 +178,8 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         make.plot().title = "Alive at the end";
         make.plot().y_label = "organisms";
         make.plot().from_zero = true;
-        make.line("organism_count", "born", palette::series_grey, false);
-        make.line("alive_count", "alive at the end", palette::series_green, true);
+        make.line("alive_count", "alive at the end", palette::series_green, true, true);
+        make.line("organism_count", "born", palette::series_grey, false, true);
         break;
     case Quantity::Deaths:
         make.plot().title = "Causes of death";
@@ -178,12 +214,14 @@ Figure histogram_of(const std::string& gene, std::vector<float> numbers) {
     }
     auto& bins = figure.numbers.emplace_back(histogram(numbers, range, count));
     figure.plot.series.push_back({.kind = Series::Kind::Bars,
-                                  .name = gene,
+                                  .name = "organisms",
+                                  .in_legend = false,
                                   .colour = palette::series_green,
                                   .x = middles,
                                   .y = bins,
                                   .low = {},
-                                  .bar_width = width});
+                                  .bar_width = width,
+                                  .whole = true});
     return figure;
 }
 

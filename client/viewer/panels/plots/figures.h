@@ -29,7 +29,8 @@ struct Figure {
 struct Subject {
     const HistoryTable& table;
     HistoryTable::Island island;
-    std::string name; // name in the legend of a comparison
+    std::string name;                // name in the legend of a comparison
+    std::span<const Mark> changes{}; // changes of parameters
 };
 
 /// Builds the plot of a quantity for `subject`.
@@ -37,7 +38,9 @@ struct Subject {
 /// gene   the gene shown for Quantity::Genes and Quantity::Selection; empty: the means, or the selection, of all genes.
 /// other  the compared history; null: no comparison. If it has no island with this number, all its islands together are
 ///        shown.
-Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene);
+/// window the number of generations of the running mean of each line and band; 1: none.
+Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene,
+                 std::size_t window);
 
 /// Builds a histogram of a gene's values, one value per organism.
 Figure histogram_of(const std::string& gene, std::vector<float> numbers);

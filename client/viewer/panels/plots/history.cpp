@@ -1,5 +1,7 @@
 #include "client/viewer/panels/plots/history.h"
 
+#include "client/core/change_text.h"
+
 #include <algorithm>
 
 namespace evod::viewer {
@@ -11,7 +13,8 @@ void History::set_run(const std::string& world, const std::string& run_id) {
     world_ = world;
     run_id_ = run_id;
     table_.clear();
-    whole_until_ = ended_ = 0;
+    changes_.clear();
+    changes_until_ = whole_until_ = ended_ = 0;
     missing_ = true;
     cancel(); // any pending answer is about another run
     ++revision_;
@@ -40,6 +43,8 @@ void History::apply_event(const evod::v1::Event& event) {
         set_run(event.world_reset().world());
     } else if (event.kind_case() == Kind::kWorldCreated) {
         set_run(event.world_created().world());
+    } else if (event.kind_case() == Kind::kParametersChanged) {
+        refresh();
     } else if (event.kind_case() == Kind::kGenerationFinished && event.run_id() == run_id_) {
         add(event.generation_finished().statistics());
         if (!missing_) {
@@ -59,7 +64,7 @@ std::optional<History::Query> History::next_query() {
         return std::nullopt;
     }
     if (!next_page_) {
-        next_page_ = whole_until_ + 1;
+        next_page_ = std::min(whole_until_, changes_until_) + 1;
         ended_when_asked_ = std::max(ended_, table_.last_generation());
     }
     again_ = false;
@@ -84,6 +89,7 @@ void History::receive(std::uint64_t number, const evod::v1::History* answer) {
     }
     answered_ = asked_;
     add(answer->generations());
+    add_changes(*next_page_, *answer);
     if (answer->has_next_generation() && answer->next_generation() > *next_page_) {
         next_page_ = answer->next_generation();
         return;
@@ -94,6 +100,7 @@ void History::receive(std::uint64_t number, const evod::v1::History* answer) {
         ended_when_asked_ = std::max(ended_when_asked_, answer->generations().rbegin()->generation());
     }
     whole_until_ = table_.last_without_gap(std::max(whole_until_, ended_when_asked_));
+    changes_until_ = whole_until_;
     missing_ = again_ || std::max(ended_, table_.last_generation()) > whole_until_;
 }
 
@@ -106,6 +113,14 @@ void History::add(const Generations& generations) {
     if (!rows.empty()) {
         table_.add(rows);
         ++revision_;
+    }
+}
+
+void History::add_changes(std::uint64_t first, const evod::v1::History& page) {
+    const auto begin = std::ranges::lower_bound(changes_, static_cast<double>(first), {}, &Mark::x);
+    changes_.erase(begin, changes_.end());
+    for (const evod::v1::AppliedChange& change : page.changes()) {
+        changes_.push_back({static_cast<double>(change.generation()), core::to_text(change)});
     }
 }
 

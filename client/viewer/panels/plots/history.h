@@ -1,18 +1,21 @@
-// History: collects the statistics of all finished generations of a run that the server still keeps, and updates them.
+// History: collects the statistics of all finished generations of a run that the server still keeps, and the changes of
+// its parameters, and updates them.
 //
 // Earlier generations are requested page by page. Events add each generation that ends. If generations may have been
-// missed (dropped events, a broken connection, a hidden panel), they are requested again. When another run begins, the
-// history is cleared.
+// missed (dropped events, a broken connection, a hidden panel), they are requested again. Changes of parameters are
+// requested when an event reports one. When another run begins, the history is cleared.
 //
 // Owner        PlotsPanel.
 // Threads      none.
 #pragma once
 
 #include "client/viewer/panels/plots/history_table.h"
+#include "client/viewer/panels/plots/layout.h"
 #include "evod/v1/session.pb.h"
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,15 +60,21 @@ class History {
     /// Returns whether the table contains every generation that is known to have ended.
     bool complete() const { return !run_id_.empty() && !missing_; }
     const HistoryTable& table() const { return table_; }
+    /// Returns the changes of parameters in the run, by generation.
+    std::span<const Mark> changes() const { return changes_; }
     /// Returns a number that changes whenever the table changes.
     std::uint64_t revision() const { return revision_; }
 
   private:
     template <class Generations>
     void add(const Generations& generations);
+    /// Replaces the changes from generation `first` on by those in a page that begins with this generation.
+    void add_changes(std::uint64_t first, const evod::v1::History& page);
 
     std::string world_, run_id_;
     HistoryTable table_;
+    std::vector<Mark> changes_;
+    std::uint64_t changes_until_ = 0; // up to this generation, changes_ is complete
     std::uint64_t whole_until_ = 0; // up to this generation, the table contains every generation that the server keeps
     bool missing_ = true;
     bool again_ = false;                     // generations may have been missed since the last query

@@ -143,6 +143,16 @@ std::vector<BandPoint> band_of(std::span<const double> x, std::span<const double
     return band;
 }
 
+std::vector<double> running_mean(std::span<const double> y, std::size_t window) {
+    std::vector<double> means;
+    means.reserve(y.size());
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const std::size_t begin = i + 1 > window ? i + 1 - window : 0;
+        means.push_back(std::isfinite(y[i]) ? mean_of(y, {begin, i + 1}) : std::numeric_limits<double>::quiet_NaN());
+    }
+    return means;
+}
+
 double mean_of(std::span<const double> y, Group group) {
     double sum = 0, count = 0;
     for (std::size_t i = group.begin; i < group.end; ++i) {
@@ -174,6 +184,38 @@ std::vector<double> histogram(std::span<const float> numbers, Range range, std::
         }
     }
     return bins;
+}
+
+// ---- marks and notes -------------------------------------------------------------------------------------------
+
+std::vector<Group> mark_groups(std::span<const Mark> marks, Range shown, double distance) {
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        if (!shown.contains(marks[i].x)) {
+            continue;
+        }
+        if (groups.empty() || marks[i].x - marks[groups.back().begin].x >= distance) {
+            groups.push_back({i, i});
+        }
+        groups.back().end = i + 1;
+    }
+    return groups;
+}
+
+Corner note_place(Box plot, Corner size, float y, Corner window) {
+    constexpr float gap = 4;
+    const float beside = std::clamp(y - size.y / 2, 0.0f, std::max(window.y - size.y, 0.0f));
+    if (plot.left - gap >= size.x) {
+        return {plot.left - gap - size.x, beside};
+    }
+    if (window.x - plot.right - gap >= size.x) {
+        return {plot.right + gap, beside};
+    }
+    const float along = std::clamp(plot.left, 0.0f, std::max(window.x - size.x, 0.0f));
+    if (plot.top - gap >= size.y) {
+        return {along, plot.top - gap - size.y};
+    }
+    return {along, std::max(std::min(plot.bottom + gap, window.y - size.y), 0.0f)};
 }
 
 } // namespace evod::viewer

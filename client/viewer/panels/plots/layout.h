@@ -1,4 +1,5 @@
-// Plot layout: computes axis ticks, the zoomed range, and the points with which a long series is drawn.
+// Plot layout: computes axis ticks, the zoomed range, running means, the points with which a long series is drawn, the
+// marks, and the place of the note beside a plot.
 //
 // Owner        none: pure functions.
 // Threads      any.
@@ -11,6 +12,12 @@
 #include <vector>
 
 namespace evod::viewer {
+
+/// A position, or a size, in pixels.
+struct Corner {
+    float x, y;
+    friend bool operator==(const Corner&, const Corner&) = default;
+};
 
 struct Range {
     double min = 0, max = 1;
@@ -74,6 +81,12 @@ struct BandPoint {
 std::vector<BandPoint> band_of(std::span<const double> x, std::span<const double> low, std::span<const double> high,
                                std::span<const Group> groups);
 
+/// Returns, for each finite number, the mean of the finite numbers among it and the `window` - 1 numbers before it; NaN
+/// for other numbers. Later numbers have no influence, so an effect never appears before its cause.
+///
+/// window  >= 1
+std::vector<double> running_mean(std::span<const double> y, std::size_t window);
+
 /// Returns the mean of the finite numbers in a group; 0 if there is none.
 double mean_of(std::span<const double> y, Group group);
 
@@ -83,5 +96,29 @@ std::optional<std::size_t> nearest(std::span<const double> x, double at);
 /// Counts the numbers in each of `count` bins of equal width. Numbers outside the range are not counted. The upper end
 /// of the range belongs to the last bin.
 std::vector<double> histogram(std::span<const float> numbers, Range range, std::size_t count);
+
+// ---- marks and notes -------------------------------------------------------------------------------------------
+
+/// A vertical line in a plot, with the text that explains it.
+struct Mark {
+    double x;
+    std::string text;
+};
+
+/// Divides the visible marks into groups that are drawn as one line, at the first mark of the group.
+///
+/// marks     in order of x
+/// distance  marks of a group are nearer than this to its first mark, in units of x
+std::vector<Group> mark_groups(std::span<const Mark> marks, Range shown, double distance);
+
+struct Box {
+    float left, top, right, bottom;
+};
+
+/// Returns the upper left corner of a note of this size beside a plot: on its left side, or else where there is room:
+/// on the right, above or below. The note never covers the plot if the window has room anywhere beside it.
+///
+/// y  height of the mouse, at which the note is centred
+Corner note_place(Box plot, Corner size, float y, Corner window);
 
 } // namespace evod::viewer

@@ -23,10 +23,46 @@ constexpr std::uint8_t dense_alpha = 110;
 constexpr double y_room = 0.04; // space above and below, as a share of the height
 constexpr double zoom_of_one_notch = 1.25;
 constexpr double x_units_min = 4; // least visible width of the x axis, in generations or other units of x
+constexpr std::uint8_t raw_alpha = 80;
+constexpr float mark_pixels = 5;      // marks nearer than this are drawn as one and read together
+constexpr std::size_t mark_lines = 8; // marks that a note lists
 
-struct Box {
-    float left, top, right, bottom;
+/// A line of a note. If it is about a series, it begins with a square in the colour of the series.
+struct NoteLine {
+    std::string text;
+    std::optional<Colour> colour = std::nullopt;
 };
+
+/// Builds a note beside the plot, at the height of the mouse.
+void build_note(std::span<const NoteLine> lines, Box plot) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float square = ImGui::GetFontSize() * 0.7f, wrap = ImGui::GetFontSize() * 24;
+    const float indent = square + gap;
+    Corner size{0, -style.ItemSpacing.y};
+    for (const NoteLine& line : lines) {
+        const ImVec2 text = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap);
+        size.x = std::max(size.x, text.x + (line.colour ? indent : 0));
+        size.y += text.y + style.ItemSpacing.y;
+    }
+    size = {size.x + 2 * style.WindowPadding.x, size.y + 2 * style.WindowPadding.y};
+    const ImGuiIO& io = ImGui::GetIO();
+    const Corner place = note_place(plot, size, io.MousePos.y, {io.DisplaySize.x, io.DisplaySize.y});
+    ImGui::SetNextWindowPos({place.x, place.y});
+    ImGui::SetNextWindowSize({size.x, size.y});
+    ImGui::BeginTooltip();
+    for (const NoteLine& line : lines) {
+        if (line.colour) {
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const float top = std::round(at.y + (ImGui::GetFontSize() - square) / 2);
+            ImGui::GetWindowDrawList()->AddRectFilled({at.x, top}, {at.x + square, top + square}, ink(*line.colour));
+            ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+        }
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap + 1);
+        ImGui::TextUnformatted(line.text.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::EndTooltip();
+}
 
 /// Draws a plot inside a box on a draw list.
 class Drawing {
@@ -39,6 +75,10 @@ class Drawing {
     /// Creates a drawing without axes. `y` is the vertical range of the box.
     Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
         : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
+        legend_left_ = box.left + gap / 2;
+        legend_right_ = box.right - gap / 2;
+        legend_top_ = box.top + gap / 2;
+        area_.top += plot.title.empty() ? 0 : font.FontSize + gap;
         group(columns());
     }
 
@@ -50,18 +90,23 @@ class Drawing {
         list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
         draw_axes();
         draw_series();
+        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
         draw_legend();
     }
 
-    void draw_without_axes() {
-        list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
+    /// Draws the title, the names of the series and the lines inside `box`.
+    void draw_without_axes(Box box) {
+        list_.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, ink(palette::plot_background));
         draw_series();
-        write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
+        list_.AddRect({box.left, box.top}, {box.right, box.bottom}, ink(palette::strip_edge));
+        write(legend_left_, legend_top_, palette::text_quiet, plot_.title);
+        legend_left_ += width_of(plot_.title) + 2 * gap;
+        draw_legend();
     }
 
-    /// Draws a vertical line at the numbers nearest to x = `at`. Returns these numbers as text; empty if there are
-    /// none.
-    std::vector<std::string> draw_cursor(double at) {
+    /// Returns the x of the numbers nearest to a column of the screen; nullopt if there are none.
+    std::optional<double> x_near(float mouse) const {
+        const double at = x_at(mouse);
         std::optional<double> found;
         for (const Series& series : plot_.series) {
             if (const auto index = nearest(series.x, at);
@@ -69,25 +114,33 @@ class Drawing {
                 found = series.x[*index];
             }
         }
-        std::vector<std::string> lines;
-        if (!found || !x_.contains(*found)) {
+        return found && x_.contains(*found) ? found : std::nullopt;
+    }
+
+    /// Draws a vertical line at the numbers nearest to the mouse. Returns these numbers, and the marks under the mouse,
+    /// as text; empty if there are none.
+    std::vector<NoteLine> draw_cursor(float mouse) {
+        std::vector<NoteLine> lines;
+        const auto x = x_near(mouse);
+        if (!x) {
             return lines;
         }
-        const float pixels = column(*found);
+        const float pixels = column(*x);
         list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(faint(palette::text_quiet, 150)));
-        lines.push_back(plot_.x_label + " " + shown_number(*found));
+        lines.push_back({plot_.x_label + " " + (plot_.counted_x ? shown_number(*x) : significant(*x))});
         for (const Series& series : plot_.series) {
-            const auto index = nearest(series.x, *found);
-            if (!index || series.x[*index] != *found || !std::isfinite(series.y[*index])) {
+            const auto index = nearest(series.x, *x);
+            if (!index || series.name.empty() || series.x[*index] != *x || !std::isfinite(series.y[*index])) {
                 continue;
             }
-            std::string line = series.name + ": ";
-            if (series.kind == Series::Kind::Band) {
-                line += shown_number(series.low[*index]) + " to ";
-            } else if (series.kind != Series::Kind::Stack) {
+            if (series.kind == Series::Kind::Line || series.kind == Series::Kind::Dashes) {
                 list_.AddCircleFilled({pixels, row(series.y[*index])}, 3, ink(series.colour));
             }
-            lines.push_back(line + shown_number(series.y[*index]));
+            lines.push_back({series.name + ": " + value_text(series, *index), series.colour});
+        }
+        add_marks_near(mouse, lines);
+        if (!plot_.note_end.empty()) {
+            lines.push_back({plot_.note_end});
         }
         return lines;
     }
@@ -96,6 +149,55 @@ class Drawing {
     float width_of(const std::string& text) const { return size_of(text, font_).x; }
     void write(float x, float y, Colour colour, const std::string& text) {
         evod::viewer::write(list_, font_, {x, y}, colour, text);
+    }
+
+    std::string value_text(const Series& series, std::size_t index) const {
+        const auto text = [&](double number) { return series.whole ? shown_number(number) : significant(number); };
+        if (series.kind == Series::Kind::Band) {
+            return text(series.low[index]) + " to " + text(series.y[index]);
+        }
+        return series.raw.empty()
+                   ? text(series.y[index])
+                   : text(series.raw[index]) + " (" + plot_.smoothed + ": " + significant(series.y[index]) + ")";
+    }
+
+    void add_marks_near(float mouse, std::vector<NoteLine>& lines) const {
+        std::size_t more = 0;
+        const std::size_t lines_max = lines.size() + mark_lines;
+        for (const Marks& marks : plot_.marks) {
+            for (const Mark& mark : marks.marks) {
+                if (!x_.contains(mark.x) || std::abs(column(mark.x) - mouse) > mark_pixels) {
+                    continue;
+                }
+                if (lines.size() >= lines_max) {
+                    ++more;
+                    continue;
+                }
+                lines.push_back({mark.text + (marks.name.empty() ? "" : " (" + marks.name + ")"), palette::plot_mark});
+            }
+        }
+        if (more > 0) {
+            lines.push_back({"and " + with_separators(more) + " more changes"});
+        }
+    }
+
+    void draw_marks() {
+        const double distance = mark_pixels / columns() * x_.width();
+        for (std::size_t i = 0; i < plot_.marks.size(); ++i) {
+            const std::span<const Mark> marks = plot_.marks[i].marks;
+            for (const Group group : mark_groups(marks, x_, distance)) {
+                const float x = std::round(column(marks[group.begin].x)), half = mark_pixels - 1;
+                const ImVec2 corners[] = {{x - half, area_.top}, {x + half, area_.top}, {x, area_.top + 2 * half}};
+                for (float y = area_.top + 2 * half; y < area_.bottom; y += 5) {
+                    list_.AddLine({x, y}, {x, std::min(y + 2, area_.bottom)}, ink(palette::plot_mark));
+                }
+                if (i == 0) {
+                    list_.AddTriangleFilled(corners[0], corners[1], corners[2], ink(palette::plot_mark));
+                } else { // of the compared history
+                    list_.AddTriangle(corners[0], corners[1], corners[2], ink(palette::plot_mark), 1.5f);
+                }
+            }
+        }
     }
 
     double columns() const { return std::max(area_.right - area_.left, 1.0f); }
@@ -117,15 +219,6 @@ class Drawing {
     /// the labels.
     void lay_out(Box box) {
         const float letter = font_.FontSize;
-        float legend_rows = 1, at = 0;
-        for (const Series& series : plot_.series) {
-            const float width = letter + gap + width_of(series.name) + 2 * gap;
-            if (at > 0 && at + width > box.right - box.left) {
-                ++legend_rows;
-                at = 0;
-            }
-            at += width;
-        }
         if (!title_.empty()) {
             title_top_ = box.top;
             box.top += letter + 2 * gap;
@@ -133,7 +226,7 @@ class Drawing {
         legend_top_ = box.top;
         legend_left_ = box.left;
         legend_right_ = box.right;
-        label_top_ = box.top + legend_rows * (letter + 2);
+        label_top_ = box.top + static_cast<float>(legend_rows(legend_width())) * (letter + 2);
         area_.top = label_top_ + letter + gap;
         area_.bottom = box.bottom - 2 * letter - gap - tick_pixels;
         area_.bottom = std::max(area_.bottom, area_.top + 1);
@@ -154,6 +247,9 @@ class Drawing {
                 continue;
             }
             y = joined(y, range_of(series.y.subspan(begin, end - begin)));
+            if (!series.raw.empty()) {
+                y = joined(y, range_of(series.raw.subspan(begin, end - begin)));
+            }
             if (series.kind == Series::Kind::Band) {
                 y = joined(y, range_of(series.low.subspan(begin, end - begin)));
             }
@@ -161,8 +257,8 @@ class Drawing {
         const bool starts_at_zero = plot_.from_zero && (!y || y->min >= 0);
         y = y ? y : std::optional{Range{0, 1}};
         y_ = with_room(starts_at_zero ? Range{0, y->max} : *y, y_room);
-        if (starts_at_zero) {
-            y_ = {0, std::max(y_.max, 1e-9)};
+        if (y->min >= 0) { // no room below 0 for numbers that are never negative
+            y_ = {starts_at_zero ? 0 : std::max(y_.min, 0.0), std::max(y_.max, 1e-9)};
         }
         y_ticks_ = ticks_in(y_, std::max(2, static_cast<int>((area_.bottom - area_.top) / (1.7f * letter))));
         float widest = 0;
@@ -205,39 +301,89 @@ class Drawing {
               palette::text_quiet, plot_.x_label);
     }
 
+    struct Entry {
+        Series::Kind kind;
+        Colour colour;
+        std::string text;
+    };
+    std::vector<Entry> legend() const {
+        std::vector<Entry> entries;
+        if (!plot_.solid.empty()) {
+            entries.push_back({Series::Kind::Line, palette::text_quiet, plot_.solid});
+            entries.push_back({Series::Kind::Dashes, palette::text_quiet, plot_.dashed});
+        }
+        for (const Series& series : plot_.series) {
+            if (series.in_legend && !series.name.empty()) {
+                entries.push_back(
+                    {series.kind, series.colour, series.name + (series.newest.empty() ? "" : " " + series.newest)});
+            }
+        }
+        return entries;
+    }
+    float width_of(const Entry& entry) const { return font_.FontSize + gap + width_of(entry.text) + 2 * gap; }
+
+    /// Returns the number of rows of the legend if a row is at most this wide.
+    std::size_t legend_rows(float width) const {
+        const std::vector<Entry> entries = legend();
+        std::size_t rows = entries.empty() ? 0 : 1;
+        float at = 0;
+        for (const Entry& entry : entries) {
+            if (at > 0 && at + width_of(entry) > width) {
+                ++rows;
+                at = 0;
+            }
+            at += width_of(entry);
+        }
+        return rows;
+    }
+    /// Returns the least width of a row with which the legend has as few rows as possible, so that rows are of similar
+    /// length.
+    float legend_width() const {
+        const float most = legend_right_ - legend_left_ + 2 * gap; // no gap is needed after the last entry
+        float width = most;
+        while (width > font_.FontSize && legend_rows(width - font_.FontSize) == legend_rows(most)) {
+            width -= font_.FontSize;
+        }
+        return width;
+    }
+
     void draw_legend() {
-        const float letter = font_.FontSize;
+        const float letter = font_.FontSize, width = legend_width();
         if (!title_.empty()) {
             write(legend_left_, title_top_, palette::text, title_);
         }
         float x = legend_left_, y = legend_top_;
-        for (const Series& series : plot_.series) {
-            const float width = letter + gap + width_of(series.name) + 2 * gap;
-            if (x > legend_left_ && x + width > legend_right_) {
+        for (const Entry& entry : legend()) {
+            if (x > legend_left_ && x - legend_left_ + width_of(entry) > width) {
                 x = legend_left_;
                 y += letter + 2;
             }
             const float middle = std::round(y + letter / 2);
-            if (series.kind == Series::Kind::Line) {
-                list_.AddLine({x, middle}, {x + letter, middle}, ink(series.colour), 2.5f);
-            } else if (series.kind == Series::Kind::Dashes) {
-                list_.AddLine({x, middle}, {x + letter * 0.4f, middle}, ink(series.colour), 2.5f);
-                list_.AddLine({x + letter * 0.6f, middle}, {x + letter, middle}, ink(series.colour), 2.5f);
+            if (entry.kind == Series::Kind::Line) {
+                list_.AddLine({x, middle}, {x + letter, middle}, ink(entry.colour), 2.5f);
+            } else if (entry.kind == Series::Kind::Dashes) {
+                list_.AddLine({x, middle}, {x + letter * 0.4f, middle}, ink(entry.colour), 2.5f);
+                list_.AddLine({x + letter * 0.6f, middle}, {x + letter, middle}, ink(entry.colour), 2.5f);
             } else {
-                list_.AddRectFilled({x, y + 2}, {x + letter, y + letter - 2}, ink(series.colour));
+                list_.AddRectFilled({x, y + 2}, {x + letter, y + letter - 2}, ink(entry.colour));
             }
-            write(x + letter + gap, y, palette::text, series.name);
-            x += width;
+            write(x + letter + gap, y, palette::text, entry.text);
+            x += width_of(entry);
         }
     }
 
     void draw_series() {
+        draw_marks();
         list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
         for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            if (plot_.series[i].kind == Series::Kind::Stack) {
+                draw_stack(i);
+            }
+        }
+        for (std::size_t i = plot_.series.size(); i-- > 0;) {
             draw(i);
         }
         list_.PopClipRect();
-        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
     }
 
     void draw(std::size_t index) {
@@ -245,11 +391,14 @@ class Drawing {
         switch (series.kind) {
         case Series::Kind::Line:
         case Series::Kind::Dashes:
-            return draw_line(series, groups_[index]);
+            if (!series.raw.empty()) {
+                draw_line(Series::Kind::Line, faint(series.colour, raw_alpha), 1, series.x, series.raw, groups_[index]);
+            }
+            return draw_line(series.kind, series.colour, line_pixels, series.x, series.y, groups_[index]);
         case Series::Kind::Band:
             return draw_band(series, groups_[index]);
         case Series::Kind::Stack:
-            return draw_stack(index);
+            return; // has already been drawn
         case Series::Kind::Bars:
             for (const Group group : groups_[index]) {
                 draw_bar(series, group, 0, series.y[group.begin]);
@@ -257,25 +406,26 @@ class Drawing {
         }
     }
 
-    void draw_line(const Series& series, std::span<const Group> groups) {
+    void draw_line(Series::Kind kind, Colour colour, float thickness, std::span<const double> x,
+                   std::span<const double> y, std::span<const Group> groups) {
         std::vector<ImVec2> points;
         // If a column of pixels has several numbers, the line moves up and down within the column, so dashes would be
         // invisible.
         const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
         const auto finish = [&] {
-            if (points.size() == 1) {
-                list_.AddCircleFilled(points[0], 2, ink(series.colour));
-            } else if (series.kind == Series::Kind::Dashes && !dense) {
-                draw_dashes(points, ink(series.colour));
-            } else if (series.kind == Series::Kind::Dashes) {
-                list_.AddPolyline(points.data(), static_cast<int>(points.size()),
-                                  ink(faint(series.colour, dense_alpha)), 0, 1);
+            const int count = static_cast<int>(points.size());
+            if (count == 1) {
+                list_.AddCircleFilled(points[0], 2, ink(colour));
+            } else if (kind == Series::Kind::Dashes && !dense) {
+                draw_dashes(points, ink(colour));
+            } else if (kind == Series::Kind::Dashes) {
+                list_.AddPolyline(points.data(), count, ink(faint(colour, dense_alpha)), 0, 1);
             } else {
-                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour), 0, line_pixels);
+                list_.AddPolyline(points.data(), count, ink(colour), 0, thickness);
             }
             points.clear();
         };
-        for (const LinePoint& point : line_of(series.x, series.y, groups)) {
+        for (const LinePoint& point : line_of(x, y, groups)) {
             if (!std::isfinite(point.y)) {
                 finish();
             } else {
@@ -397,12 +547,8 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
             const Range next = zoomed(shown, share, std::pow(zoom_of_one_notch, io.MouseWheel), whole, x_units_min);
             view.x = next == whole ? std::nullopt : std::optional{next};
         }
-        if (const auto lines = drawing.draw_cursor(drawing.x_at(io.MousePos.x)); !lines.empty()) {
-            ImGui::BeginTooltip();
-            for (const std::string& line : lines) {
-                ImGui::TextUnformatted(line.c_str());
-            }
-            ImGui::EndTooltip();
+        if (const auto lines = drawing.draw_cursor(io.MousePos.x); !lines.empty()) {
+            build_note(lines, box);
         }
     }
     if (ImGui::IsItemActive() && view.x && io.MouseDelta.x != 0) {
@@ -411,12 +557,19 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     }
 }
 
-void curve_widget(const Plot& plot, Range y, float height_pixels) {
+std::optional<double> curve_widget(const char* id, const Plot& plot, Range y, float height_pixels) {
     const ImVec2 place = ImGui::GetCursorScreenPos();
     const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), height_pixels};
-    ImGui::Dummy(size);
+    const bool clicked = ImGui::InvisibleButton(id, size);
     const Box box{place.x, place.y, place.x + size.x, place.y + size.y};
-    Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_without_axes();
+    Drawing drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box};
+    drawing.draw_without_axes(box);
+    if (!plot.x_label.empty() && ImGui::IsItemHovered()) {
+        if (const auto lines = drawing.draw_cursor(ImGui::GetIO().MousePos.x); !lines.empty()) {
+            build_note(lines, box);
+        }
+    }
+    return clicked ? drawing.x_near(ImGui::GetIO().MousePos.x) : std::nullopt;
 }
 
 sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {

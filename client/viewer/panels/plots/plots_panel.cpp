@@ -14,13 +14,26 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float plot_height_min = 120;                           // pixels
+constexpr float plot_height_min = 100;                           // pixels
 constexpr int image_pixels_min = 200, image_pixels_max = 10'000; // allowed width and height of a saved image
 
 struct Tab {
     const char* name;
     Quantity quantity;
 };
+constexpr std::size_t windows[] = {1, 5, 10, 20, 50, 100}; // generations of a running mean; 1: none
+std::string window_name(std::size_t window) {
+    return window == 1 ? "each generation" : "mean of " + std::to_string(window);
+}
+
+/// Explains the plot of selection.
+constexpr const char* selection_of_all =
+    "Price equation: by how much selection changed the mean of each gene. Above 0, organisms with more of it had more "
+    "offspring.";
+constexpr const char* selection_of_one =
+    "Price equation: the change of the mean is selection (which organisms had offspring) + transmission (crossover and "
+    "mutation) + migration.";
+
 constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},     {"Genes", Quantity::Genes},
                         {"Selection", Quantity::Selection}, {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors}, {"Deaths", Quantity::Deaths}};
@@ -32,7 +45,7 @@ void build_pixels(const char* label, const char* name, int& pixels) {
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         pixels = std::clamp(pixels, image_pixels_min, image_pixels_max);
     }
-    widgets::mark(name);
+    widgets::mark_field(name, pixels);
     widgets::explain(std::string{"The "} + name + ", " + with_separators(image_pixels_min) + " to " +
                      with_separators(image_pixels_max) + " pixels.");
 }
@@ -93,24 +106,32 @@ void PlotsPanel::update(Context& context) {
 
 Subject PlotsPanel::subject() const {
     const History& history = own_->history();
-    return {history.table(), island_, history.world().empty() ? "this world" : history.world()};
+    return {history.table(), island_, history.world().empty() ? "this world" : history.world(), history.changes()};
 }
 
 // ---- widgets ---------------------------------------------------------------------------------------------------
 
 void PlotsPanel::build(Context& context) {
     update(context);
+    ImGui::PushFont(&context.gui.label());
     build_choices();
-    build_comparison();
     if (!own_->problem().empty()) {
         widgets::small_text(own_->problem(), palette::warning);
     }
     if (other_world_ && !other_world_->problem().empty()) {
         widgets::small_text(other_name_ + ": " + other_world_->problem(), palette::warning);
     }
-    if (ImGui::BeginTabBar("quantities")) {
+    const float scale = context.gui.scale();
+    // Narrow tabs, so that all of them fit into the sidebar.
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {3 * scale, 4 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing, {2 * scale, 4 * scale});
+    const bool tab_bar = ImGui::BeginTabBar("quantities");
+    ImGui::PopStyleVar(2);
+    if (tab_bar) {
         for (const Tab& tab : tabs) {
+            ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {3 * scale, 4 * scale});
             const bool open = ImGui::BeginTabItem(tab.name);
+            ImGui::PopStyleVar();
             widgets::mark(tab.name);
             if (open) {
                 build_quantity(context, tab.quantity);
@@ -120,6 +141,7 @@ void PlotsPanel::build(Context& context) {
         ImGui::EndTabBar();
     }
     build_export();
+    ImGui::PopFont();
 }
 
 void PlotsPanel::build_choices() {
@@ -127,32 +149,42 @@ void PlotsPanel::build_choices() {
     if (island_ && *island_ >= std::max(count, 1u)) {
         island_.reset();
     }
+    build_comparison();
+    ImGui::SameLine();
+    build_smoothing();
+    if (count > 1) {
+        build_islands();
+    }
+}
+
+void PlotsPanel::build_islands() {
     const auto named = [](HistoryTable::Island island) {
         return island ? "island " + std::to_string(*island) : std::string{"all islands"};
     };
-    if (count > 1) {
-        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
-        if (widgets::begin_drop_down("##island", named(island_).c_str(), "island")) {
-            for (std::uint32_t i = 0; i <= count; ++i) {
-                const HistoryTable::Island island = i == 0 ? HistoryTable::Island{} : i - 1;
-                if (widgets::choice("island", named(island), island == island_)) {
-                    island_ = island;
-                }
+    ImGui::SetNextItemWidth(-1);
+    if (widgets::begin_drop_down("##island", named(island_).c_str(), "island")) {
+        for (std::uint32_t i = 0; i <= own_->history().table().island_count(); ++i) {
+            const HistoryTable::Island island = i == 0 ? HistoryTable::Island{} : i - 1;
+            if (widgets::choice("island", named(island), island == island_)) {
+                island_ = island;
             }
-            ImGui::EndCombo();
         }
-        ImGui::SameLine();
+        ImGui::EndCombo();
     }
-    if (widgets::button("Fit")) {
-        view_ = histogram_view_ = {};
+}
+
+void PlotsPanel::build_smoothing() {
+    ImGui::SetNextItemWidth(-1);
+    if (widgets::begin_drop_down("##smooth", window_name(window_).c_str(), "running mean")) {
+        for (const std::size_t window : windows) {
+            if (widgets::choice("running mean", window_name(window), window == window_)) {
+                window_ = window;
+            }
+        }
+        ImGui::EndCombo();
     }
-    ImGui::SameLine();
-    const HistoryTable& table = own_->history().table();
-    const std::string known = table.empty() ? own_->history().complete() ? "No generation has ended yet" : "…"
-                                            : with_separators(table.column(std::nullopt, "generation").size()) +
-                                                  " generations, up to " + with_separators(table.last_generation());
-    widgets::small_text(known);
-    widgets::mark(known);
+    widgets::explain("Running mean: each point is the mean of that generation and the ones before it. Pale lines show "
+                     "each generation.");
 }
 
 void PlotsPanel::compare_with_file(const std::string& path) {
@@ -171,12 +203,16 @@ void PlotsPanel::compare_with_file(const std::string& path) {
     file_ = std::move(*loaded);
     other_world_.reset();
     other_name_ = std::filesystem::path{path}.stem().string();
+    compared_ = "file " + path;
 }
 
 void PlotsPanel::build_comparison() {
-    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("compare with");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.5f);
     const bool compares = other_world_ || file_;
-    if (widgets::begin_drop_down("compare", compares ? other_name_.c_str() : "nothing")) {
+    if (widgets::begin_drop_down("##compare", compares ? compared_.c_str() : "nothing", "compare")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
             worlds_stale_ = true;
@@ -195,6 +231,7 @@ void PlotsPanel::build_comparison() {
                 other_world_->set_run(world);
                 file_.reset();
                 other_name_ = world.name();
+                compared_ = "world " + other_name_;
             }
         }
         for (const std::string& name : files_) {
@@ -206,7 +243,7 @@ void PlotsPanel::build_comparison() {
         ImGui::SetNextItemWidth(-1);
         const bool entered = ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(),
                                                       path_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-        widgets::mark("path of another CSV file");
+        widgets::mark_field("path of another CSV file", path_.data());
         if (entered) {
             compare_with_file(path_.data());
             ImGui::CloseCurrentPopup();
@@ -217,28 +254,44 @@ void PlotsPanel::build_comparison() {
 
 void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     quantity_ = quantity;
-    // Height of the export row and its message, which are below the plot.
-    const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
         build_gene_choice("means of all genes");
         update_histogram(context);
     } else if (quantity == Quantity::Selection) {
         build_gene_choice("selection of all genes");
+        widgets::small_text(gene_.empty() ? selection_of_all : selection_of_one);
     }
     const auto* other_table = other_world_ ? &other_world_->history().table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;
     if (other_table != nullptr) {
-        other.emplace(Subject{*other_table, island_, other_name_});
+        other.emplace(Subject{*other_table, island_, other_name_,
+                              other_world_ ? other_world_->history().changes() : std::span<const Mark>{}});
     }
-    figure_ = figure_of(quantity, subject(), other ? &*other : nullptr, gene_);
-    const bool with_histogram = quantity == Quantity::Genes && !gene_.empty();
+    figure_ = figure_of(quantity, subject(), other ? &*other : nullptr, gene_, window_);
+    build_plots(context);
+}
+
+void PlotsPanel::build_plots(Context& context) {
+    const float line = ImGui::GetFrameHeightWithSpacing();
+    float below = line;
+    if (!message_.empty()) {
+        below += ImGui::CalcTextSize(message_.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
+                 ImGui::GetStyle().ItemSpacing.y;
+    }
     const float height = ImGui::GetContentRegionAvail().y - below;
-    if (!with_histogram) {
+    const HistoryTable& table = own_->history().table();
+    const std::string known = table.empty() ? own_->history().complete() ? "No generation has ended yet" : "…"
+                                            : with_separators(table.column(std::nullopt, "generation").size()) +
+                                                  " generations, up to " + with_separators(table.last_generation());
+    if (quantity_ != Quantity::Genes || gene_.empty()) {
         plot_widget("history", figure_.plot, view_, std::max(height, plot_height_min));
+        widgets::mark(known);
         return;
     }
-    const float line = ImGui::GetFrameHeightWithSpacing();
-    plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
+    // Below the first plot: a row of widgets and the histogram, each with its spacing.
+    const float rest = height - line - ImGui::GetStyle().ItemSpacing.y;
+    plot_widget("history", figure_.plot, view_, std::max(rest * 0.55f, plot_height_min));
+    widgets::mark(known);
     widgets::checkbox("living only", living_only_);
     ImGui::SameLine();
     const Population* population = population_.complete();
@@ -250,7 +303,7 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
         widgets::small_text("generation " + with_separators(population->generation()) + ", island " +
                             std::to_string(island_.value_or(context.world.feed.island())) + population_note_);
     }
-    plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
+    plot_widget("histogram", histogram_.plot, histogram_view_, std::max(rest * 0.45f, plot_height_min));
 }
 
 void PlotsPanel::build_gene_choice(const char* all) {
@@ -258,8 +311,8 @@ void PlotsPanel::build_gene_choice(const char* all) {
     if (std::ranges::find(names, gene_) == names.end()) {
         gene_.clear();
     }
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
-    if (widgets::begin_drop_down("gene", gene_.empty() ? all : gene_.c_str())) {
+    ImGui::SetNextItemWidth(-1);
+    if (widgets::begin_drop_down("##gene", gene_.empty() ? all : gene_.c_str(), "gene")) {
         if (widgets::choice("gene", all, gene_.empty())) {
             gene_.clear();
         }
@@ -368,6 +421,10 @@ void PlotsPanel::save_png() {
 }
 
 void PlotsPanel::build_export() {
+    if (widgets::button("Fit")) {
+        view_ = histogram_view_ = {};
+    }
+    ImGui::SameLine();
     if (widgets::button("Save CSV")) {
         save_csv();
     }

@@ -30,9 +30,14 @@ class PlotsPanel : public Panel {
     void update(Context& context);
     void poll_worlds(const Context& context);
 
+    /// Builds one row: the compared history, the running mean, the island and the zoom.
     void build_choices();
+    void build_islands();
     void build_comparison();
+    void build_smoothing();
     void build_quantity(Context& context, Quantity quantity);
+    /// Builds the plot and, for one gene, the histogram. They fill the panel above the row of build_export().
+    void build_plots(Context& context);
     /// all  the label of the choice that selects all genes.
     void build_gene_choice(const char* all);
     /// Computes the histogram of the chosen gene.
@@ -49,6 +54,7 @@ class PlotsPanel : public Panel {
     std::unique_ptr<RunHistory> other_world_; // another world to compare with; null: none
     std::optional<HistoryTable> file_;        // an earlier run to compare with
     std::string other_name_;                  // name of the compared history
+    std::string compared_;                    // the chosen entry of the drop-down "compare"
     PopulationPoll population_{population_interval};
 
     std::vector<evod::v1::WorldInfo> worlds_;
@@ -59,6 +65,7 @@ class PlotsPanel : public Panel {
     Quantity quantity_ = Quantity::Fitness;
     HistoryTable::Island island_;
     std::string gene_;
+    std::size_t window_ = 10; // generations of the running mean; 1: none
     bool living_only_ = true;
     PlotView view_, histogram_view_;
     Figure figure_, histogram_;

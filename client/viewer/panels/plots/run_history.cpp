@@ -30,6 +30,9 @@ void RunHistory::update_other(ViewedWorld& world, Poll::Clock::time_point now) {
     frame_ = frame;
     for (const evod::v1::Event& event : world.feed.events()) {
         history_.apply_event(event);
+        if (event.has_generation_finished() && world.replay.info() != nullptr) {
+            history_.refresh(); // a replay reports no changes of parameters by events
+        }
     }
     send_query(world, now);
 }

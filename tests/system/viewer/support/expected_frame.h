@@ -1,4 +1,4 @@
-// ExpectedFrame: the colours that the pixels of a screenshot must have, computed from a snapshot independently of the
+// ExpectedFrame: the colours that the pixels of a screenshot in the classic skin must have, computed from a snapshot independently of the
 // viewer's renderer.
 //
 // Shapes are painted in the viewer's order, with hard edges. Pixels on an edge, where the viewer blends, and those where a
@@ -44,10 +44,11 @@ class ExpectedFrame {
         , top_{static_cast<unsigned>(camera.viewport().top)}
         , width_{static_cast<unsigned>(camera.viewport().width)}
         , height_{static_cast<unsigned>(camera.viewport().height)}
-        , pixels_(std::size_t{width_} * height_, palette::background) {
+        , pixels_(std::size_t{width_} * height_, palette::of({Skin::Classic}).outside) {
         const double width = snapshot.about.width_px(), height = snapshot.about.height_px();
         const double wall = Camera::wall_pixels / camera.zoom();
-        box(width / 2, height / 2, width / 2 + wall, height / 2 + wall, Camera::wall_pixels, palette::wall, {});
+        box(width / 2, height / 2, width / 2 + wall, height / 2 + wall, Camera::wall_pixels, palette::wall,
+            palette::background);
         const auto boxes = [&](const codec::Entities& all, double edge_pixels, Colour edge, Colour fill) {
             for (std::size_t i = 0; i < all.x.size(); ++i) {
                 box(all.x_px(i), all.y_px(i), all.half_width_px(i), all.half_height_px(i), edge_pixels, edge, fill);
@@ -73,9 +74,9 @@ class ExpectedFrame {
         for (std::size_t i = 0; i < all.x.size(); ++i) { // numbers are drawn over everything
             const Point centre = camera_.to_screen({all.x_px(i), all.y_px(i)});
             const double radius = all.radius_px(i) * camera_.zoom();
-            const bool below = centre.y - radius - 15 < camera_.to_screen({0, 0}).y;
-            const double top = below ? centre.y + radius : centre.y - radius - 17;
-            paint(centre.x - 32, top, centre.x + 32, top + 17, [](double, double) { return open; });
+            for (const double top : {centre.y + radius, centre.y - radius - 17}) {
+                paint(centre.x - 32, top, centre.x + 32, top + 17, [](double, double) { return open; });
+            }
         }
     }
 

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -29,6 +30,9 @@ class TemporaryFolder {
         std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
         path_ = mkdtemp(name.data());
         setenv("XDG_STATE_HOME", file("state").c_str(), 1); // evoview stores its settings there
+        // The tour would cover the island in windows without a script.
+        std::filesystem::create_directories(file("state/evod"));
+        std::ofstream{file("state/evod/evoview.ini")} << "[Sidebar][Data]\ntour_seen=1\n";
     }
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     std::string file(const std::string& name) const { return (path_ / name).string(); }
@@ -194,9 +198,9 @@ class RealServer {
         EXPECT_TRUE(wait_until([&] { return state(world).state() == evod::v1::RUN_STATE_WAITING; }));
     }
 
-    evod::v1::ParameterSet parameters() {
+    evod::v1::ParameterSet parameters(const std::string& world = "") {
         evod::v1::Request request;
-        request.mutable_get_parameters();
+        request.mutable_get_parameters()->set_world(world);
         return connection->request(request, hang).value().parameters();
     }
     /// Ends evod. Returns its output since it began to listen.

@@ -144,5 +144,12 @@ TEST(Camera, FollowsAnotherCameraInItsOwnViewport) {
     EXPECT_TRUE(other.fitted());
 }
 
+TEST(CameraScale, WallsAndMarginsGrowWithTheScale) {
+    Camera camera;
+    camera.set_viewport({0, 0, 1000, 500}, 2);
+    camera.set_island(1000, 100);
+    EXPECT_DOUBLE_EQ(camera.to_screen({0, 0}).x, 2 * (Camera::wall_pixels + Camera::margin_pixels));
+}
+
 } // namespace
 } // namespace evod::viewer

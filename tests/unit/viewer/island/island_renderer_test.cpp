@@ -40,6 +40,30 @@ TEST_F(IslandRendererTest, ThreePixelsBesideIsAHitAtAnyZoom) {
     EXPECT_EQ(at(600, 620.31), std::nullopt);
 }
 
+TEST_F(IslandRendererTest, FindsTheItemUnderTheMouse) {
+    const auto item = [&](double x, double y) { return item_at(camera.to_screen({x, y}), organisms, 14, camera); };
+    EXPECT_EQ(item(107, 100), 1u) << "the nearest centre, whatever the radius in the columns";
+    EXPECT_EQ(item(600, 616.9), 2u);
+    EXPECT_EQ(item(600, 617.1), std::nullopt);
+}
+
+TEST_F(IslandRendererTest, ASmallOrganismHasATargetOf24Pixels) {
+    organisms.width = codec::px_column({2, 2, 20});
+    EXPECT_EQ(at(100, 111.9), 0u);
+    EXPECT_EQ(at(100, 112.1), std::nullopt);
+    EXPECT_EQ(at(107, 100), 1u) << "of two targets, the nearest edge";
+    camera.set_viewport({0, 0, 2048, 2048}, 2); // two pixels per px
+    EXPECT_EQ(at(100, 111.9), 0u) << "at scale 2";
+    EXPECT_EQ(at(100, 112.1), std::nullopt);
+}
+
+TEST_F(IslandRendererTest, APointInsideALargeOrganismHitsIt) {
+    organisms.x = codec::px_column({100, 145, 600});
+    organisms.width = codec::px_column({40, 2, 20});
+    EXPECT_EQ(at(136, 100), 0u) << "9 px beside a small organism, but inside the large one";
+    EXPECT_EQ(at(142, 100), 1u);
+}
+
 TEST_F(IslandRendererTest, NothingIsFoundUnderTheStripsOfText) {
     camera.set_viewport({0, 40, 1024, 900});
     EXPECT_EQ(organism_at({512, 20}, {.entities = &organisms}, camera), std::nullopt);
@@ -49,10 +73,13 @@ TEST(Labels, AreDrawnOnlyWhereTheyAreReadable) {
     Camera camera;
     camera.set_viewport({0, 0, 1280, 650});
     camera.set_island(1280, 720);
-    EXPECT_TRUE(labels_are_readable(camera, 50));
-    EXPECT_FALSE(labels_are_readable(camera, 10'000));
+    EXPECT_TRUE(labels_are_readable(camera, 50, 0.45));
+    EXPECT_FALSE(labels_are_readable(camera, 10'000, 0.45));
+    EXPECT_FALSE(labels_are_readable(camera, 50, 1.4)) << "the organisms are small";
+    camera.set_viewport({0, 0, 1280, 650}, 3);
+    EXPECT_FALSE(labels_are_readable(camera, 50, 0.45)) << "the numbers are large";
     camera.set_island(20'000, 20'000);
-    EXPECT_FALSE(labels_are_readable(camera, 1));
+    EXPECT_FALSE(labels_are_readable(camera, 1, 0.45));
 }
 
 TEST(Labels, RoundHealthUpSoThatTheLivingNeverShowZero) {

@@ -204,7 +204,7 @@ TEST_F(IslandViewTest, RestartsWhenTheGenerationEndsBetweenPages) {
 
 TEST_F(IslandViewTest, RequestsForcesAgainWhileTheWorldRuns) {
     show(4, 100);
-    island_view.options.forces = true;
+    island_view.options.forces = island_view.options.of_all = true;
     answer_page(3, 4);
     until([&] { return island_view.population() != nullptr; });
     show(4, 110);
@@ -214,7 +214,7 @@ TEST_F(IslandViewTest, RequestsForcesAgainWhileTheWorldRuns) {
 
 TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     session->refuse(next_request().request_id(), evod::v1::CODE_UNIMPLEMENTED, "what?");
     until([&] { return !island_view.problem().empty(); });
     EXPECT_THAT(island_view.problem(), HasSubstr("sends no genes"));
@@ -225,7 +225,7 @@ TEST_F(IslandViewTest, RequestsOnceFromAServerWithoutSupport) {
 
 TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     const auto request = next_request();
     evod::v1::ServerMessage message;
     message.mutable_response()->set_request_id(request.request_id());
@@ -234,6 +234,39 @@ TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     session->send(message);
     until([&] { return !island_view.problem().empty(); });
     EXPECT_THAT(island_view.problem(), HasSubstr("population.genes has 0 bytes, not 24"));
+}
+
+TEST_F(IslandViewTest, OpensAReplayToShowAParentAndSelectsIt) {
+    show(4, 100);
+    island_view.go_to(*world, {.island = 1, .generation = 3, .id = 2});
+    const auto request = next_request();
+    ASSERT_TRUE(request.has_open_replay()) << request.DebugString();
+    EXPECT_EQ(request.open_replay().world(), "default");
+    EXPECT_EQ(request.open_replay().at().generation(), 3u);
+    show(4, 101);
+    EXPECT_EQ(world->feed.selected(), std::nullopt) << "the ids of generation 4 belong to other organisms";
+    session->refuse(request.request_id(), evod::v1::CODE_RESOURCE_EXHAUSTED, "no more replays");
+    show_replay(); // in another way
+    show(3, 60, "\xaa", 8, 3, "default@3");
+    EXPECT_EQ(world->feed.selected(), 2u);
+    EXPECT_TRUE(island_view.following());
+}
+
+TEST_F(IslandViewTest, TheSelectionReturnsWithItsGeneration) {
+    show(4, 100);
+    world->feed.select(2);
+    until([&] { return island_view.organism_history() != nullptr; });
+    island_view.toggle_following(*world);
+    until([&] { return island_view.following(); });
+    show(5, 200);
+    EXPECT_EQ(world->feed.selected(), std::nullopt);
+    show(4, 90); // a seek to an earlier tick
+    EXPECT_EQ(world->feed.selected(), 2u);
+    EXPECT_TRUE(island_view.following());
+    world->feed.select(std::nullopt); // by a click beside all organisms
+    show(5, 201);
+    show(4, 91);
+    EXPECT_EQ(world->feed.selected(), std::nullopt);
 }
 
 TEST_F(IslandViewTest, DeselectsTheOrganismWhenItsGenerationEnds) {
@@ -262,8 +295,23 @@ TEST_F(IslandViewTest, DeselectsTheOrganismWhenItsGenerationEnds) {
     EXPECT_EQ(island_view.organism_history()->health().back().health, 70);
     show(5, 200);
     EXPECT_EQ(world->feed.selected(), std::nullopt);
-    answer_page(3, 5); // parents by page_of: of 0, 1 and 2; of 1, 2 and 3
-    until([&] { return island_view.organism_history()->children().has_value(); });
+    for (bool asked_picks = false, asked_children = false; !asked_picks || !asked_children;) {
+        const auto request = next_request();
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request.request_id());
+        if (request.has_get_breeding()) {
+            asked_picks = true;
+            EXPECT_EQ(request.get_breeding().first_contender(), 2u);
+            message.mutable_response()->mutable_breeding()->set_generation(4);
+            message.mutable_response()->mutable_breeding()->add_contenders()->set_copies(3);
+        } else {
+            asked_children = true; // parents by page_of: of 0, 1 and 2; of 1, 2 and 3
+            *message.mutable_response()->mutable_population() = page_of(0, 3, 3, 5);
+        }
+        session->send(message);
+    }
+    until([&] { return island_view.organism_history()->children() && island_view.organism_history()->picks(); });
+    EXPECT_EQ(island_view.organism_history()->picks()->count, 3u);
     EXPECT_EQ(island_view.organism_history()->children()->size(), 2u);
 }
 
@@ -308,7 +356,7 @@ TEST_F(IslandViewTest, ForgetsEverythingWithAnotherRun) {
 
 TEST_F(IslandViewTest, DropsRequestsOfTheLiveWorldInAReplay) {
     show(4, 100);
-    island_view.options.radii = true;
+    island_view.options.of_all = true; // radii are on by default
     const auto unanswered = next_request();
     EXPECT_EQ(unanswered.get_population().world(), "default");
     show_replay();
@@ -364,6 +412,22 @@ TEST_F(IslandViewTest, StreamsOnlyTheVisiblePartOfLargeIslands) {
     ASSERT_TRUE(request.has_set_view()) << request.DebugString();
     EXPECT_EQ(request.set_view().subscription_id(), 9u);
     EXPECT_LT(request.set_view().view().region().width_px(), 300);
+}
+
+TEST_F(IslandViewTest, RequestsRadiiWhileTheMousePointsAtAnOrganism) {
+    show(4, 100);
+    EXPECT_EQ(session->unread_bytes(), 0u) << "radii are shown, but of no organism";
+    island_view.update(*world, camera, std::chrono::steady_clock::now(), true);
+    answer_page(3, 4);
+    until([&] { return island_view.population() != nullptr; });
+}
+
+TEST(IslandView, TheClassicSkinAddsNothingByDefault) {
+    const ViewOptions classic = default_options({Skin::Classic});
+    EXPECT_FALSE(classic.trails || classic.flashes || classic.radii || classic.forces);
+    const ViewOptions vivid = default_options({Skin::Vivid, Background::Light});
+    EXPECT_EQ(vivid.look, (Look{Skin::Vivid, Background::Light}));
+    EXPECT_EQ(default_options({}), ViewOptions{});
 }
 
 TEST(IslandView, CyclesThroughTheColourings) {

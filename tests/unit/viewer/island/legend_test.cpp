@@ -44,6 +44,12 @@ TEST(Legend, ExplainsNothingThatNeedsAMissingPopulation) {
     EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
 }
 
+TEST(Legend, ExplainsRadiiOnlyIfTheyAreShownOfAll) {
+    IslandView view;
+    EXPECT_TRUE(view.options.radii);
+    EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
+}
+
 TEST(Legend, NamesGenesWithTheirUnits) {
     EXPECT_EQ(gene_title("food_radius"), "food_radius, px");
     EXPECT_EQ(gene_title("impulse"), "impulse, gene units");

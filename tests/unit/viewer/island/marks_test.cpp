@@ -88,22 +88,33 @@ TEST_F(MarksTest, DiscsHaveTheRadiiOfTheOrganisms) {
     EXPECT_THAT(discs, ElementsAre(Shape{100, 10, 10, 10}, Shape{200, 20, 11, 11}, Shape{300, 30, 12, 12}));
 }
 
+TEST_F(MarksTest, BodiesHaveTheirShareOfTheGreatestHealth) {
+    set_health(organisms, 200, discs);
+    EXPECT_EQ(discs[0].half_width, 10);
+    EXPECT_FLOAT_EQ(discs[0].half_height, organisms.health(0) / 200);
+    set_health(organisms, 1, discs);
+    EXPECT_EQ(discs[2].half_height, 1) << "at most the whole arc";
+}
+
 TEST_F(MarksTest, RadiiAreDrawnOfVisibleOrganismsOnly) {
     std::vector<Shape> shapes;
-    add_radii(organisms, discs, population, 1, everything, shapes);
+    add_radii(organisms, discs, population, 1, everything, {}, shapes);
     EXPECT_THAT(shapes, ElementsAre(Shape{100, 10, 100, 100}, Shape{200, 20, 102, 102}));
     shapes.clear();
-    add_radii(organisms, discs, population, 1, {301, 0, 100, 100}, shapes);
+    add_radii(organisms, discs, population, 1, {301, 0, 100, 100}, {}, shapes);
     EXPECT_THAT(shapes, ElementsAre(Shape{200, 20, 102, 102}));
+    shapes.clear();
+    add_radii(organisms, discs, population, 1, everything, std::vector<std::size_t>{0}, shapes);
+    EXPECT_THAT(shapes, ElementsAre(Shape{100, 10, 100, 100})) << "of the chosen organism";
 }
 
 TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ColouredLines arrows, targets;
-    add_forces(organisms, discs, population, everything, arrows, targets);
+    add_forces(organisms, discs, population, everything, {}, palette::of({}), arrows, targets);
     EXPECT_THAT(arrows.lines, ElementsAre(Line{100, 10, 100 + arrow_px_per_force, 10},
                                           Line{200, 20, 200 + arrow_px_per_force, 20 + 2 * arrow_px_per_force}));
     EXPECT_THAT(targets.lines, ElementsAre(Line{100, 10, 0, 0}, Line{200, 20, 2, 4}));
-    EXPECT_THAT(targets.colours, ElementsAre(palette::seeks, palette::seeks));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::of({}).seeks, palette::of({}).seeks));
 
     auto page = page_of(0, 3, 3);
     *page.mutable_choices() = {evod::v1::CHOICE_WANDER, evod::v1::CHOICE_SEEK, evod::v1::CHOICE_FLEE};
@@ -111,13 +122,15 @@ TEST_F(MarksTest, ArrowsShowForcesAndLinesShowTargets) {
     ASSERT_EQ(others.add(page), std::nullopt);
     arrows.clear();
     targets.clear();
-    add_forces(organisms, discs, others, everything, arrows, targets);
-    EXPECT_THAT(arrows.colours, ElementsAre(palette::wanders, palette::flees));
-    EXPECT_THAT(targets.colours, ElementsAre(palette::flees)) << "a wandering organism has no target";
+    add_forces(organisms, discs, others, everything, {}, palette::of({}), arrows, targets);
+    EXPECT_THAT(arrows.colours, ElementsAre(palette::of({}).wanders, palette::of({}).flees));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::of({}).flees)) << "a wandering organism has no target";
     arrows.clear();
     targets.clear();
-    add_forces(organisms, discs, others, {5'000, 5'000, 10, 10}, arrows, targets);
+    add_forces(organisms, discs, others, {5'000, 5'000, 10, 10}, {}, palette::of({}), arrows, targets);
     EXPECT_THAT(arrows.lines, IsEmpty());
+    add_forces(organisms, discs, population, everything, std::vector<std::size_t>{1}, palette::of({}), arrows, targets);
+    EXPECT_THAT(targets.lines, ElementsAre(Line{200, 20, 2, 4})) << "of the chosen organism";
 }
 
 // ---- trails ----------------------------------------------------------------------------------------------------
@@ -169,6 +182,23 @@ TEST(Trails, ConnectEachOrganismWithItself) {
 }
 
 // ---- density ---------------------------------------------------------------------------------------------------
+
+TEST(Density, DotsAreUsedUntilTheyAreTooMany) {
+    evod::v1::SnapshotFrame island;
+    island.set_width_px(40'000);
+    island.set_height_px(20'000);
+    Camera camera;
+    camera.set_viewport({0, 0, 880, 650});
+    camera.set_island(40'000, 20'000);
+    EXPECT_TRUE(too_small_to_see(camera));
+    EXPECT_FALSE(too_many_for_dots(camera, island, 20'000));
+    EXPECT_TRUE(too_many_for_dots(camera, island, 2 * dots_max)) << "for the stream";
+    camera.zoom_at(camera.viewport().centre(), 4);
+    EXPECT_FALSE(too_many_for_dots(camera, island, 2 * dots_max)) << "most are out of sight";
+    camera.set_viewport({0, 0, 160, 100});
+    camera.fit();
+    EXPECT_TRUE(too_many_for_dots(camera, island, 20'000)) << "for a small tile: more than one per pixel";
+}
 
 TEST(Density, CellsAreAlignedToTheIsland) {
     codec::Entities organisms;

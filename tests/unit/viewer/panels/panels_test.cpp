@@ -50,7 +50,8 @@ TEST(Panels, TheSidebarLeavesRoomForTheWorlds) {
     EXPECT_EQ(panels.width(1280, 2), 2 * sidebar_width_min);
     panels.set({});
     panels.show("Glass box");
-    EXPECT_GT(panels.width(1920, 1), sidebar_width) << "the glass box needs more room";
+    EXPECT_EQ(panels.width(1920, 1), 640) << "the glass box needs more room";
+    EXPECT_EQ(panels.width(1280, 1), 426) << "at most a third of the window";
 }
 
 TEST(Panels, AnUnknownStoredTabIsTheFirst) {

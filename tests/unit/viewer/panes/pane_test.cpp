@@ -8,9 +8,6 @@
 namespace evod::viewer {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 /// One pane with the server's choice of a world, which is "default".
 struct PanesTest : testing::Test {
     PanesTest() {
@@ -64,12 +61,30 @@ TEST_F(PanesTest, ShowsTheOtherWorldBeside) {
     EXPECT_THAT(notices, testing::IsEmpty());
 }
 
-TEST_F(PanesTest, DoesNotShowTheOnlyWorldTwice) {
+TEST_F(PanesTest, OffersASecondWorldWhereThereIsOne) {
     panes.toggle_beside();
     answer_worlds(session.read_request(), {"default"});
-    until([&] { return !notices.empty(); });
-    EXPECT_THAT(notices, ElementsAre(HasSubstr("evoctl create NAME")));
-    EXPECT_EQ(panes.size(), 1u);
+    until([&] { return panes[0].world.take_new_world_offer(); });
+    EXPECT_FALSE(panes[0].world.take_new_world_offer()) << "once";
+    EXPECT_EQ(panes.size(), 1u) << "the only world is not shown twice";
+}
+
+TEST_F(PanesTest, ShowsACreatedWorldBeside) {
+    for (const char* name : {"first", "second"}) {
+        evod::v1::Request create;
+        create.mutable_create_world()->set_name(name);
+        panes[0].world.create(std::move(create), true, [](const std::string& refusal) { EXPECT_EQ(refusal, ""); });
+        evod::v1::Request request = session.read_request();
+        while (!request.has_create_world()) { // statistics of the viewed world
+            request = session.read_request();
+        }
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request.request_id());
+        message.mutable_response()->mutable_world()->set_name(name);
+        session.send(message);
+        until([&] { return panes.size() == 2 && panes[1].world.feed.world() == name; });
+        EXPECT_EQ(panes[0].world.feed.name(), "default");
+    }
 }
 
 TEST_F(PanesTest, OnlyTheNewestAnswerOpensAPane) {

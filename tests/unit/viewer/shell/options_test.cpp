@@ -35,6 +35,11 @@ TEST(ViewerOptions, ContainTheWantedWorld) {
     EXPECT_EQ(wanted.rate_hz, 60);
 }
 
+TEST(ViewerOptions, ContainTheFreezer) {
+    EXPECT_EQ(parsed({}).freezer, "") << "the default folder";
+    EXPECT_EQ(parsed({"--freezer", "class/8b"}).freezer, "class/8b");
+}
+
 TEST(ViewerOptions, SizeIsInPixelsOrFollowsTheScale) {
     const Options::Size given = size_of(parsed({"--size", "640x400"}), 2);
     EXPECT_EQ(given.width, 640u);
@@ -56,10 +61,25 @@ TEST(ViewerOptions, ScreenshotsAndRecordingsShareTheTimeout) {
     EXPECT_EQ(recording.record->timeout_s, 5);
 }
 
+TEST(ViewerOptions, TheLookReplacesTheStoredOne) {
+    EXPECT_EQ(view_of(parsed({})), ViewOptions{}) << "vivid and dark";
+    ViewOptions stored = default_options({Skin::Classic});
+    stored.trails = true;
+    EXPECT_EQ(view_of(parsed({}), stored), stored);
+    EXPECT_EQ(view_of(parsed({"--skin", "classic"}), stored), stored);
+    EXPECT_EQ(view_of(parsed({"--background", "light"}), stored), stored) << "classic has one background";
+    EXPECT_EQ(view_of(parsed({"--skin", "vivid"}), stored), ViewOptions{}) << "with the defaults of the skin";
+    EXPECT_EQ(view_of(parsed({"--skin", "vivid", "--background", "light"}), stored).look,
+              (Look{Skin::Vivid, Background::Light}));
+}
+
 TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
     const std::vector<std::vector<const char*>> invalid{{"--size", "12by4"},
                                                         {"--size", "1280x9999999"},
                                                         {"--timeout", "5"},
+                                                        {"--skin", "neon"},
+                                                        {"--background", "blue"},
+                                                        {"--skin", "classic", "--background", "dark"},
                                                         {"--at-tick", "5"},
                                                         {"--past", "0"},
                                                         {"--screenshot", "a.png", "--record", "b.mp4"},
@@ -69,6 +89,16 @@ TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
         ASSERT_TRUE(std::holds_alternative<int>(options)) << arguments.front();
         EXPECT_EQ(std::get<int>(options), 2) << arguments.front();
     }
+}
+
+TEST(Tour, IsShownOnceAndNotInScripts) {
+    Options options;
+    EXPECT_TRUE(wants_tour(options, false));
+    EXPECT_FALSE(wants_tour(options, true));
+    options.script = Script{};
+    EXPECT_FALSE(wants_tour(options, false));
+    options.tour = true;
+    EXPECT_TRUE(wants_tour(options, true));
 }
 
 } // namespace

@@ -29,10 +29,27 @@ TEST(Numbers, HaveSixDigits) {
     EXPECT_EQ(shown_number(-7), "−7");
     EXPECT_EQ(shown_number(1'000'000), "1,000,000");
     EXPECT_EQ(shown_number(-1e-9), "−1e-09");
+    EXPECT_EQ(three_digits(1.20817), "1.21");
+    EXPECT_EQ(three_digits(348.59), "349");
+    EXPECT_EQ(three_digits(999.7), "1,000");
+    EXPECT_EQ(three_digits(12'345.6), "12,346");
+    EXPECT_EQ(three_digits(-0.01234), "−0.0123");
+    EXPECT_EQ(three_digits(1.0 / 0.0), "–");
     EXPECT_EQ(shown_number(0), "0");
     EXPECT_EQ(shown_number(std::numeric_limits<double>::quiet_NaN()), "–");
     EXPECT_EQ(with_unit(12.5, "px"), "12.5 px");
     EXPECT_EQ(with_unit(3, ""), "3");
+}
+
+TEST(Numbers, HaveThreeSignificantDigits) {
+    EXPECT_EQ(significant(1234.5), "1,230");
+    EXPECT_EQ(significant(104'286), "104,000");
+    EXPECT_EQ(significant(0.64032), "0.64");
+    EXPECT_EQ(significant(-343.082), "−343");
+    EXPECT_EQ(significant(9.996), "10");
+    EXPECT_EQ(significant(0), "0");
+    EXPECT_EQ(significant(-1.2345e-9), "−1.23e-09");
+    EXPECT_EQ(significant(std::numeric_limits<double>::infinity()), "–");
 }
 
 TEST(Numbers, AreReadOnlyFromDigits) {

@@ -27,6 +27,7 @@ TEST(Families, LeaveOutUnknownFounders) {
     const std::uint32_t founders[] = {Families::unknown, 3, Families::unknown};
     const Families families{founders};
     EXPECT_EQ(families.count(), 1u);
+    EXPECT_EQ(families.size(), 1u);
     EXPECT_EQ(families.of(0), Families::none);
     EXPECT_EQ(families.of(1), 0);
 }

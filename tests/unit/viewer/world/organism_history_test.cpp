@@ -75,6 +75,9 @@ TEST(OrganismHistory, ReportsItsDeath) {
     story.add(last);
     EXPECT_TRUE(story.dead());
     EXPECT_EQ(shown_fate(story), "died of poison after 12.3 s");
+    last.set_cause_of_death(evod::v1::CAUSE_OF_DEATH_REMOVED);
+    story.add(last);
+    EXPECT_EQ(shown_fate(story), "removed by a user after 12.3 s");
 }
 
 TEST(OrganismHistory, ChildrenAreInTheNextGeneration) {
@@ -112,14 +115,92 @@ TEST(OrganismHistory, ChildrenAreInTheNextGeneration) {
 TEST(Parents, NameTwoOrOneOrNone) {
     evod::v1::OrganismInfo info;
     info.set_generation(1);
-    EXPECT_EQ(shown_parents(info), "No parents: founder of generation 1, or loaded from a file");
+    using enum OrganismHistory::Origin;
+    EXPECT_EQ(shown_parents(info, Unknown), "No parents: founder of generation 1, or loaded from a file");
+    info.set_placed_tick(1234);
+    EXPECT_EQ(shown_parents(info, Unknown), "No parents: placed by a user after tick 1,234 of the generation");
+    info.clear_placed_tick();
     info.set_generation(36);
     info.add_parents(45);
-    EXPECT_EQ(shown_parents(info), "Parent: 45 (generation 35)") << "a survivor";
+    EXPECT_EQ(shown_parents(info, Unknown), "One parent: 45 (generation 35)");
+    EXPECT_EQ(shown_parents(info, Survivor), "One parent: 45 (generation 35): this organism is a survivor");
+    EXPECT_EQ(shown_parents(info, Elite), "One parent: 45 (generation 35): this organism belongs to the elite");
     info.add_parents(45);
-    EXPECT_EQ(shown_parents(info), "Parent: 45 (generation 35)");
+    EXPECT_EQ(shown_parents(info, Child), "One parent: 45 (generation 35), which was both parents");
     info.set_parents(1, 12);
-    EXPECT_EQ(shown_parents(info), "Parents: 45 and 12 (generation 35)");
+    EXPECT_EQ(shown_parents(info, Child), "Parents: 45 and 12 (generation 35)");
+}
+
+/// The answer to a request of a history: the picks of the organism that the request names.
+evod::v1::Breeding picked(const evod::v1::GetBreeding& request, std::uint32_t copies, double expected) {
+    evod::v1::Breeding breeding;
+    breeding.set_generation(request.generation());
+    breeding.set_pick_count(25);
+    breeding.set_elite_count(1);
+    breeding.set_survivor_count(25);
+    auto& contender = *breeding.add_contenders();
+    contender.set_copies(copies);
+    contender.set_expected_copies(expected);
+    return breeding;
+}
+
+TEST(OrganismHistory, RequestsThePicksOfParentsThenItsOwn) {
+    OrganismHistory history{3, 4};
+    EXPECT_FALSE(history.wanted_picks(false)) << "the parents are not known yet";
+    auto described = info(4, true);
+    described.add_parents(45);
+    described.add_parents(12);
+    history.add(described);
+    for (const std::uint32_t parent : {45u, 12u}) {
+        const auto wanted = history.wanted_picks(false);
+        ASSERT_TRUE(wanted);
+        EXPECT_EQ(wanted->generation(), 3u);
+        EXPECT_EQ(wanted->first_contender(), parent);
+        EXPECT_EQ(history.picks_of_parent(parent), nullptr);
+        history.add(*wanted, picked(*wanted, parent == 45 ? 3 : 0, 1.7083));
+    }
+    EXPECT_EQ(history.origin(), OrganismHistory::Origin::Survivor);
+    EXPECT_EQ(shown_picks("Its parent 45", *history.picks_of_parent(45)),
+              "Its parent 45 was picked 3 of 25 times, expected 1.71.");
+    EXPECT_FALSE(history.wanted_picks(false)) << "the organism's own generation has not bred";
+    const auto own = history.wanted_picks(true);
+    ASSERT_TRUE(own);
+    EXPECT_EQ(own->generation(), 4u);
+    EXPECT_EQ(own->first_contender(), 3u);
+    auto answer = picked(*own, 2, 2);
+    answer.mutable_contenders(0)->mutable_migrant()->set_island(1);
+    answer.mutable_contenders(0)->mutable_migrant()->set_organism(9);
+    history.add(*own, answer);
+    EXPECT_FALSE(history.wanted_picks(true));
+    EXPECT_EQ(shown_picks("It", *history.picks()),
+              "It (a copy of organism 9 of island 1) was picked 2 of 25 times, expected 2.");
+}
+
+TEST(OrganismHistory, IgnoresAnAnswerAboutAnotherBreeding) {
+    OrganismHistory history{3, 4};
+    const auto wanted = history.wanted_picks(true);
+    ASSERT_TRUE(wanted);
+    auto answer = picked(*wanted, 2, 2);
+    answer.set_generation(9);
+    history.add(*wanted, answer);
+    answer.set_generation(4);
+    answer.clear_contenders();
+    history.add(*wanted, answer);
+    EXPECT_EQ(history.picks(), nullptr);
+}
+
+TEST(Healthiest, AreOrderedByHealthThenById) {
+    const auto snapshot = codec::snapshot_with(
+        {.id = {1, 3, 7}, .x = {}, .y = {}, .width = {}, .height = codec::px_column({50, 80, 80})});
+    EXPECT_EQ(healthiest(snapshot->organisms, 2), (std::vector<std::size_t>{1, 2}));
+    EXPECT_EQ(healthiest(snapshot->organisms, 9), (std::vector<std::size_t>{1, 2, 0}));
+}
+
+TEST(HealthAxis, EndsAtTheNextRoundNumber) {
+    EXPECT_EQ(axis_end(226), 250);
+    EXPECT_EQ(axis_end(250), 250);
+    EXPECT_EQ(axis_end(251), 300);
+    EXPECT_EQ(axis_end(1), 1);
 }
 
 TEST(OrganismHistory, StopsWaitingForChildrenAfterTwoGenerations) {

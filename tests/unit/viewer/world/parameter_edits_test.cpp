@@ -320,17 +320,54 @@ TEST(ParameterGroups, AnUnknownParameterJoinsTheTopicBeforeIt) {
     }
     std::vector<std::string> groups;
     for (const ParameterGroup& part : group(registry)) {
-        groups.push_back(std::string{part.title} + " " + std::to_string(part.first) + "-" + std::to_string(part.end));
+        groups.push_back(std::string{part.title} + " " + std::to_string(part.members.size()));
     }
-    EXPECT_THAT(groups, ElementsAre("General 0-1", "Experiment 1-2", "Crossover 2-4", "Migration 4-5"));
+    EXPECT_THAT(groups, ElementsAre("General 1", "Experiment 1", "Crossover 2", "Migration 1"));
 }
 
-TEST(ParameterSearch, MatchesEveryWordInNameUnitOrHelp) {
-    EXPECT_TRUE(matches(chance(), ""));
-    EXPECT_TRUE(matches(chance(), "mutation"));
-    EXPECT_TRUE(matches(chance(), "mutation_chance"));
-    EXPECT_TRUE(matches(chance(), "CREEP gene"));
-    EXPECT_FALSE(matches(chance(), "creep crate"));
+TEST(ParameterGroups, TheMostUsedAreThoseThatTheServerHas) {
+    std::vector<ParameterDescription> registry;
+    for (const char* name : {"food_count", "brand_new", "selection"}) {
+        registry.push_back(describe(name, evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0)));
+    }
+    EXPECT_THAT(most_used(registry).members, ElementsAre(2, 0)) << "in the order of use";
+}
+
+TEST(ParameterSearch, MatchesEveryWordOfParameterAndGroup) {
+    EXPECT_TRUE(matches(chance(), "Mutation", ""));
+    EXPECT_TRUE(matches(chance(), "", "mutation"));
+    EXPECT_TRUE(matches(chance(), "", "mutation_chance"));
+    EXPECT_TRUE(matches(chance(), "", "CREEP gene"));
+    EXPECT_FALSE(matches(chance(), "", "creep crate"));
+    EXPECT_TRUE(matches(chance(), "Selection", "selection chance"));
+    auto about = describe("selection", evod::v1::PARAMETER_KIND_CHOICE, 0, 0, real(0));
+    about.add_choices("stochastic_universal");
+    about.add_choice_help("One spin chooses all parents.");
+    EXPECT_TRUE(matches(about, "", "stochastic universal"));
+    EXPECT_TRUE(matches(about, "", "spin"));
+}
+
+TEST(ParameterLabels, AreWordsWithoutTheUnit) {
+    const auto label = [](const char* name, const char* unit) {
+        auto about = describe(name, evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0));
+        about.set_unit(unit);
+        return label_of(about);
+    };
+    EXPECT_EQ(label("mutation_chance", "chance"), "Mutation chance");
+    EXPECT_EQ(label("tick_s", "s"), "Tick");
+    EXPECT_EQ(label("max_speed_px_s", "px/s"), "Max speed");
+    EXPECT_EQ(label("health_loss_per_s", "health/s"), "Health loss per s");
+    EXPECT_EQ(label_of_choice("stochastic_universal"), "stochastic universal");
+}
+
+TEST(ParameterLabels, AUnitFitsItsNumberAndTheField) {
+    auto islands = describe("island_count", evod::v1::PARAMETER_KIND_COUNT, 1, 4096, count(1));
+    islands.set_unit("islands");
+    EXPECT_EQ(unit_text(islands, 1), " island");
+    EXPECT_EQ(unit_text(islands, 2), " islands");
+    EXPECT_EQ(unit_text(chance(), 1), " chance");
+    islands.set_unit("share per 1/60 s");
+    EXPECT_EQ(unit_text(islands, 2), "");
 }
 
 TEST(ParameterSliders, AreLogarithmicOverDecades) {

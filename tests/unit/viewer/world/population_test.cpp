@@ -48,6 +48,28 @@ TEST(Population, TheFirstGenerationHasNoParents) {
     EXPECT_TRUE(population.children_of(1).empty());
 }
 
+TEST(Population, PlacedOrganismsBelongToNoFamily) {
+    Population population{2};
+    auto page = page_of(0, 4, 4);
+    page.clear_founders();
+    for (const std::uint32_t founder : {1u, 1u, ~0u, ~0u}) {
+        put(*page.mutable_founders(), founder);
+    }
+    ASSERT_EQ(population.add(page), std::nullopt);
+    EXPECT_EQ(population.families().count(), 1u);
+    EXPECT_EQ(population.families().of(1), 0);
+    EXPECT_EQ(population.families().of(3), Families::none);
+}
+
+TEST(Population, AnOrganismPlacedBetweenPagesOutdatesThem) {
+    Population population{2};
+    EXPECT_FALSE(population.is_outdated_by(page_of(0, 3, 5)));
+    ASSERT_EQ(population.add(page_of(0, 3, 5)), std::nullopt);
+    EXPECT_FALSE(population.is_outdated_by(page_of(3, 2, 5)));
+    EXPECT_TRUE(population.is_outdated_by(page_of(3, 3, 6)));
+    EXPECT_TRUE(population.is_outdated_by(page_of(3, 2, 5, 5)));
+}
+
 /// A snapshot of generation 4 in which the organisms with these ids live.
 codec::ReceivedSnapshot snapshot_of(codec::Column ids) {
     codec::ReceivedSnapshot snapshot;

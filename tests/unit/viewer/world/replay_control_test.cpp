@@ -39,6 +39,18 @@ struct ReplayControlTest : ViewedWorldTest {
             session.send(message);
         }
     }
+    /// Forks the world on a server that has the worlds "default" and "default-2".
+    static void fork(ViewedWorld& world, core::FakeSession& session) {
+        world.replay.fork();
+        const auto list = next(session);
+        EXPECT_TRUE(list.has_list_worlds());
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(list.request_id());
+        for (const char* name : {"default", "default-2"}) {
+            message.mutable_response()->mutable_worlds()->add_worlds()->set_name(name);
+        }
+        session.send(message);
+    }
     /// Opens a replay, with number 9 for snapshots.
     core::FakeSession open_replay(ViewedWorld& world, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
         auto session = begin(world, role);
@@ -129,15 +141,18 @@ TEST_F(ReplayControlTest, NoticesAReplayThatCannotBeOpened) {
 TEST_F(ReplayControlTest, ForksFromTheShownMoment) {
     ViewedWorld world{wanted()};
     auto session = open_replay(world);
-    world.replay.fork("other");
+    fork(world, session);
+    until(world, [&] { return session.unread_bytes() > 0; });
     const auto fork = next(session);
     EXPECT_EQ(fork.fork_world().world(), "default@3");
-    EXPECT_EQ(fork.fork_world().name(), "other");
+    EXPECT_EQ(fork.fork_world().name(), "default-3") << "the live world's name with a number that is free";
     EXPECT_FALSE(fork.fork_world().has_at_generation());
-    answer_with(session, fork, info("other", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "other"; });
+    answer_with(session, fork, info("default-3", evod::v1::RUN_STATE_WAITING));
+    until(world, [&] { return world.replay.forked() == "default-3"; });
+    EXPECT_EQ(world.take_beside(), "default-3");
+    EXPECT_EQ(world.take_beside(), "") << "it is shown once";
     world.replay.return_to_present();
-    EXPECT_EQ(world.replay.forked(), "other") << "the fork is still there";
+    EXPECT_EQ(world.replay.forked(), "default-3") << "the fork is still there";
     world.show("elsewhere", 0);
     EXPECT_EQ(world.replay.forked(), "");
 }
@@ -145,11 +160,12 @@ TEST_F(ReplayControlTest, ForksFromTheShownMoment) {
 TEST_F(ReplayControlTest, ForgetsADeletedFork) {
     ViewedWorld world{wanted()};
     auto session = open_replay(world);
-    world.replay.fork("other");
-    answer_with(session, next(session), info("other", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "other"; });
+    fork(world, session);
+    until(world, [&] { return session.unread_bytes() > 0; });
+    answer_with(session, next(session), info("default-3", evod::v1::RUN_STATE_WAITING));
+    until(world, [&] { return world.replay.forked() == "default-3"; });
     evod::v1::ServerMessage deleted;
-    deleted.mutable_event()->set_world("other");
+    deleted.mutable_event()->set_world("default-3");
     deleted.mutable_event()->mutable_world_deleted()->mutable_by()->set_user("alice");
     session.send(deleted);
     until(world, [&] { return world.replay.forked().empty(); });

@@ -41,9 +41,9 @@ TEST_F(WorldCommandsTest, DoesNotSendAViewersCommandsAndSaysWhy) {
     EXPECT_EQ(world.feed.control().state(), evod::v1::RUN_STATE_RUNNING) << "and no effect is assumed";
     EXPECT_THAT(world.server.take_notices(),
                 testing::AllOf(testing::SizeIs(9), testing::Each(world.commands.read_only_reason())));
-    world.replay.fork("other");
+    world.replay.fork();
     EXPECT_TRUE(world.all_answered());
-    EXPECT_THAT(world.server.take_notices(), ElementsAre("Only the role admin may create worlds"));
+    EXPECT_THAT(world.server.take_notices(), ElementsAre(std::string{no_creation_text}));
 }
 
 TEST_F(WorldCommandsTest, TakesTheEndOfAStepAfterItsAnswer) {

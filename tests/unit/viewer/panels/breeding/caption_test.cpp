@@ -12,13 +12,12 @@ using made_up::record_of;
 TEST(Caption, SaysWhereThePointerStopped) {
     evod::v1::Breeding breeding = made_up::wheel();
     EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 1}),
-              "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30), "
-              "30.00 % of the wheel.");
+              "Pick 2 of 4. The pointer stopped in the slot of organism 2 (rank 2, fitness 30), 30 % of the wheel.");
     breeding.mutable_contenders(2)->mutable_migrant()->set_island(3);
     EXPECT_EQ(
         caption(record_of(breeding), {BreedingStage::Picking, 1}),
-        "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30, migrated "
-        "from island 3), 30.00 % of the wheel.");
+        "Pick 2 of 4. The pointer stopped in the slot of organism 2 (rank 2, fitness 30, migrated from island 3), 30 % "
+        "of the wheel.");
 }
 
 TEST(Caption, ShowsTheOwnFitnessBesideAShuffledOne) {
@@ -61,6 +60,10 @@ TEST(Caption, DescribesHowADescendantWasMade) {
     EXPECT_EQ(of_three(),
               "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap reordered genes, "
               "1 mutation.");
+    breeding.mutable_descendants(3)->set_second_share(0.25);
+    EXPECT_EQ(of_three(),
+              "Organism 3 of the next generation: a child of organisms 4 and 9, blended with weights 0.750 and 0.250, "
+              "swap reordered genes, 1 mutation.");
     breeding.mutable_descendants(3)->Clear();
     breeding.mutable_descendants(3)->set_kind(evod::v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(of_three(),
@@ -72,6 +75,34 @@ TEST(Caption, SaysThatAMissingRowIsLoading) {
     evod::v1::Breeding breeding = made_up::wheel();
     breeding.set_pick_count(100);
     EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 50}), "Pick 51 of 100. Loading …");
+}
+
+TEST(Caption, DescribesTheNextGenerationOnly) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    breeding.set_survivor_count(1);
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Done, 0}),
+              "The next generation: 1 survivor and 3 children. A dot marks each organism that was picked.");
+}
+
+TEST(SelectionLaw, IsNamedInASentenceForEveryMethod) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    const auto law = [&](const char* method, const char* scaling) {
+        breeding.mutable_parameters(0)->mutable_value()->set_choice(method);
+        breeding.mutable_parameters(1)->mutable_value()->set_choice(scaling);
+        return selection_law_text(record_of(breeding));
+    };
+    EXPECT_EQ(law("roulette", "none"),
+              "Roulette wheel: the wheel is spun for each pick. An organism with twice the weight is picked twice as "
+              "often on average. The weight is the fitness.");
+    EXPECT_TRUE(law("stochastic_universal", "windowing").ends_with("minus the lowest fitness."));
+    EXPECT_TRUE(law("roulette", "linear_ranking").ends_with("The weight depends on the rank alone."));
+    EXPECT_TRUE(law("random", "none").starts_with("Random: every organism has the same chance"));
+    EXPECT_TRUE(law("truncation", "none").starts_with("Truncation: the best organisms"));
+    made_up::set_count(breeding, "tournament_size", 5);
+    EXPECT_TRUE(
+        law("tournament", "none").starts_with("Tournament: 5 organisms are drawn at random, and the fittest of "));
+    breeding.mutable_contenders(1)->set_fitness(-3);
+    EXPECT_TRUE(law("roulette", "none").ends_with("minus the lowest fitness.")) << "a wheel has no negative slots";
 }
 
 TEST(BreedingSummary, NamesTheOperatorsAndTheNumbers) {

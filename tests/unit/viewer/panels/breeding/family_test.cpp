@@ -18,6 +18,16 @@ TEST(Family, GenesComeFromTheParentInTheMask) {
     EXPECT_TRUE(family.crossed[3].from_second);
 }
 
+TEST(Family, BlendedGenesAreWeightedMeans) {
+    evod::v1::Descendant child = made_up::child(0);
+    child.set_second_share(0.25);
+    const Family family = family_of(child);
+    EXPECT_THAT(family.genes, ElementsAre(3.5f, 4.5f, 5.5f, 6.5f, 7.5f, 8.5f));
+    EXPECT_THAT(family.cuts, IsEmpty());
+    EXPECT_TRUE(family.crossed[0].blended);
+    EXPECT_FALSE(family_of(made_up::child(1)).crossed[0].blended);
+}
+
 TEST(Family, ACopyOfOneParentHasNoCuts) {
     EXPECT_THAT(family_of(made_up::child(0)).cuts, IsEmpty());
     const Family second = family_of(made_up::child(0xffff'ffff)); // a complement may have bits beyond the genes

@@ -57,6 +57,18 @@ TEST(FamilyTree, ExtinctLinesAreLeftOut) {
     EXPECT_EQ(tree.place_of(3, 0), 1u);
     EXPECT_EQ(tree.place_of(2, 2), FamilyTree::none);
     EXPECT_EQ(tree.place_of(9, 0), FamilyTree::none);
+    EXPECT_EQ(tree.placed_count(), 0u);
+}
+
+TEST(FamilyTree, PlacedOrganismsBeginALine) {
+    FamilyTree tree = tree_of(lineage_of({{{}, {}}, {{0, 1}, {}}, {{0, 1}, {1, 0}}}), Parents::First);
+    EXPECT_EQ(tree.placed_count(), 1u);
+    EXPECT_THAT(organisms_of(tree, 1), ElementsAre(0));
+    EXPECT_THAT(organisms_of(tree, 2), ElementsAre(0, 1));
+    EXPECT_EQ(tree.common_generation(), std::nullopt);
+    tree.set_base(1);
+    EXPECT_EQ(tree.row(3)[0].founder, 0u);
+    EXPECT_EQ(tree.row(3)[1].founder, FamilyTree::none);
 }
 
 TEST(FamilyTree, ParentsAreAboveTheMiddleOfTheirChildren) {

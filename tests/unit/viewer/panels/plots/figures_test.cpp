@@ -21,10 +21,14 @@ HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
             statistics.set_organism_count(10);
             statistics.set_fitness_mean(5 + island);
             statistics.set_fitness_deviation(2);
+            statistics.set_fitness_best(20);
+            statistics.set_fitness_worst(4);
             statistics.set_starved_count(3);
             statistics.set_poisoned_count(1);
             statistics.add_genes()->set_mean(100);
             statistics.mutable_genes(0)->set_deviation(4);
+            statistics.mutable_genes(0)->set_min(90);
+            statistics.mutable_genes(0)->set_max(102);
             statistics.add_genes()->set_mean(50);
             if (generation > 1) { // the first generation has no predecessor
                 v1::GeneAccount& account = *statistics.mutable_genes(0)->mutable_account();
@@ -48,56 +52,90 @@ std::vector<std::string> names_of(const Figure& figure) {
     return names;
 }
 
-TEST(Figures, FitnessIsABandOfOneDeviationAndFourLines) {
+TEST(Figures, FitnessIsFourLinesAndABand) {
     const HistoryTable table = table_of(1, 3);
-    const Figure figure = figure_of(Quantity::Fitness, {table, 0u, "lab"}, nullptr, "");
-    EXPECT_THAT(names_of(figure), ElementsAre("± one deviation", "worst", "median", "mean", "best"));
-    EXPECT_THAT(figure.plot.series[0].low, Each(3));
-    EXPECT_THAT(figure.plot.series[0].y, Each(7));
-    EXPECT_THAT(figure.plot.series[3].x, ElementsAre(1, 2, 3));
+    const Figure figure = figure_of(Quantity::Fitness, {table, 0u, "lab"}, nullptr, "", 1);
+    EXPECT_THAT(names_of(figure), ElementsAre("best", "mean", "median", "worst", "± 1 standard deviation"));
+    EXPECT_THAT(figure.plot.series[4].low, Each(4)) << "not 3, because the worst is 4";
+    EXPECT_THAT(figure.plot.series[4].y, Each(7));
+    EXPECT_THAT(figure.plot.series[0].x, ElementsAre(1, 2, 3));
+    EXPECT_TRUE(figure.plot.from_zero);
     EXPECT_EQ(whole_x(figure.plot), (Range{1, 3}));
 }
 
 TEST(Figures, TheMedianOfSeveralIslandsIsNotShown) {
     const HistoryTable table = table_of(2, 3);
-    EXPECT_THAT(names_of(figure_of(Quantity::Fitness, {table, std::nullopt, "lab"}, nullptr, "")),
-                ElementsAre("± one deviation", "worst", "mean", "best"));
+    EXPECT_THAT(names_of(figure_of(Quantity::Fitness, {table, std::nullopt, "lab"}, nullptr, "", 1)),
+                ElementsAre("best", "mean", "worst", "± 1 standard deviation"));
 }
 
 TEST(Figures, AComparisonAddsLinesWithTheirOwnNames) {
     const HistoryTable table = table_of(2, 3), other = table_of(1, 5);
     const Subject beside{other, 1u, "yesterday"}; // has no island 1
-    const Figure figure = figure_of(Quantity::Diversity, {table, 1u, "lab"}, &beside, "");
-    EXPECT_THAT(names_of(figure), ElementsAre("diversity, lab", "diversity, yesterday"));
+    const Figure figure = figure_of(Quantity::Diversity, {table, 1u, "lab"}, &beside, "", 1);
+    EXPECT_THAT(names_of(figure), ElementsAre("diversity", "diversity, yesterday"));
     EXPECT_EQ(figure.plot.series[1].kind, Series::Kind::Dashes);
+    EXPECT_FALSE(figure.plot.series[1].in_legend);
+    EXPECT_EQ(figure.plot.solid + " " + figure.plot.dashed, "lab yesterday");
     EXPECT_EQ(figure.plot.series[1].x.size(), 5u);
     EXPECT_EQ(whole_x(figure.plot), (Range{1, 5}));
 }
 
 TEST(Figures, GenesAreShownOneByOneOrTogether) {
     const HistoryTable table = table_of(1, 3);
-    EXPECT_THAT(names_of(figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "")),
+    EXPECT_THAT(names_of(figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "", 1)),
                 ElementsAre("impulse", "body_size"));
-    const Figure figure = figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "impulse");
-    EXPECT_THAT(names_of(figure), ElementsAre("± one deviation", "least", "greatest", "mean"));
-    EXPECT_THAT(figure.plot.series[0].low, Each(96));
+    const Figure figure = figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "impulse", 1);
+    EXPECT_THAT(names_of(figure), ElementsAre("mean", "greatest", "least", "± 1 standard deviation"));
+    EXPECT_THAT(figure.plot.series[3].low, Each(96));
+    EXPECT_THAT(figure.plot.series[3].y, Each(102)) << "not 104, because the greatest is 102";
 }
 
 TEST(Figures, SelectionIsShownForAllGenesOrOneInParts) {
     const HistoryTable table = table_of(2, 3);
-    EXPECT_THAT(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "")), ElementsAre("impulse"))
+    EXPECT_THAT(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "", 1)), ElementsAre("impulse"))
         << "the other gene has no account";
-    const Figure figure = figure_of(Quantity::Selection, {table, std::nullopt, "lab"}, nullptr, "impulse");
-    ASSERT_THAT(names_of(figure), ElementsAre("migration", "transmission", "selection", "change"));
-    EXPECT_THAT(figure.plot.series[0].y, ElementsAre(IsNan(), 0.5, 0.5));
-    EXPECT_THAT(figure.plot.series[2].y, ElementsAre(IsNan(), 4, 4)) << "the mean of both islands";
-    EXPECT_THAT(figure.plot.series[3].y, ElementsAre(IsNan(), 3.5, 3.5));
-    EXPECT_TRUE(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "body_size")).empty());
+    const Figure figure = figure_of(Quantity::Selection, {table, std::nullopt, "lab"}, nullptr, "impulse", 1);
+    ASSERT_THAT(names_of(figure), ElementsAre("change", "selection", "transmission", "migration"));
+    EXPECT_THAT(figure.plot.series[3].y, ElementsAre(IsNan(), 0.5, 0.5));
+    EXPECT_THAT(figure.plot.series[1].y, ElementsAre(IsNan(), 4, 4)) << "the mean of both islands";
+    EXPECT_THAT(figure.plot.series[0].y, ElementsAre(IsNan(), 3.5, 3.5));
+    EXPECT_TRUE(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "body_size", 1)).empty());
+}
+
+TEST(Figures, ARunningMeanKeepsTheNumbersOfEachGeneration) {
+    HistoryTable table;
+    for (std::uint64_t generation = 1; generation <= 4; ++generation) {
+        v1::GenerationStatistics statistics;
+        statistics.set_generation(generation);
+        statistics.set_diversity(static_cast<double>(generation));
+        table.add(std::vector<std::vector<double>>{core::history_numbers(statistics)});
+    }
+    const Figure figure = figure_of(Quantity::Diversity, {table, 0u, "lab"}, nullptr, "", 3);
+    EXPECT_THAT(figure.plot.series.at(0).raw, ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(figure.plot.series.at(0).y, ElementsAre(1, 1.5, 2, 3));
+    EXPECT_EQ(figure.plot.smoothed, "mean of 3");
+    EXPECT_TRUE(figure_of(Quantity::Diversity, {table, 0u, "lab"}, nullptr, "", 1).plot.series.at(0).raw.empty());
+}
+
+TEST(Figures, MarkTheChangesOfBothHistories) {
+    const HistoryTable table = table_of(1, 3);
+    const std::vector<Mark> changes{{2, "generation 2: a 1 → 2 by alice"}}, others{{1, "x"}, {3, "y"}};
+    const Subject subject{table, 0u, "lab", changes}, beside{table, 0u, "fork", others};
+    const Figure alone = figure_of(Quantity::Fitness, subject, nullptr, "", 1);
+    ASSERT_EQ(alone.plot.marks.size(), 1u);
+    EXPECT_EQ(alone.plot.marks[0].name, "") << "no need to name the only history";
+    EXPECT_EQ(alone.plot.marks[0].marks[0].text, "generation 2: a 1 → 2 by alice");
+    const Figure both = figure_of(Quantity::Fitness, subject, &beside, "", 1);
+    ASSERT_EQ(both.plot.marks.size(), 2u);
+    EXPECT_EQ(both.plot.marks[0].name, "lab");
+    EXPECT_EQ(both.plot.marks[1].name, "fork");
+    EXPECT_EQ(both.plot.marks[1].marks.size(), 2u);
 }
 
 TEST(Figures, DeathsAreStacked) {
     const HistoryTable table = table_of(2, 3);
-    const Figure figure = figure_of(Quantity::Deaths, {table, std::nullopt, "lab"}, nullptr, "");
+    const Figure figure = figure_of(Quantity::Deaths, {table, std::nullopt, "lab"}, nullptr, "", 1);
     ASSERT_THAT(names_of(figure), ElementsAre("starved", "poisoned"));
     EXPECT_EQ(figure.plot.series[0].kind, Series::Kind::Stack);
     EXPECT_THAT(figure.plot.series[0].y, Each(6));
@@ -108,7 +146,7 @@ TEST(Figures, AnEmptyTableGivesNoSeries) {
     const HistoryTable table;
     for (const auto quantity : {Quantity::Fitness, Quantity::Genes, Quantity::Selection, Quantity::Diversity,
                                 Quantity::Survivors, Quantity::Deaths}) {
-        EXPECT_TRUE(figure_of(quantity, {table, std::nullopt, "lab"}, nullptr, "").plot.series.empty());
+        EXPECT_TRUE(figure_of(quantity, {table, std::nullopt, "lab"}, nullptr, "", 10).plot.series.empty());
     }
     EXPECT_TRUE(histogram_of("impulse", {}).plot.series.empty());
 }

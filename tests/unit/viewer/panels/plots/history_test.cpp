@@ -186,6 +186,41 @@ TEST_F(HistoryTest, SendsAFailedQueryAgain) {
     EXPECT_EQ(ask(), 1u);
 }
 
+v1::History with_change(v1::History page, std::uint64_t generation, double after) {
+    v1::AppliedChange& change = *page.add_changes();
+    change.set_generation(generation);
+    change.mutable_by()->set_user("alice");
+    change.add_values()->set_name("mutation_chance");
+    change.mutable_values(0)->mutable_before()->set_real(0.1);
+    change.mutable_values(0)->mutable_after()->set_real(after);
+    return page;
+}
+
+TEST_F(HistoryTest, RequestsChangesWhenAnEventReportsOne) {
+    ask();
+    answer(with_change(with_change(page(1, 3), 2, 0.2), 4, 0.3)); // generation 4 is not over
+    ASSERT_EQ(history.changes().size(), 2u);
+    EXPECT_EQ(history.changes()[0].x, 2);
+    EXPECT_EQ(history.changes()[0].text, "generation 2: mutation_chance 0.1 → 0.2 by alice");
+
+    history.apply_event(finished(4));
+    history.apply_event(finished(5));
+    EXPECT_EQ(history.next_query(), std::nullopt);
+    v1::Event changed;
+    changed.set_world("other");
+    changed.mutable_parameters_changed();
+    history.apply_event(changed);
+    EXPECT_EQ(history.next_query(), std::nullopt) << "another world";
+    changed.set_world("lab");
+    history.apply_event(changed);
+    EXPECT_EQ(ask(), 4u) << "the first generation that may have changes not known yet";
+    answer(with_change(with_change(page(4, 5), 4, 0.3), 5, 0.4));
+    EXPECT_EQ(history.changes().size(), 3u) << "each once";
+    EXPECT_TRUE(history.complete());
+    history.set_run("lab", "b");
+    EXPECT_TRUE(history.changes().empty());
+}
+
 TEST(HistoryTable, JoinsIslands) {
     v1::GenerationStatistics first = statistics_of(1, 0), second = statistics_of(1, 1);
     first.set_fitness_mean(10);

@@ -136,5 +136,44 @@ TEST(Histogram, CountsEachNumberOnce) {
     EXPECT_THAT(histogram(std::vector<float>{3, 3, 4}, {3, 3}, 2), ElementsAre(2, 0));
 }
 
+TEST(RunningMeans, UseTheNumbersBeforeAndNoneAfter) {
+    EXPECT_THAT(running_mean(std::vector<double>{1, 2, 3, 10}, 3), ElementsAre(1, 1.5, 2, 5));
+    EXPECT_THAT(running_mean(std::vector<double>{1, 2, 3}, 1), ElementsAre(1, 2, 3));
+    const auto means = running_mean(std::vector<double>{4, none, 8}, 2);
+    EXPECT_EQ(means[0], 4);
+    EXPECT_TRUE(std::isnan(means[1])) << "no generation, no mean";
+    EXPECT_EQ(means[2], 8);
+    EXPECT_TRUE(running_mean({}, 5).empty());
+}
+
+TEST(MarkGroups, JoinNearMarksAndOmitHiddenOnes) {
+    const std::vector<Mark> marks{{1, ""}, {10, ""}, {10, ""}, {12, ""}, {14, ""}, {90, ""}};
+    const auto groups = mark_groups(marks, {5, 50}, 4);
+    ASSERT_EQ(groups.size(), 2u);
+    EXPECT_EQ(groups[0].begin, 1u);
+    EXPECT_EQ(groups[0].end, 4u) << "10, 10 and 12";
+    EXPECT_EQ(groups[1].begin, 4u);
+    EXPECT_EQ(groups[1].end, 5u);
+    EXPECT_TRUE(mark_groups({}, {0, 1}, 1).empty());
+}
+
+TEST(NotePlace, IsBesideThePlotAndInTheWindow) {
+    const Corner window{1280, 720};
+    const auto covers = [&](Box plot, Corner size, float y) {
+        const Corner at = note_place(plot, size, y, window);
+        EXPECT_GE(at.x, 0);
+        EXPECT_GE(at.y, 0);
+        return at.x < plot.right && at.x + size.x > plot.left && at.y < plot.bottom && at.y + size.y > plot.top;
+    };
+    EXPECT_EQ(note_place({890, 400, 1268, 680}, {250, 120}, 500, window), (Corner{636, 440})) << "on the left";
+    EXPECT_EQ(note_place({100, 400, 500, 680}, {250, 120}, 500, window), (Corner{504, 440})) << "or on the right";
+    EXPECT_EQ(note_place({100, 400, 1200, 680}, {250, 120}, 500, window), (Corner{100, 276})) << "or above";
+    EXPECT_EQ(note_place({100, 20, 1200, 300}, {250, 120}, 150, window), (Corner{100, 304})) << "or below";
+    EXPECT_EQ(note_place({0, 0, 1280, 720}, {250, 120}, 150, window), (Corner{0, 600})) << "no room beside it";
+    for (const float y : {0.0f, 5.0f, 400.0f, 715.0f}) {
+        EXPECT_FALSE(covers({890, 0, 1268, 720}, {250, 120}, y)) << y;
+    }
+}
+
 } // namespace
 } // namespace evod::viewer

@@ -1,8 +1,8 @@
-#include "proto/command_line/suggestion.h"
+#include "proto/text/suggestion.h"
 
 #include <gmock/gmock.h>
 
-namespace evod::command_line {
+namespace evod::text {
 namespace {
 
 using testing::ElementsAre;
@@ -22,9 +22,10 @@ TEST(Nearest, FindsTheIntendedName) {
     EXPECT_THAT(nearest("survivor", names), ElementsAre("survivors", "mutate_survivors"));
     EXPECT_THAT(nearest("respwan", names), ElementsAre("respawn"));
     EXPECT_THAT(nearest("zebra", names), ElementsAre());
+    EXPECT_THAT(nearest(std::string(100'000, 'x'), names), ElementsAre());
     EXPECT_EQ(did_you_mean("zebra", names), "");
     EXPECT_EQ(did_you_mean("survivor", names), "; did you mean survivors or mutate_survivors?");
 }
 
 } // namespace
-} // namespace evod::command_line
+} // namespace evod::text

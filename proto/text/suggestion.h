@@ -1,12 +1,22 @@
-#include "proto/command_line/suggestion.h"
+// Suggestions: names that are similar to a misspelled word. Standard library only, because every folder may include
+// this one.
+//
+// Threads      any; no state.
+#pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-namespace evod::command_line {
+namespace evod::text {
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+/// Returns the edit distance: the smallest number of insertions, deletions, replacements and swaps of adjacent
+/// characters that turn `a` into `b`.
+inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     // Optimal string alignment distance: Damerau's distance, with the restriction that each substring is edited at most
     // once. Stores only three rows of the table.
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -26,17 +36,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return above[b.size()];
 }
 
-std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names) {
+/// Returns at most three names that are similar to the misspelled `word`, the most similar first.
+///
+/// names  a range of std::string or std::string_view.
+template <class Names>
+std::vector<std::string> nearest(std::string_view word, const Names& names) {
+    constexpr std::size_t compared_max = 64; // the word may come from a file or a request
+    word = word.substr(0, compared_max);
     std::vector<std::pair<std::size_t, std::string>> ranked;
-    for (const std::string& name : names) {
+    for (const std::string_view name : names) {
         const std::size_t distance = edit_distance(word, name);
         // A word that is part of a name counts as similar: "mutation" to "mutation_chance".
-        const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
+        const bool part = word.size() >= 3 && name.find(word) != std::string_view::npos;
         if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
             ranked.emplace_back(distance, name);
         }
     }
-    std::ranges::sort(ranked);
+    std::sort(ranked.begin(), ranked.end());
     std::vector<std::string> result;
     for (std::size_t i = 0; i < std::min<std::size_t>(3, ranked.size()); ++i) {
         result.push_back(std::move(ranked[i].second));
@@ -44,7 +60,9 @@ std::vector<std::string> nearest(std::string_view word, std::span<const std::str
     return result;
 }
 
-std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
+/// Returns "; did you mean A or B?" with the names most similar to `word`; empty if no name is similar.
+template <class Names>
+std::string did_you_mean(std::string_view word, const Names& names) {
     const auto candidates = nearest(word, names);
     std::string text;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -53,4 +71,4 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> nam
     return text.empty() ? text : text + "?";
 }
 
-} // namespace evod::command_line
+} // namespace evod::text

@@ -1,0 +1,64 @@
+#include "server/parameters/choice_help.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace evod::parameters {
+
+namespace {
+
+struct Sentence {
+    std::string_view parameter, choice, help;
+};
+
+constexpr Sentence sentences[] = {
+    {"fitness", "life", "Seconds lived plus the health at the end of the generation."},
+    {"fitness", "gene_sum", "The sum of the genes."},
+    {"fitness", "rastrigin", "The Rastrigin function of the genes, a test problem with many local optima."},
+    {"flee_rule", "nearer", "An organism flees only if the poison is nearer than all food that it sees."},
+    {"flee_rule", "always", "An organism flees from poison that it sees, regardless of food."},
+    {"integrator", "symplectic_euler", "Positions use the new velocities; the energy of a spring stays bounded."},
+    {"integrator", "explicit_euler", "Positions use the old velocities; the energy of a spring grows."},
+    {"integrator", "backward_euler", "Damping uses the new velocities; it is stable for any tick length."},
+    {"population_model", "hybrid", "The selected organisms stay, and their children fill the other places."},
+    {"population_model", "generational", "Children replace all organisms except the elite."},
+    {"population_model", "steady_state", "Children replace only the worst organisms."},
+    {"fitness_scaling", "none", "The fitness itself is the weight of an organism."},
+    {"fitness_scaling", "windowing", "The lowest fitness of the generation is subtracted from every fitness."},
+    {"fitness_scaling", "linear_ranking", "The weight falls by the same amount from rank to rank."},
+    {"fitness_scaling", "exponential_ranking", "The weight falls by the same factor from rank to rank."},
+    {"selection", "roulette", "Each parent is drawn with a chance proportional to its scaled fitness."},
+    {"selection", "stochastic_universal", "As roulette, but one spin chooses all parents, so the copies vary less."},
+    {"selection", "tournament", "A few organisms are drawn at random, and the fittest of them become parents."},
+    {"selection", "random", "Every organism has the same chance: there is no selection pressure."},
+    {"selection", "truncation", "Only the fittest organisms become parents, all with the same chance."},
+    {"crossover", "uniform", "Each gene comes from either parent with the same chance."},
+    {"crossover", "single_point", "The chromosomes of both parents are cut at one place and joined crosswise."},
+    {"crossover", "multi_point", "The chromosomes of both parents are cut at several places and joined alternately."},
+    {"crossover", "none", "The children are copies of their parents."},
+    {"rearranging", "none", "Values of genes are not exchanged."},
+    {"rearranging", "swap", "Two genes exchange their values."},
+    {"rearranging", "scramble", "The values of neighbouring genes are shuffled."},
+    {"rearranging", "inversion", "The order of the values of neighbouring genes is reversed."},
+    {"creep", "uniform", "Every step up to mutation_step is equally likely."},
+    {"creep", "gaussian", "Small steps are more likely than large steps."},
+    {"migration", "none", "The islands are independent."},
+    {"migration", "ring", "Each island sends to the next one, the last to the first."},
+    {"migration", "fully_connected", "Each island sends to every other island."},
+    {"migration", "random", "Each island sends to one other island, which is drawn each time."},
+    {"emigrants", "best", "The fittest organisms are copied."},
+    {"emigrants", "random", "The copied organisms are drawn at random."},
+    {"immigrants_replace", "worst", "Migrants replace the least fit organisms."},
+    {"immigrants_replace", "random", "Migrants replace organisms drawn at random."},
+};
+
+} // namespace
+
+std::string_view choice_help(std::string_view parameter, std::string_view choice) {
+    const auto* found = std::ranges::find_if(sentences, [&](const Sentence& sentence) {
+        return sentence.parameter == parameter && sentence.choice == choice;
+    });
+    return found == std::end(sentences) ? "" : found->help;
+}
+
+} // namespace evod::parameters

@@ -1,0 +1,225 @@
+#include "server/simulation/world_state.h"
+
+#include "server/simulation/island.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace evod::simulation {
+namespace {
+
+/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
+/// so large a float.
+constexpr float health_reachable = 0x1p38f;
+/// No parameter allows a gene above this value.
+constexpr float gene_reachable = 10'000;
+
+} // namespace
+
+IslandShape Island::shape() const {
+    return {.organisms = bred_count(),
+            .has_bodies = has_bodies(),
+            .crates = has_bodies() ? crate_count_ : 0,
+            .food = has_bodies() ? food_.first_count() : 0,
+            .poison = has_bodies() ? poison_.first_count() : 0};
+}
+
+IslandState Island::state(base::Executor& executor) const {
+    IslandState state;
+    state.fate = fate_;
+    state.counts = counts_;
+    if (!has_bodies()) {
+        return state;
+    }
+    for (std::uint32_t id = bred_count(); id < fate_.cause.size(); ++id) {
+        state.placed.push_back({.genes = {}, .tick = placed_tick(id)});
+        std::ranges::copy(evolution::column(born_.genes, id), state.placed.back().genes.begin());
+    }
+    state.placed_food = food_.size() - food_.first_count();
+    state.placed_poison = poison_.size() - poison_.first_count();
+    for (std::uint32_t i = 0; i < crate_count_; ++i) {
+        state.crates.push_back({boxes_.x[i], boxes_.y[i], boxes_.velocity_x[i], boxes_.velocity_y[i]});
+    }
+    executor.parallel_for(3, 1, [&](base::Range parts) {
+        for (std::size_t part = parts.begin; part < parts.end; ++part) {
+            if (part == 0) {
+                state.food = food_.all();
+            } else if (part == 1) {
+                state.poison = poison_.all();
+            } else {
+                state.organisms.resize(body_of_.size());
+            }
+        }
+    });
+    executor.parallel_for(bodies_.size(), organisms_per_block, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (!bodies_.is_void(i)) {
+                state.organisms[bodies_.id[i]] = {bodies_.x[i], bodies_.y[i], bodies_.velocity_x[i],
+                                                  bodies_.velocity_y[i], living_.health[i]};
+            }
+        }
+    });
+    return state;
+}
+
+base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) const {
+    const auto wrong = [this](const std::string& what) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "island " + std::to_string(index_) + ": impossible state: " + what,
+                             .violations = {}};
+    };
+    const Fate& fate = state.fate;
+    const IslandShape own = shape();
+    const std::size_t organisms = own.organisms + state.placed.size();
+    if (fate.cause.size() != organisms || fate.lived_ticks.size() != organisms || fate.food_eaten.size() != organisms ||
+        fate.poison_eaten.size() != organisms || state.organisms.size() != (own.has_bodies ? organisms : 0) ||
+        state.placed.size() > placed_max || (!own.has_bodies && !state.placed.empty())) {
+        return wrong("number of organisms");
+    }
+    for (const IslandState::Placed& placed : state.placed) {
+        const auto is_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
+        if (placed.tick > tick || !std::ranges::all_of(placed.genes, is_gene) ||
+            placed.genes[evolution::BodySize] <= 0) {
+            return wrong("a placed organism");
+        }
+    }
+    if (state.crates.size() != own.crates) {
+        return wrong("number of crates");
+    }
+
+    // Every tick limits the speeds at its end, so a greater speed can only be a rounding error.
+    const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
+    const auto can_move = [&](const auto& body) {
+        return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&
+               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+    };
+    std::uint32_t alive = 0, starved = 0, poisoned = 0;
+    for (std::size_t id = 0; id < organisms; ++id) {
+        const auto which = [&](const char* what) { return wrong(what + (" of organism " + std::to_string(id))); };
+        if (fate.cause[id] == CauseOfDeath::Alive) {
+            if (fate.lived_ticks[id] != 0) {
+                return which("lived_ticks");
+            }
+            if (!own.has_bodies) {
+                continue;
+            }
+            ++alive;
+            const IslandState::Organism& organism = state.organisms[id];
+            if (!can_move(organism)) {
+                return which("position or speed");
+            }
+            const bool has_lived = tick > (id < own.organisms ? 0 : state.placed[id - own.organisms].tick);
+            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && has_lived)) {
+                return which("health");
+            }
+            continue;
+        }
+        starved += fate.cause[id] == CauseOfDeath::Starved;
+        poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
+        const bool removed = fate.cause[id] == CauseOfDeath::Removed;
+        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Removed || (fate.lived_ticks[id] == 0 && !removed) ||
+            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
+            return which("death");
+        }
+    }
+    if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
+        return wrong("number of dead organisms");
+    }
+    if (!std::ranges::all_of(state.crates, can_move)) {
+        return wrong("position or speed of a crate");
+    }
+    if (state.food.size() != std::size_t{own.food} + state.placed_food ||
+        state.poison.size() != std::size_t{own.poison} + state.placed_poison) {
+        return wrong("number of food or poison items");
+    }
+    if (!own.has_bodies) {
+        return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("items without bodies");
+    }
+    // On an island without living organisms, due items wait until an organism is placed and the next tick begins.
+    const bool resting = alive == 0 || !state.placed.empty();
+    if (const char* fault = food_.fault_of(state.food, tick, resting)) {
+        return wrong(std::string{"food: "} + fault);
+    }
+    if (const char* fault = poison_.fault_of(state.poison, tick, resting)) {
+        return wrong(std::string{"poison: "} + fault);
+    }
+    return {};
+}
+
+bool differ_only_by_commands(const IslandState& begun, const IslandState& state) {
+    const auto is_kept = [](const Items::Item& before, Items::Item now) {
+        now.due_tick = now.due_tick == Items::none ? before.due_tick : now.due_tick;
+        return now == before;
+    };
+    const auto are_kept = [&](const base::Column<Items::Item>& before, const base::Column<Items::Item>& now) {
+        return std::ranges::equal(before, std::span{now}.first(before.size()), is_kept);
+    };
+    for (std::size_t id = 0; id < begun.organisms.size(); ++id) {
+        if (state.fate.cause[id] != CauseOfDeath::Removed && state.organisms[id] != begun.organisms[id]) {
+            return false;
+        }
+    }
+    const auto has_eaten = [](std::uint32_t count) { return count > 0; };
+    return state.counts == begun.counts && state.crates == begun.crates && are_kept(begun.food, state.food) &&
+           are_kept(begun.poison, state.poison) && std::ranges::none_of(state.fate.food_eaten, has_eaten) &&
+           std::ranges::none_of(state.fate.poison_eaten, has_eaten);
+}
+
+void Island::restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
+                     base::Executor& executor) {
+    counts_ = state.counts;
+    if (!has_bodies()) {
+        fate_ = state.fate;
+        return;
+    }
+    // Before the first tick, hash_ covers only the chromosomes and what commands have changed.
+    base::StateHash uncovered = whole_hash();
+    uncovered -= hash_;
+    std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
+    for (const IslandState::Placed& organism : state.placed) {
+        placed.push_back({{}, evolution::Chromosome{organism.genes.data()}, organism.tick});
+    }
+    append(placed, parameters);
+    fate_ = state.fate;
+    for (std::uint32_t i = 0; i < crate_count_; ++i) {
+        boxes_.x[i] = state.crates[i].x;
+        boxes_.y[i] = state.crates[i].y;
+        boxes_.velocity_x[i] = state.crates[i].velocity_x;
+        boxes_.velocity_y[i] = state.crates[i].velocity_y;
+    }
+    food_.restore(state.food, executor);
+    poison_.restore(state.poison, executor);
+    // At the beginning of a generation, the index of every organism equals its id.
+    std::vector<std::uint32_t> gone;
+    eaten_hash_ = {};
+    for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
+        eaten_hash_ += hash_of_eaten(id);
+        if (fate_.cause[id] != CauseOfDeath::Alive) {
+            gone.push_back(id);
+            continue;
+        }
+        const IslandState::Organism& organism = state.organisms[id];
+        bodies_.x[id] = organism.x;
+        bodies_.y[id] = organism.y;
+        bodies_.velocity_x[id] = organism.velocity_x;
+        bodies_.velocity_y[id] = organism.velocity_y;
+        living_.health[id] = organism.health;
+    }
+    perception_.begin(bodies_, living_, food_, poison_);
+    for (const std::uint32_t id : gone) {
+        body_of_[id] = no_body;
+        bodies_.remove(id);
+        perception_.remove(id);
+        living_.health[id] = -std::numeric_limits<float>::infinity();
+    }
+    alive_count_ -= static_cast<std::uint32_t>(gone.size());
+    hash_ = whole_hash();
+    if (tick == 0) {
+        hash_ -= uncovered;
+    }
+}
+
+} // namespace evod::simulation
