@@ -1,6 +1,7 @@
 // The family tree against evod: the tree is that of the exported lineage, and a click shows a birth in a replay.
 //
 // Runs under Xvfb.
+#include "client/viewer/island/legend.h"
 #include "client/viewer/panels/family_tree/family_tree_panel.h"
 #include "tests/system/viewer/support/panel_host.h"
 #include "tests/system/viewer/support/processes.h"
@@ -33,7 +34,8 @@ class TreeWindow {
     }
     std::optional<Point> find(const std::string& widget) {
         host_.draw();
-        return positions_->find(widget);
+        const auto found = positions_->find(widget);
+        return found.empty() ? std::nullopt : std::optional{found.front()->centre()};
     }
     void click(const std::string& widget) {
         const auto point = find(widget);
@@ -165,6 +167,36 @@ TEST_F(FamilyTreeTest, TheWheelZoomsAndFitShowsTheTreeAgain) {
     EXPECT_NE(*after, *before);
     window.click("Fit");
     EXPECT_EQ(*window.find("common ancestor"), *before);
+}
+
+TEST_F(FamilyTreeTest, PlacedOrganismsAreNamed) {
+    run(3);
+    server.run_to("w", server.state("w").tick() + 1);
+    evod::v1::Request get, place;
+    get.mutable_get_organism()->set_world("w");
+    auto& copy = *place.mutable_place()->add_organisms();
+    *copy.mutable_genes() = server.connection->request(get, hang).value().organism().genes();
+    place.mutable_place()->set_world("w");
+    copy.set_y_px(40);
+    bool placed = false;
+    for (double x = 40; !placed && x < 400; x += 20) { // another organism may be there
+        copy.set_x_px(x);
+        placed = core::accepted(server.connection->request(place, hang).value());
+    }
+    ASSERT_TRUE(placed);
+    TreeWindow window{server, "w"};
+    window.island_view().options.colour_by = ColourBy::Lineage;
+    const auto legend_ends_with = [&](const std::string& text) {
+        const auto& snapshot = window.world().feed.view().latest();
+        if (!snapshot) {
+            return false;
+        }
+        const Legend legend = legend_of(window.island_view(), *snapshot, std::nullopt, 1);
+        return !legend.entries.empty() && legend.entries.back().text == text;
+    };
+    EXPECT_TRUE(window.draws_until([&] { return legend_ends_with("placed by a user, and their descendants: 1"); }));
+    EXPECT_TRUE(window.draws_until([&] { return window.find("organism 20").has_value(); })) << "in the tree";
+    EXPECT_EQ(window.lineage().at(4).organisms[20].origin, Lineage::Origin::Placed);
 }
 
 TEST_F(FamilyTreeTest, AServerWithoutRunFilesIsExplained) {

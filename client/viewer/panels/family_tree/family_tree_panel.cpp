@@ -264,7 +264,7 @@ void FamilyTreePanel::build_drawing(Context& context) {
     WidgetPositions& positions = context.gui.widget_positions();
     const auto name = [&](const std::string& text, ImVec2 point) {
         if (drawing.shows(point)) {
-            positions.add(text, {point.x, point.y});
+            positions.add({.name = text, .place = {point.x, point.y, 0, 0}});
         }
     };
     if (tree_.common_generation()) {
