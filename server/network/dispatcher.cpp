@@ -91,6 +91,7 @@ replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     if (request.has_of()) {
         to.of = {request.of().generation(), request.of().island(), request.of().organism()};
     }
+    to.first_generation = request.first_generation();
     return to;
 }
 

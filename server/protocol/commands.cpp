@@ -263,6 +263,10 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
         violations.push_back({"export_run.of", "absent unless table is RUN_TABLE_LINEAGE",
                               "generation " + std::to_string(request.of().generation())});
     }
+    if (request.has_first_generation() && request.table() != v1::RUN_TABLE_LINEAGE) {
+        violations.push_back({"export_run.first_generation", "absent unless table is RUN_TABLE_LINEAGE",
+                              std::to_string(request.first_generation())});
+    }
 }
 
 } // namespace

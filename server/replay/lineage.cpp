@@ -5,6 +5,7 @@
 #include "server/evolution/migration.h"
 #include "server/replay/generation_reader.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <span>
@@ -160,7 +161,7 @@ class BackwardReader {
 } // namespace
 
 Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                             ReportFamilies report) {
+                             ReportFamilies report, std::uint64_t first) {
     GenerationReader reader{file, executor, stop};
     const std::uint64_t last = file.generations().last();
     std::optional<Births> births;
@@ -186,10 +187,11 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
         to = births_of(*std::move(whole));
         return {};
     };
-    std::uint64_t generation = file.identity().first_generation;
+    // The parents of the first reported generation are in the generation before it.
+    std::uint64_t generation = std::max(file.identity().first_generation, first - std::min<std::uint64_t>(first, 1));
     if (generation <= last) {
-        if (auto first = read(generation, births); !first) {
-            return first;
+        if (auto done = read(generation, births); !done) {
+            return done;
         }
     }
     for (; generation <= last; ++generation) {
@@ -207,7 +209,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
             }
             next_parents = *std::move(found);
         }
-        if (births &&
+        if (births && generation >= first &&
             !report(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents))) {
             break;
         }

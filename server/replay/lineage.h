@@ -40,9 +40,9 @@ using ReportFamilies = base::FunctionRef<bool(std::uint64_t generation, const st
 
 // For a run of another model, migrants and generations that are not retained are unknown.
 
-/// Calls `report` in ascending order for every generation that has begun and can be read.
+/// Calls `report` in ascending order for every generation, from `first` on, that has begun and can be read.
 base::Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
-                                   ReportFamilies report);
+                                   ReportFamilies report, std::uint64_t first = 0);
 /// Calls `report` in descending order, from this generation to the first one of the file, or until a generation cannot
 /// be read. Refused for the same reasons as GenerationReader::read().
 base::Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation,

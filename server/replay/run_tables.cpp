@@ -226,19 +226,26 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
 }
 
 Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Format format,
-                           const std::optional<OrganismName>& of) {
+                           const std::optional<OrganismName>& of, std::uint64_t first_generation) {
     Table table{out,
                 format,
                 {"generation", "island", "organism", "parent_first_generation", "parent_first_island", "parent_first",
                  "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness",
                  "child_count", "kept_count"}};
-    if (!of) {
-        return each_generation(run.file, run.executor, run.stop, [&](std::uint64_t generation, const auto& families) {
-            write_families(table, generation, families, nullptr);
-            return out.good();
-        });
-    }
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.generations().last();
+    if (first_generation > last) {
+        return not_found_refusal(
+            {"first_generation", "at most " + std::to_string(last), std::to_string(first_generation)});
+    }
+    if (!of) {
+        return each_generation(
+            run.file, run.executor, run.stop,
+            [&](std::uint64_t generation, const auto& families) {
+                write_families(table, generation, families, nullptr);
+                return out.good();
+            },
+            first_generation);
+    }
     if (of->generation < first || of->generation > last) {
         return not_found_refusal({"of.generation",
                                   "a generation from " + std::to_string(first) + " to " + std::to_string(last),
@@ -251,6 +258,9 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
     Wanted wanted;
     const auto done = each_generation_back_from(run.file, of->generation, run.executor, run.stop,
                                                 [&](std::uint64_t generation, const auto& families) {
+                                                    if (generation < first_generation) {
+                                                        return false;
+                                                    }
                                                     if (generation == of->generation) {
                                                         wrong = wrong_place(*of, families);
                                                         if (wrong) {
@@ -374,7 +384,7 @@ Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::o
     case RunTable::Organisms:
         return write_organisms(run, out, wanted.format);
     case RunTable::Lineage:
-        return write_lineage(run, out, wanted.format, wanted.of);
+        return write_lineage(run, out, wanted.format, wanted.of, wanted.first_generation);
     case RunTable::Population:
         return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.generations().last()));
     case RunTable::Events:

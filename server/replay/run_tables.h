@@ -34,6 +34,8 @@ struct WantedTable {
     std::optional<std::uint64_t> generation = {};
     // Lineage table only: write this organism and its ancestors, newest first; nullopt: all organisms.
     std::optional<OrganismName> of = {};
+    // Lineage table only: leave out earlier generations. At most the last generation that has begun.
+    std::uint64_t first_generation = 0;
     // Events table only: true writes the user who sent a command, but not the program and the address.
     bool only_users = false;
 };

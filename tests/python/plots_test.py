@@ -59,6 +59,37 @@ class Plots(unittest.TestCase):
         numpy.testing.assert_allclose(lines["change"][1:], numpy.diff([g.genes[2] for g in generations]), atol=1e-10)
         self.assertEqual(list(table["body_size_change"].isna()), [True, True] + [False] * 6)
 
+    def test_a_lineage_is_a_tree_of_those_with_descendants(self):
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+        with tempfile.TemporaryDirectory() as folder:
+            with evod.local(seed=3, experiment=experiment, data=folder) as lab:
+                lab.world().run(8).wait()
+            with evod.open_run(folder + "/default.evod") as run:
+                table = run.lineage()
+                last = int(table["generation"].max())
+                axes, of_one = run.plot_lineage(), run.plot_lineage((last, 1, 4))
+                ancestors = run.lineage((last, 1, 4))
+        second, first, points, *_ = axes.collections
+        self.assertEqual(len(second.get_segments()), 0)
+        places = points.get_offsets()
+        self.assertEqual(sum(y == last for _, y in places), 20, "the organisms of the last generation")
+        parents = {(row.generation, row.island, row.organism): (row.parent_first_generation, row.parent_first_island,
+                   row.parent_first) for row in table.itertuples()}  # fmt: skip
+        living, line_count = {name for name in parents if name[0] == last}, 0
+        while next(iter(living))[0] > 1:
+            line_count += len(living)
+            living = {parents[name] for name in living}
+        self.assertEqual(len(first.get_segments()), line_count)
+        for generation in range(2, last + 1):  # no line crosses another
+            lines = sorted((s[-1][0], s[0][0]) for s in first.get_segments() if s[-1][1] == generation)
+            self.assertEqual([begin for _, begin in lines], sorted(begin for _, begin in lines))
+        second, first, points, *_ = of_one.collections
+        self.assertEqual(len(points.get_offsets()), len(ancestors))
+        both = ancestors[ancestors["generation"] > 1]
+        crossed = both[(both["parent_first"] != both["parent_second"]) | (both["parent_first_island"] != both["parent_second_island"])]
+        self.assertEqual(len(first.get_segments()), len(both))
+        self.assertEqual(len(second.get_segments()), len(crossed))
+
     def test_a_notebook_plays_the_animation(self):
         with evod.local(seed=3, speed=10) as lab:
             world = lab.world()

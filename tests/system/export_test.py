@@ -86,6 +86,11 @@ class Export(Runs):
                          self.evod_export("--what", "lineage", "--of", "4:1:3"))
         self.assertEqual(self.evoctl(server, "--what", "lineage", "--of", "4:1:3"),
                          self.evod_export("--what", "lineage", "--of", "4:1:3"))
+        heading, *rows = self.evod_export("--what", "lineage").splitlines()
+        later = [row for row in rows if int(row.split(",")[0]) >= 3]
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, first_generation=3)[0].splitlines(), [heading, *later])
+        ancestors = [row for row in self.evod_export("--what", "lineage", "--of", "4:1:3").splitlines() if row[0] not in "12"]
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, of=of, first_generation=3)[0].splitlines(), ancestors)
         self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
                          self.evod_export("--what", "population", "--generation", "2"))
 
@@ -139,6 +144,8 @@ class Export(Runs):
         self.refused(client, INVALID_ARGUMENT, "format", format=0, **events)
         self.refused(client, INVALID_ARGUMENT, "generation", generation=1, **events)
         self.refused(client, INVALID_ARGUMENT, "of", of=c.OrganismName(generation=1), **events)
+        self.refused(client, INVALID_ARGUMENT, "first_generation", first_generation=1, **events)
+        self.refused(client, NOT_FOUND, "first_generation", table=c.RUN_TABLE_LINEAGE, first_generation=9)
         self.refused(client, NOT_FOUND, "world", **{**events, "world": "unknown"})
         self.refused(client, NOT_FOUND, "generation", table=c.RUN_TABLE_POPULATION, generation=9)
         for field, of in (("generation", (9, 0, 0)), ("island", (1, 2, 0)), ("organism", (1, 0, 12))):

@@ -214,28 +214,94 @@ def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: 
 
 
 def plot_lineage(lineage: Any, ax: Any = None) -> Any:
-    """Plots a table from RunFile.lineage(). Each organism is a point, coloured by fitness, with lines to its parents.
+    """Plots the family tree of the last generation in a table from RunFile.lineage(), with generations from top to bottom.
 
-    Islands are drawn side by side.
+    Organisms without a descendant in the last generation are left out. Lines lead to first parents, which gave a child at
+    least half of its genes; these lines never cross. If the last generation in the table is a single organism, thin lines
+    lead to the second parents of its ancestors. Otherwise the axis begins shortly before the lines meet in one organism,
+    the common ancestor. Points are coloured by fitness; grey: not known yet.
     """
     ax = _axes(ax, figsize=(8, 6))
+    import matplotlib
     from matplotlib.collections import LineCollection
 
-    width = 1 + int(lineage[["organism", "parent_first", "parent_second"]].max().max())
-    x = lineage["island"] * (width + 1) + lineage["organism"]
-    lines = []
-    for parent in ("parent_first", "parent_second"):
-        has = lineage[parent].notna()
-        above = lineage[f"{parent}_island"][has] * (width + 1) + lineage[parent][has]
-        begin = numpy.stack((above, lineage[f"{parent}_generation"][has]), axis=1)
-        lines.append(numpy.stack((begin, numpy.stack((x[has], lineage["generation"][has]), axis=1)), axis=1))
-    ax.add_collection(LineCollection(numpy.concatenate(lines).astype(float), colors="0.6", linewidths=0.6, zorder=1))
-    points = ax.scatter(x, lineage["generation"], c=lineage["fitness"], s=14, cmap="viridis", zorder=2)
+    rows, parents = _family_tree(lineage)
+    both = len(rows[0]) == 1
+    x = _positions(rows, parents)
+    children: dict[_Name, int] = {}
+    first_lines: list[list[tuple[float, float]]] = []
+    second_lines: list[list[tuple[float, float]]] = []
+    for organism in (organism for row in rows for organism in row):
+        for number, parent in enumerate(parents[organism]):
+            begin, end = (x[parent], parent[0]), (x[organism], organism[0])
+            lines = second_lines if number else first_lines
+            lines.append([begin, end] if both else [begin, (x[organism], parent[0]), end])
+            children[parent] = children.get(parent, 0) + 1
+    ax.add_collection(LineCollection(second_lines, colors="0.8", linewidths=0.6, zorder=1))
+    ax.add_collection(LineCollection(first_lines, colors="0.4", linewidths=1.2, zorder=2))
+    fitness = dict(zip(_names(lineage), lineage["fitness"]))
+    shown = [organism for row in rows for organism in row if both or row is rows[0] or children.get(organism, 0) > 1]
+    points = ax.scatter([x[organism] for organism in shown], [organism[0] for organism in shown],
+                        c=[fitness[organism] for organism in shown], s=14, zorder=3, plotnonfinite=True,
+                        cmap=matplotlib.colormaps["viridis"].with_extremes(bad="0.6"))  # fmt: skip
     ax.figure.colorbar(points, ax=ax, label="fitness")
-    ax.set(xlabel="organism" if lineage["island"].max() == 0 else "island and organism", ylabel="generation")
+    last, top = rows[0][0][0], rows[-1][0][0]
+    if meeting := [row[0] for row in rows if len(row) == 1 and not both]:
+        common = meeting[0]
+        ax.scatter([x[common]], [common[0]], s=90, facecolors="none", edgecolors="black", zorder=4,
+                   label=f"common ancestor: organism {common[2]} of generation {common[0]}")  # fmt: skip
+        ax.legend(frameon=False, loc="upper right")
+        top = max(top, common[0] - max(2, (last - common[0]) // 4))
+    ax.set(ylabel="generation", xticks=[], ylim=(last + 0.5, top - 0.5))
     ax.yaxis.get_major_locator().set_params(integer=True)
-    ax.invert_yaxis()
     return ax
+
+
+#: generation, island and id of an organism
+_Name = tuple[int, int, int]
+
+
+def _names(table: Any, column: str = "organism", island: str = "island", generation: str = "generation") -> list[_Name]:
+    return list(zip(*(table[name].fillna(-1).astype(int) for name in (generation, island, column))))
+
+
+def _family_tree(lineage: Any) -> tuple[list[list[_Name]], dict[_Name, list[_Name]]]:
+    """Returns the rows of the tree from the last generation to the first, and the parents of each organism in the tree.
+
+    If the last generation has several organisms, only first parents are in the tree.
+    """
+    known, last = _names(lineage), lineage["generation"].max()
+    first, second = (
+        _names(lineage, f"parent_{which}", f"parent_{which}_island", f"parent_{which}_generation")
+        for which in ("first", "second")
+    )
+    rows = [[name for name in known if name[0] == last]]
+    both = len(rows[0]) == 1
+    parents_of = {
+        name: list(dict.fromkeys((one, other) if both else (one,))) for name, one, other in zip(known, first, second)
+    }
+    parents: dict[_Name, list[_Name]] = {}
+    while rows[-1]:
+        for name in rows[-1]:
+            parents[name] = [parent for parent in parents_of[name] if parent in parents_of]
+        rows.append(list(dict.fromkeys(parent for name in rows[-1] for parent in parents[name])))
+    return rows[:-1], parents
+
+
+def _positions(rows: list[list[_Name]], parents: dict[_Name, list[_Name]]) -> dict[_Name, float]:
+    """Orders the rows so that lines of first parents do not cross, and returns the position of each organism."""
+    x: dict[_Name, float] = {}
+    for row in reversed(rows):
+        row.sort(key=lambda name: ([x[parent] for parent in parents[name]], name))
+        x.update((name, i - (len(row) - 1) / 2) for i, name in enumerate(row))
+    if len(rows[0]) > 1:  # every parent is above the middle of its children
+        for row in rows:
+            spans: dict[_Name, list[float]] = {}
+            for name in row:
+                for parent in parents[name]:
+                    spans.setdefault(parent, []).append(x[name])
+            x.update((parent, (min(span) + max(span)) / 2) for parent, span in spans.items())
+    return x
 
 
 def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Array, Array]:

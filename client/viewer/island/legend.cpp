@@ -12,22 +12,41 @@ namespace evod::viewer {
 
 namespace {
 
+/// The organism that founded a family, such as "organism 12 of island 1".
+std::string founder_text(const IslandView& island_view, std::uint32_t founder) {
+    const Lineage& lineage = island_view.lineage();
+    const std::uint64_t since = island_view.families_since();
+    if (!lineage.contains(since) || lineage.at(since).begins.size() < 2) {
+        return "organism " + std::to_string(founder);
+    }
+    const Lineage::Place place = lineage.place_of(since, founder);
+    return "organism " + std::to_string(place.organism) + " of island " + std::to_string(place.island);
+}
+
 void add_families(const IslandView& island_view, const Population& population, Legend& legend) {
-    if (population.families().empty()) {
-        legend.entries.push_back({palette::unknown, "lineages unknown: the server does not send them"});
+    const Families& families = island_view.families();
+    if (families.shown().empty()) {
+        legend.entries.push_back({palette::unknown, island_view.lineage().empty()
+                                                        ? "lineages unknown: the server does not send them"
+                                                        : "lineages not known yet"});
         return;
     }
-    std::size_t others = population.size();
-    for (std::uint8_t family = 0; family < population.families().size(); ++family) {
-        const auto& [founder, size] = population.families()[family];
-        legend.entries.push_back({island_view.family_colours().of(family),
-                                  "descendants of organism " + std::to_string(founder) + ": " + with_separators(size)});
+    legend.title = "lineages, counted from generation " + with_separators(island_view.families_since());
+    std::size_t others = families.size();
+    for (std::uint8_t family = 0; family < families.shown().size(); ++family) {
+        const auto& [founder, size] = families.shown()[family];
+        legend.entries.push_back(
+            {island_view.family_colours().of(family),
+             "descendants of " + founder_text(island_view, founder) + ": " + with_separators(size)});
         others -= size;
     }
-    if (others > 0) {
-        legend.entries.push_back(
-            {palette::unknown, with_separators(population.family_count() - population.families().size()) +
-                                   " smaller lineages: " + with_separators(others)});
+    if (families.count() > families.shown().size()) {
+        legend.entries.push_back({palette::unknown, with_separators(families.count() - families.shown().size()) +
+                                                        " smaller lineages: " + with_separators(others)});
+    }
+    if (population.size() > families.size()) {
+        legend.entries.push_back({palette::unknown, "placed by a user, and their descendants: " +
+                                                        with_separators(population.size() - families.size())});
     }
 }
 
@@ -92,10 +111,11 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Lo
                 swatch = 12 * pixel, gap = 6 * pixel;
     const ImFont& font = gui.label();
     float width = legend.ramp ? std::max(bar_width, size_of(legend.ramp->title, font).x) : 0;
+    width = std::max(width, size_of(legend.title, font).x);
     for (const Legend::Entry& entry : legend.entries) {
         width = std::max(width, size_of(entry.text, font).x + swatch + gap);
     }
-    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) +
+    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) + (legend.title.empty() ? 0 : line) +
                          static_cast<float>(legend.entries.size()) * line + 2 * inside;
     const Rectangle& viewport = camera.viewport();
     const ImVec2 corner{std::floor(static_cast<float>(viewport.left)) + 12 * pixel,
@@ -115,6 +135,10 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Lo
         top += bar_height + 4 * pixel;
         write(list, font, {left, top}, colours.label, shown_number(scale.low));
         write_to_the_left(list, font, {left + bar_width, top}, colours.label, shown_number(scale.high));
+        top += line;
+    }
+    if (!legend.title.empty()) {
+        write(list, font, {left, top}, colours.label, legend.title);
         top += line;
     }
     for (const Legend::Entry& entry : legend.entries) {

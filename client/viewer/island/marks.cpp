@@ -75,10 +75,10 @@ ColourScale gene_scale(const Population& population, std::size_t gene, palette::
     return {ramp, range.min, range.max};
 }
 
-void FamilyColours::update(const Population& population) {
-    const auto& families = population.families();
+void FamilyColours::update(const Families& of) {
+    const auto& families = of.shown();
     for (auto& place : places_) {
-        if (place && std::ranges::find(families, *place, &Population::Family::founder) == families.end()) {
+        if (place && std::ranges::find(families, *place, &Families::Family::founder) == families.end()) {
             place.reset();
         }
     }
@@ -94,6 +94,12 @@ void FamilyColours::update(const Population& population) {
 
 Colour FamilyColours::of(std::uint8_t family) const {
     return family < colours_.size() ? palette::kinds[colours_[family]] : palette::unknown;
+}
+
+Colour FamilyColours::of_founder(std::uint32_t founder) const {
+    const auto place = std::ranges::find(places_, std::optional{founder});
+    return place == places_.end() ? palette::unknown
+                                  : palette::kinds[static_cast<std::size_t>(place - places_.begin())];
 }
 
 void add_discs(const Positions& organisms, std::vector<Shape>& discs) {
@@ -129,10 +135,10 @@ void add_gene_colours(const codec::Entities& organisms, const Population& popula
     }
 }
 
-void add_family_colours(const codec::Entities& organisms, const Population& population, const FamilyColours& families,
+void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
                         std::vector<Colour>& colours) {
     for (const std::uint32_t id : organisms.id) {
-        colours.push_back(id < population.size() ? families.of(population.family(id)) : palette::unknown);
+        colours.push_back(of_family.of(families.of(id)));
     }
 }
 

@@ -41,16 +41,18 @@ ColourScale gene_scale(const Population& population, std::size_t gene, palette::
 class FamilyColours {
   public:
     /// Keeps the colours of known families and assigns free colours to new ones.
-    void update(const Population& population);
-    /// Returns the colour of a family. `family` is an index in families() of the population passed to the last
-    /// update(), or no_family.
+    void update(const Families& families);
+    /// Returns the colour of a family. `family` is an index in shown() of the families passed to the last
+    /// update(), or Families::none.
     Colour of(std::uint8_t family) const;
+    /// Returns the colour of the family with this founder; palette::unknown if it has none.
+    Colour of_founder(std::uint32_t founder) const;
 
   private:
     /// For each colour, the founder of the family that has it.
     std::array<std::optional<std::uint32_t>, palette::kinds.size()> places_{};
     /// For each family, the index of its colour.
-    std::array<std::uint8_t, Population::shown_families_max> colours_{};
+    std::array<std::uint8_t, Families::shown_max> colours_{};
 };
 
 /// Adds the disc of each organism. The functions below read positions from these discs, so that each position is
@@ -60,11 +62,11 @@ void add_discs(const Positions& organisms, std::vector<Shape>& discs);
 void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs);
 
 void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours);
-/// Adds the colour of each organism. An organism that is not in the population gets palette::unknown, also in
+/// Adds the colour of each organism. An organism that is not in the population or families gets palette::unknown, also in
 /// add_family_colours().
 void add_gene_colours(const codec::Entities& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
-void add_family_colours(const codec::Entities& organisms, const Population& population, const FamilyColours& families,
+void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
                         std::vector<Colour>& colours);
 
 /// Indices of organisms in a snapshot. Radii and forces are drawn for these organisms; nullopt: for all.

@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
+#include "client/viewer/panels/family_tree/family_tree_panel.h"
 #include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
@@ -49,6 +50,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<BreedingPanel>()});
     places_.push_back({std::make_unique<PhysicsPanel>()});
     places_.push_back({std::make_unique<FreezerPanel>()});
+    places_.push_back({std::make_unique<FamilyTreePanel>()});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }

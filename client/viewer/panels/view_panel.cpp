@@ -50,7 +50,7 @@ void build_colouring(IslandView& island_view) {
         case ColourBy::Health:
             return "health";
         case ColourBy::Lineage:
-            return "lineage (founder in the first generation)";
+            return "lineage (ancestor in an earlier generation)";
         default:
             return shown.look.skin == Skin::Vivid ? "nothing (shade: health)" : "nothing";
         }

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <string_view>
-#include <unordered_map>
 
 namespace evod::viewer {
 
@@ -129,29 +128,7 @@ void Population::finish() {
         }
         ranges_.push_back(range);
     }
-    std::unordered_map<std::uint32_t, std::size_t> sizes;
-    for (const std::uint32_t founder : founders_) {
-        if (founder != no_founder) {
-            ++sizes[founder];
-        }
-    }
-    for (const auto& [founder, size] : sizes) {
-        families_.push_back({founder, size});
-    }
-    std::ranges::sort(families_, [](const Family& a, const Family& b) {
-        return a.size != b.size ? a.size > b.size : a.founder < b.founder;
-    });
-    family_count_ = families_.size();
-    families_.resize(std::min(families_.size(), shown_families_max));
-    std::unordered_map<std::uint32_t, std::uint8_t> shown;
-    for (std::size_t i = 0; i < families_.size(); ++i) {
-        shown[families_[i].founder] = static_cast<std::uint8_t>(i);
-    }
-    family_.reserve(founders_.size());
-    for (const std::uint32_t founder : founders_) {
-        const auto place = shown.find(founder);
-        family_.push_back(place == shown.end() ? no_family : place->second);
-    }
+    families_ = Families{founders_};
 }
 
 std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {

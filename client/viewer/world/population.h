@@ -6,6 +6,7 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
+#include "client/viewer/world/families.h"
 #include "evod/v1/commands.pb.h"
 #include "proto/codec/snapshot_codec.h"
 
@@ -24,14 +25,6 @@ class Population {
     struct Range {
         float min = 0, mean = 0, max = 0;
     };
-    /// All descendants of one organism of the first generation.
-    struct Family {
-        std::uint32_t founder = 0;
-        std::size_t size = 0; // number of descendants born in this generation
-    };
-    static constexpr std::size_t shown_families_max = 7;
-    static constexpr std::uint8_t no_family = shown_families_max; // the family is unknown, or too small to be shown
-
     /// gene_count  number of genes of the world; the pages do not contain it.
     explicit Population(std::size_t gene_count = 0) : genes_(gene_count) {}
 
@@ -68,12 +61,8 @@ class Population {
 
     // The following functions require a complete population.
     Range range(std::size_t gene) const { return ranges_[gene]; }
-    /// Returns the largest families, by decreasing size; among equal sizes, the lower founder comes first. Empty if the
-    /// server sends no founders.
-    const std::vector<Family>& families() const { return families_; }
-    /// Returns the family of an organism, as an index in families(), or no_family.
-    std::uint8_t family(std::uint32_t id) const { return family_.empty() ? no_family : family_[id]; }
-    std::size_t family_count() const { return family_count_; }
+    /// Returns the families by ancestor in the first generation. Empty if the server sends no founders.
+    const Families& families() const { return families_; }
     /// Returns the children of an organism of the previous generation, ordered by id.
     std::vector<std::uint32_t> children_of(std::uint32_t parent) const;
 
@@ -82,15 +71,14 @@ class Population {
 
     bool begun_ = false;
     std::uint64_t generation_ = 0, generation_tick_ = 0;
-    std::size_t organism_count_ = 0, family_count_ = 0;
+    std::size_t organism_count_ = 0;
     std::vector<std::vector<float>> genes_;
     std::array<std::vector<std::uint32_t>, 2> parents_; // by id; empty in the first generation
     std::vector<std::uint32_t> founders_;               // empty if the server sends none
     std::vector<std::uint8_t> choices_;
     std::array<std::vector<float>, 2> forces_, targets_;
     std::vector<Range> ranges_;
-    std::vector<Family> families_;
-    std::vector<std::uint8_t> family_;
+    Families families_;
 };
 
 /// Returns the ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which

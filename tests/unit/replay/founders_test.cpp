@@ -67,6 +67,31 @@ TEST_F(FoundersTest, FoundersFollowTheFirstParents) {
     }
 }
 
+TEST_F(FoundersTest, LineageFromAGenerationOnIsTheSame) {
+    record(1);
+    const auto file = RunFile::open_read_only(path());
+    std::vector<std::vector<Family>> all, late;
+    ASSERT_TRUE(each_generation(**file, executor, {}, [&](std::uint64_t, const auto& families) {
+        all.push_back(families);
+        return true;
+    }));
+    ASSERT_TRUE(each_generation(
+        **file, executor, {},
+        [&](std::uint64_t, const auto& families) {
+            late.push_back(families);
+            return true;
+        },
+        4));
+    ASSERT_EQ(all.size(), 7u);
+    ASSERT_EQ(late.size(), 4u);
+    for (std::size_t i = 0; i < late.size(); ++i) {
+        for (std::size_t island = 0; island < 2; ++island) {
+            EXPECT_EQ(late[i][island].parents, all[i + 3][island].parents) << i;
+            EXPECT_EQ(late[i][island].child_count, all[i + 3][island].child_count) << i;
+        }
+    }
+}
+
 TEST_F(FoundersTest, FoundersAreEqualAfterARestartAndInAReplay) {
     for (const std::uint64_t keep_every : {1u, 3u}) {
         record(keep_every);

@@ -73,6 +73,16 @@ TEST_F(OtherModel, LineageLeavesOutWhatIsPurgedOrUnknown) {
     written = write({.table = RunTable::Lineage, .of = OrganismName{8, 0, 11}});
     ASSERT_TRUE(written) << to_text(written.error());
     EXPECT_THAT(generations(), ElementsAre("8", "7"));
+
+    written = write({.table = RunTable::Lineage, .first_generation = 5});
+    ASSERT_TRUE(written) << to_text(written.error());
+    EXPECT_THAT(generations(), ElementsAre("7", "8"));
+    EXPECT_THAT(row_of("8,0,11"), HasSubstr("8,0,11,7,0,"));
+    written = write({.table = RunTable::Lineage, .first_generation = 8});
+    ASSERT_TRUE(written) << to_text(written.error());
+    EXPECT_THAT(generations(), ElementsAre("8"));
+    EXPECT_THAT(row_of("8,0,11"), HasSubstr("8,0,11,7,0,")) << "its parents are known";
+    EXPECT_EQ(write({.table = RunTable::Lineage, .first_generation = 9}).error().code, RefusalCode::NotFound);
 }
 
 TEST_F(OtherModel, LineageHasNoParentsWhereMigrantsMayHaveCome) {

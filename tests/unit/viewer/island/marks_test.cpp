@@ -65,31 +65,23 @@ TEST_F(MarksTest, AGeneScalesFromItsMinimumToItsMaximum) {
 }
 
 TEST_F(MarksTest, FamiliesKeepTheirColoursWhileAmongTheLargest) {
-    const auto population_of = [](std::initializer_list<std::uint32_t> founders) {
-        const auto count = static_cast<std::uint32_t>(founders.size());
-        auto page = page_of(0, count, count);
-        page.clear_founders();
-        for (const std::uint32_t founder : founders) {
-            put(*page.mutable_founders(), founder);
-        }
-        Population made{2};
-        EXPECT_EQ(made.add(page), std::nullopt);
-        return made;
-    };
+    const auto families_of = [](std::vector<std::uint32_t> founders) { return Families{founders}; };
     FamilyColours colours;
-    colours.update(population_of({5, 5, 5, 6, 6, 7}));
+    colours.update(families_of({5, 5, 5, 6, 6, 7}));
     EXPECT_EQ(colours.of(0), palette::kinds[0]);
     EXPECT_EQ(colours.of(2), palette::kinds[2]);
-    EXPECT_EQ(colours.of(Population::no_family), palette::unknown);
-    colours.update(population_of({7, 7, 7, 5, 8, 8})); // 7, 8, 5: family 6 is gone, 8 is new
+    EXPECT_EQ(colours.of(Families::none), palette::unknown);
+    colours.update(families_of({7, 7, 7, 5, 8, 8})); // 7, 8, 5: family 6 is gone, 8 is new
     EXPECT_EQ(colours.of(0), palette::kinds[2]) << "7";
     EXPECT_EQ(colours.of(1), palette::kinds[1]) << "8 gets the free colour";
     EXPECT_EQ(colours.of(2), palette::kinds[0]) << "5";
-    const auto next = population_of({8, 8, 5, 7});
+    const auto next = families_of({8, 8, 5, 7});
     colours.update(next);
     std::vector<Colour> of_organisms;
     add_family_colours(organisms, next, colours, of_organisms);
     EXPECT_THAT(of_organisms, ElementsAre(palette::kinds[1], palette::kinds[0], palette::unknown));
+    EXPECT_EQ(colours.of_founder(7), palette::kinds[2]);
+    EXPECT_EQ(colours.of_founder(6), palette::unknown);
 }
 
 TEST_F(MarksTest, DiscsHaveTheRadiiOfTheOrganisms) {

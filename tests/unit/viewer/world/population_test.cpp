@@ -56,9 +56,9 @@ TEST(Population, PlacedOrganismsBelongToNoFamily) {
         put(*page.mutable_founders(), founder);
     }
     ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.family_count(), 1u);
-    EXPECT_EQ(population.family(1), 0);
-    EXPECT_EQ(population.family(3), Population::no_family);
+    EXPECT_EQ(population.families().count(), 1u);
+    EXPECT_EQ(population.families().of(1), 0);
+    EXPECT_EQ(population.families().of(3), Families::none);
 }
 
 TEST(Population, AnOrganismPlacedBetweenPagesOutdatesThem) {
@@ -110,29 +110,17 @@ TEST(Population, IsCompleteWithoutOrganisms) {
     EXPECT_TRUE(population.complete());
 }
 
-TEST(Population, FamiliesAreOrderedBySize) {
+TEST(Population, FamiliesAreThoseOfTheFounders) {
     Population population{2};
     auto page = page_of(0, 20, 20);
-    page.clear_founders();
-    // 9 has one, 4 and 8 have two, ten others one each, and 5 has the rest.
-    for (const std::uint32_t founder : {9, 8, 4, 8, 4, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 5, 5, 5, 5, 5}) {
-        put(*page.mutable_founders(), founder);
-    }
     ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.family_count(), 14u);
-    std::vector<std::uint32_t> founders;
-    for (const auto& family : population.families()) {
-        founders.push_back(family.founder);
-    }
-    EXPECT_THAT(founders, ElementsAre(5, 4, 8, 9, 10, 11, 12));
-    EXPECT_EQ(population.families()[0].size, 5u);
-    EXPECT_EQ(population.family(1), 2); // of 8
-    EXPECT_EQ(population.family(14), Population::no_family);
+    EXPECT_EQ(population.families().count(), 3u);
+    EXPECT_EQ(population.families().of(4), 1) << "founder 1";
     page.clear_founders();
     Population unknown{2};
     ASSERT_EQ(unknown.add(page), std::nullopt);
-    EXPECT_TRUE(unknown.families().empty());
-    EXPECT_EQ(unknown.family(3), Population::no_family);
+    EXPECT_TRUE(unknown.families().shown().empty());
+    EXPECT_EQ(unknown.families().of(3), Families::none);
 }
 
 TEST(Population, RejectsInvalidPages) {
