@@ -287,7 +287,7 @@ TEST_F(ChangesTest, AnOrganismCanBeDraggedOutOfTheFreezer) {
     const auto drag = [&](const char* file) {
         const auto found = built->widget_positions().find(file);
         ASSERT_EQ(found.size(), 1u) << file;
-        const Point from = found.front()->centre;
+        const Point from = found.front()->centre();
         host.move(static_cast<int>(from.x), static_cast<int>(from.y));
         host.button(sf::Event::MouseButtonPressed);
         host.move(350, 200);
