@@ -130,7 +130,7 @@ inline evod::v1::ParameterValue real(double number) {
 struct NewWorld {
     std::string name;
     std::uint64_t seed = 7;
-    std::vector<std::pair<std::string, evod::v1::ParameterValue>> parameters;
+    std::vector<std::pair<std::string, evod::v1::ParameterValue>> parameters{};
 };
 
 /// evod on a free port, with a connection of the test. It writes no run files unless the arguments contain --data.

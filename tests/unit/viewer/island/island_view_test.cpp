@@ -194,7 +194,7 @@ TEST_F(IslandViewTest, RequestsThePopulationOncePerGenerationIfNeeded) {
 
 TEST_F(IslandViewTest, RestartsWhenTheGenerationEndsBetweenPages) {
     show(4, 100);
-    island_view.options.colour_by = ColourBy::Lineage;
+    island_view.options.colour_by = ColourBy::Gene;
     answer_page(2, 4);
     answer_page(1, 5);
     EXPECT_EQ(answer_page(3, 5).get_population().first_organism(), 0u);
