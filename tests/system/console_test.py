@@ -274,6 +274,22 @@ class Check(Folder):
                 self.assertIn(word, evod("check", self.file(text), status=1).stderr)
         self.assertIn("this is a folder", evod("check", self.folder.name, status=1).stderr)
 
+    def test_integrators_have_half_the_error_at_half_the_tick(self):
+        rows = [[float(word) for word in line.split()] for line in evod("check", "--integrators").stdout.splitlines()
+                if re.match(r"0\.", line)]
+        self.assertEqual([row[0] for row in rows], [0.8, 0.4, 0.2, 0.1, 0.05])
+        for tick_s, ticks, explicit, explicit_error, symplectic, symplectic_error, speed in rows:
+            self.assertAlmostEqual(tick_s * ticks, 2.4)
+            self.assertEqual((explicit_error, symplectic_error), (round(-2.4 * tick_s, 3), round(2.4 * tick_s, 3)))
+            self.assertEqual((round(explicit - 5.76, 3), round(symplectic - 5.76, 3)), (explicit_error, symplectic_error))
+            self.assertEqual(speed, 4.8)
+
+    def test_a_file_and_integrators_exclude_each_other(self):
+        said = evod("check", "--integrators", self.file("{}"), status=2).stderr
+        self.assertIn("--integrators", said)
+        self.assertIn("experiment", said)
+        self.assertIn("experiment: required unless --integrators is given", evod("check", status=2).stderr)
+
 
 class Image(Folder):
     def test_subcommands_get_only_options_they_have(self):

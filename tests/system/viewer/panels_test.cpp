@@ -699,6 +699,18 @@ TEST_F(PanelsTest, ATypedTickLengthIsClamped) {
     }
 }
 
+TEST_F(PanelsTest, ShowsTheErrorsOfFiveTickLengths) {
+    RealServer server{{"--seed", "7"}};
+    std::string script =
+        "wait snapshot\nkey F9\nclick \"Bodies of this island\"\nclick \"Effect of the tick length\"\n";
+    for (const char* cell : {"7.68 (+1.92)", "6.72 (+0.96)", "6.24 (+0.48)", "6.00 (+0.24)", "5.88 (+0.12)", //
+                             "3.84 (-1.92)", "4.80 (-0.96)", "5.28 (-0.48)", "5.52 (-0.24)", "5.64 (-0.12)"}) {
+        script += std::string{"wait widget \""} + cell + "\"\n";
+    }
+    const Ran ran = play(server.address(), script + "quit\n");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
 TEST_F(PanelsTest, TextAndWidgetsFollowTheScale) {
     const auto size_of_page = [&](const std::string& scale) {
         const Ran ran = play("--start --size 1280x720 --scale " + scale,

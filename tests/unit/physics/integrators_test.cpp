@@ -5,54 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 namespace evod::physics {
 namespace {
-
-constexpr double px_per_metre = 1000; // so that the position unit, 1/4096 px, stays far below the differences
-
-struct Fall {
-    double tick_s, symplectic, explicit_euler; // x(2.4 s) at a = 2 from rest without damping
-};
-void PrintTo(const Fall& fall, std::ostream* out) {
-    *out << "tick_s " << fall.tick_s;
-}
-class ConstantForce : public testing::TestWithParam<Fall> {
-  protected:
-    static double way_after_2_4_s(Integrator integrator) {
-        TestBodies setup;
-        setup.parameters.integration = integration(integrator, GetParam().tick_s, 0);
-        const double start = 100'000;
-        setup.add_circle(start, start, 5, 2);
-        const long ticks = std::lround(2.4 / GetParam().tick_s);
-        for (long tick = 0; tick < ticks; ++tick) {
-            setup.push(0, static_cast<float>(2 * 2 * px_per_metre), 0); // 2 kg at 2 m/s²
-            setup.step();
-        }
-        EXPECT_EQ(setup.circles.y[0], to_units(start));
-        return (to_px(setup.circles.x[0]) - start) / px_per_metre;
-    }
-    // Half a position unit a tick, and the rounding of a velocity of up to 4,800 px/s: below 0.2 px in 240 ticks.
-    static constexpr double tolerance = 2e-4;
-};
-
-TEST_P(ConstantForce, MovesByTheSymplecticEulerFormula) {
-    EXPECT_NEAR(way_after_2_4_s(Integrator::SymplecticEuler), GetParam().symplectic, tolerance);
-}
-
-TEST_P(ConstantForce, MovesByTheExplicitEulerFormula) {
-    EXPECT_NEAR(way_after_2_4_s(Integrator::ExplicitEuler), GetParam().explicit_euler, tolerance);
-}
-
-TEST_P(ConstantForce, BackwardEqualsSymplecticWithoutDamping) {
-    EXPECT_EQ(way_after_2_4_s(Integrator::BackwardEuler), way_after_2_4_s(Integrator::SymplecticEuler));
-}
-
-INSTANTIATE_TEST_SUITE_P(TickLengths, ConstantForce,
-                         testing::Values(Fall{0.01, 5.784, 5.736}, Fall{0.1, 6.0, 5.52}, Fall{0.2, 6.24, 5.28},
-                                         Fall{0.4, 6.72, 4.8}, Fall{0.8, 7.68, 3.84}),
-                         [](const auto& fall) { return std::to_string(std::lround(fall.param.tick_s * 100)) + "cs"; });
 
 TEST(BackwardEuler, AppliesDampingImplicitly) {
     // v' = (v + a·dt)/(1 + c·dt), x' = x + v'·dt, computed in double; 120 ticks of rounding to 1/4096 px and to float.

@@ -7,7 +7,8 @@ namespace {
 
 // Movement per tick as a share of the body's radius. Above close_share the panel warns and advises values that bring
 // the movement down to advised_share. If two approaching bodies each move a whole radius per tick, they may pass
-// through each other undetected. A world with default parameters reaches 0.6.
+// through each other undetected. The first generation of a world with default parameters reaches 0.2; later ones may
+// exceed 1.
 constexpr double close_share = 0.75, advised_share = 0.5;
 
 /// Recommends parameter values with which the fastest body moves advised_share of its radius per tick.

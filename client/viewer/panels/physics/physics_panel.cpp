@@ -17,6 +17,10 @@ constexpr double demo_s = 10; // length of the motion shown, in simulated second
 constexpr float tick_ms_min = 1, tick_ms_max = 1000;
 constexpr std::size_t table_rows = 8;
 
+// The table of constant acceleration, as in `evod check --integrators`.
+constexpr double acceleration_m_s2 = 2, acceleration_s = 2.4;
+constexpr double acceleration_ticks_s[] = {0.8, 0.4, 0.2, 0.1, 0.05};
+
 /// Plots a quantity over time, with the y axis starting at 0. The title contains the newest value.
 template <class Of>
 void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
@@ -45,6 +49,9 @@ void PhysicsPanel::build(Context& context) {
     }
     if (opened("Effect of the tick length")) {
         build_demo();
+    }
+    if (opened("Constant acceleration")) {
+        build_constant_acceleration();
     }
 }
 
@@ -110,7 +117,7 @@ void PhysicsPanel::set_curves(const TimeStepDemo& demo) {
         Curve made{name, colour, {}, {}};
         const double energy = demo.energy(rows_.front().exact);
         for (const Row& row : rows_) {
-            made.x_px.push_back((row.*state).x_px);
+            made.x_px.push_back((row.*state).x);
             made.energy.push_back(demo.energy(row.*state) / energy);
         }
         return made;
@@ -185,13 +192,13 @@ void PhysicsPanel::build_demo() {
         for (std::size_t i = 0; i < rows_.size(); i += stride) {
             const TimeStepDemo::Row& row = rows_[i];
             ImGui::TableNextRow();
-            for (const double value : {row.t_s, row.exact.x_px}) {
+            for (const double value : {row.t_s, row.exact.x}) {
                 ImGui::TableNextColumn();
                 ImGui::Text("%.4g", value);
             }
-            for (const double value : {row.symplectic_euler.x_px, row.explicit_euler.x_px}) {
+            for (const double value : {row.symplectic_euler.x, row.explicit_euler.x}) {
                 ImGui::TableNextColumn();
-                ImGui::Text("%.4g (%+.3g)", value, value - row.exact.x_px);
+                ImGui::Text("%.4g (%+.3g)", value, value - row.exact.x);
             }
         }
         ImGui::EndTable();
@@ -213,6 +220,41 @@ void PhysicsPanel::build_demo() {
                   rate * dt),
             palette::text);
     }
+}
+
+void PhysicsPanel::build_constant_acceleration() const {
+    const TimeStepDemo demo{{.omega_per_s = 0, .start = {0, 0}, .acceleration = acceleration_m_s2}};
+    const TimeStepDemo::State exact = demo.exact(acceleration_s);
+    widgets::small_text(
+        print("A body accelerates from rest at a = %g m/s² for t = %g s. It moves exactly ½at² = %.2f m; "
+              "its speed is then %.2f m/s with every tick length.",
+              acceleration_m_s2, acceleration_s, exact.x, exact.v),
+        palette::text);
+    if (ImGui::BeginTable("tick lengths", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
+        ImGui::TableSetupColumn("tick, s", ImGuiTableColumnFlags_WidthStretch, 1);
+        for (const char* name : {"symplectic Euler, m", "explicit Euler, m"}) {
+            ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 2);
+        }
+        ImGui::TableHeadersRow();
+        for (const double tick_s : acceleration_ticks_s) {
+            const auto ticks = static_cast<std::size_t>(std::lround(acceleration_s / tick_s));
+            const TimeStepDemo::Row end = demo.rows(tick_s, ticks).back();
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::Text("%.2f", tick_s);
+            for (const double x : {end.symplectic_euler.x, end.explicit_euler.x}) {
+                ImGui::TableNextColumn();
+                const std::string cell = print("%.2f (%+.2f)", x, x - exact.x);
+                ImGui::TextUnformatted(cell.c_str());
+                widgets::mark(cell);
+            }
+        }
+        ImGui::EndTable();
+    }
+    widgets::small_text(
+        "Errors are in parentheses: +½·a·t·tick for symplectic Euler, −½·a·t·tick for explicit Euler. Half "
+        "the tick gives half the error.",
+        palette::text);
 }
 
 } // namespace evod::viewer

@@ -1,6 +1,6 @@
 // Physics panel: plots energy, momentum, overlaps and speeds of the bodies of an island over time, and rates whether
 // the tick is short enough for them. A demonstration steps a motion with a known exact solution, with a tick of any
-// length.
+// length. A table compares five tick lengths for a body with constant acceleration.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -25,6 +25,7 @@ class PhysicsPanel : public Panel {
     void poll(Context& context);
     void build_motion();
     void build_demo();
+    void build_constant_acceleration() const;
     void set_curves(const TimeStepDemo& demo);
 
     std::uint64_t place_number_ = 0; // the place (world and island) that history_ describes

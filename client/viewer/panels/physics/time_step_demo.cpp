@@ -17,18 +17,20 @@ TimeStepDemo::State TimeStepDemo::exact(double t) const {
     }
     const double fading = std::exp(-h * t), b = v0 + h * x0;
     // The velocity is v = x', with C' = −square·S and S' = C.
-    return {fading * (x0 * c + b * s), fading * (b * c - square * x0 * s) - h * fading * (x0 * c + b * s)};
+    const double a = system_.acceleration;
+    return {fading * (x0 * c + b * s) + a * t * t / 2,
+            fading * (b * c - square * x0 * s) - h * fading * (x0 * c + b * s) + a * t};
 }
 
 TimeStepDemo::State TimeStepDemo::step(State from, double dt, EulerMethod method) const {
     const double omega = system_.omega_per_s;
-    const double v = from.v_px_s + (-omega * omega * from.x_px - system_.damping_per_s * from.v_px_s) * dt;
-    return {from.x_px + (method == EulerMethod::SymplecticEuler ? v : from.v_px_s) * dt, v};
+    const double v = from.v + (system_.acceleration - omega * omega * from.x - system_.damping_per_s * from.v) * dt;
+    return {from.x + (method == EulerMethod::SymplecticEuler ? v : from.v) * dt, v};
 }
 
 double TimeStepDemo::energy(const State& state) const {
     const double omega = system_.omega_per_s;
-    return (state.v_px_s * state.v_px_s + omega * omega * state.x_px * state.x_px) / 2;
+    return (state.v * state.v + omega * omega * state.x * state.x) / 2;
 }
 
 std::vector<TimeStepDemo::Row> TimeStepDemo::rows(double dt, std::size_t step_count) const {

@@ -1,12 +1,15 @@
 // Time step demo: steps a motion with a known exact solution by the integrators that worlds use, to show the effect of
 // the tick length.
 //
-// The motion is x'' = −ω²x − c·v: a spring (c = 0), damped motion (ω = 0), or both. A step first computes
-// v' = v + (−ω²x − c·v)·dt; then
+// The motion is x'' = a − ω²x − c·v: a spring (a = c = 0), damped motion (a = ω = 0), both (a = 0), or constant
+// acceleration (ω = c = 0). A step first computes v' = v + (a − ω²x − c·v)·dt; then
 //
 //   symplectic Euler  x' = x + v'·dt    a spring's energy oscillates but stays bounded if ω·dt < 2
 //   explicit Euler    x' = x + v·dt     a spring's energy grows by the factor 1 + ω²dt² in every step, however short
 //
+// At constant acceleration the position error after t seconds is +½·a·t·dt or −½·a·t·dt, and v is exact.
+//
+// Units        Lengths have the unit of the start: px for springs and damped motion, m for constant acceleration.
 // Owner        PhysicsPanel.
 // Threads      none; pure.
 // Source       Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, I.1.
@@ -22,12 +25,13 @@ enum class EulerMethod { SymplecticEuler, ExplicitEuler };
 class TimeStepDemo {
   public:
     struct State {
-        double x_px = 0, v_px_s = 0;
+        double x = 0, v = 0; // position, velocity
     };
     struct System {
         double omega_per_s = 2;   // ω, >= 0
         double damping_per_s = 0; // c, >= 0
         State start{100, 0};
+        double acceleration = 0; // a; not 0 only if omega_per_s = damping_per_s = 0
     };
     /// Position and velocity at one time, from the exact solution and from each integrator.
     struct Row {
@@ -40,7 +44,7 @@ class TimeStepDemo {
     /// Returns the exact solution at t >= 0.
     State exact(double t_s) const;
     State step(State from, double dt_s, EulerMethod method) const;
-    /// Returns the energy of a body of 1 kg in this state, in kg px²/s².
+    /// Returns the energy of a body of 1 kg in this state on the spring, if there is one.
     double energy(const State& state) const;
 
     /// Returns step_count + 1 rows. Row 0 is the start; row n is the state after n steps.

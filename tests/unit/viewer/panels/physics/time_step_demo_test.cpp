@@ -22,14 +22,14 @@ System slowing(double damping) {
 TEST(TimeStepDemo, SolvesTheSpringAndDampedMotionExactly) {
     for (const double t : {0.0, 0.3, 1.0, 7.5}) {
         const State swung = TimeStepDemo{spring(3)}.exact(t);
-        EXPECT_NEAR(swung.x_px, 100 * std::cos(3 * t), 1e-9);
-        EXPECT_NEAR(swung.v_px_s, -300 * std::sin(3 * t), 1e-9);
+        EXPECT_NEAR(swung.x, 100 * std::cos(3 * t), 1e-9);
+        EXPECT_NEAR(swung.v, -300 * std::sin(3 * t), 1e-9);
         const State slowed = TimeStepDemo{slowing(2)}.exact(t);
-        EXPECT_NEAR(slowed.x_px, 50 * (1 - std::exp(-2 * t)), 1e-9);
-        EXPECT_NEAR(slowed.v_px_s, 100 * std::exp(-2 * t), 1e-9);
+        EXPECT_NEAR(slowed.x, 50 * (1 - std::exp(-2 * t)), 1e-9);
+        EXPECT_NEAR(slowed.v, 100 * std::exp(-2 * t), 1e-9);
         const State free = TimeStepDemo{slowing(0)}.exact(t);
-        EXPECT_NEAR(free.x_px, 100 * t, 1e-9);
-        EXPECT_NEAR(free.v_px_s, 100, 1e-9);
+        EXPECT_NEAR(free.x, 100 * t, 1e-9);
+        EXPECT_NEAR(free.v, 100, 1e-9);
     }
 }
 
@@ -37,13 +37,13 @@ TEST(TimeStepDemo, TheDampedSpringSatisfiesItsEquation) {
     // x'' + c·x' + ω²x = 0 by central differences; below, at and above critical damping.
     for (const double c : {1.0, 6.0, 9.0}) {
         const TimeStepDemo demo{{.omega_per_s = 3, .damping_per_s = c, .start = {40, 70}}};
-        EXPECT_NEAR(demo.exact(0).x_px, 40, 1e-12);
-        EXPECT_NEAR(demo.exact(0).v_px_s, 70, 1e-12);
+        EXPECT_NEAR(demo.exact(0).x, 40, 1e-12);
+        EXPECT_NEAR(demo.exact(0).v, 70, 1e-12);
         for (const double t : {0.2, 0.9, 2.0}) {
             constexpr double h = 1e-4;
             const State before = demo.exact(t - h), now = demo.exact(t), after = demo.exact(t + h);
-            EXPECT_NEAR((after.x_px - before.x_px) / (2 * h), now.v_px_s, 1e-4) << c;
-            EXPECT_NEAR((after.v_px_s - before.v_px_s) / (2 * h) + c * now.v_px_s + 9 * now.x_px, 0, 1e-3) << c;
+            EXPECT_NEAR((after.x - before.x) / (2 * h), now.v, 1e-4) << c;
+            EXPECT_NEAR((after.v - before.v) / (2 * h) + c * now.v + 9 * now.x, 0, 1e-3) << c;
         }
     }
 }
@@ -81,7 +81,7 @@ TEST(TimeStepDemo, SymplecticEulerIsStableUpToTwoOverOmega) {
     const auto furthest = [&](double dt) {
         double most = 0;
         for (const auto& row : demo.rows(dt, 2000)) {
-            most = std::max(most, std::abs(row.symplectic_euler.x_px));
+            most = std::max(most, std::abs(row.symplectic_euler.x));
         }
         return most;
     };
@@ -97,10 +97,26 @@ TEST(TimeStepDemo, BothScaleTheVelocityOfDampedMotion) {
     for (std::size_t n = 0; n < rows.size(); ++n) {
         const double share = std::pow(kept, n);
         EXPECT_DOUBLE_EQ(rows[n].t_s, static_cast<double>(n) * dt);
-        EXPECT_NEAR(rows[n].explicit_euler.v_px_s, 100 * share, 1e-9);
-        EXPECT_NEAR(rows[n].symplectic_euler.v_px_s, 100 * share, 1e-9);
-        EXPECT_NEAR(rows[n].explicit_euler.x_px, 50 * (1 - share), 1e-9);
-        EXPECT_NEAR(rows[n].symplectic_euler.x_px, 50 * kept * (1 - share), 1e-9);
+        EXPECT_NEAR(rows[n].explicit_euler.v, 100 * share, 1e-9);
+        EXPECT_NEAR(rows[n].symplectic_euler.v, 100 * share, 1e-9);
+        EXPECT_NEAR(rows[n].explicit_euler.x, 50 * (1 - share), 1e-9);
+        EXPECT_NEAR(rows[n].symplectic_euler.x, 50 * kept * (1 - share), 1e-9);
+    }
+}
+
+TEST(TimeStepDemo, ConstantAccelerationHasTheKnownErrors) {
+    constexpr double a = 2, t = 2.4;
+    const TimeStepDemo demo{{.omega_per_s = 0, .start = {0, 0}, .acceleration = a}};
+    EXPECT_DOUBLE_EQ(demo.exact(t).x, 5.76);
+    EXPECT_DOUBLE_EQ(demo.exact(t).v, 4.8);
+    for (const std::size_t ticks : {3u, 6u, 12u, 24u, 48u}) {
+        const double dt = t / static_cast<double>(ticks);
+        const auto end = demo.rows(dt, ticks).back();
+        // Each of the n additions rounds a double of up to 8 by at most 2⁻⁵¹.
+        EXPECT_NEAR(end.symplectic_euler.x, 5.76 + a * t * dt / 2, 1e-12) << ticks;
+        EXPECT_NEAR(end.explicit_euler.x, 5.76 - a * t * dt / 2, 1e-12) << ticks;
+        EXPECT_NEAR(end.symplectic_euler.v, 4.8, 1e-12) << ticks;
+        EXPECT_NEAR(end.explicit_euler.v, 4.8, 1e-12) << ticks;
     }
 }
 
@@ -108,7 +124,7 @@ TEST(TimeStepDemo, ErrorsAreOfFirstOrder) {
     const TimeStepDemo demo{spring(2)};
     const auto error = [&](std::size_t steps, State TimeStepDemo::Row::*way) {
         const auto last = demo.rows(1.0 / static_cast<double>(steps), steps).back();
-        return std::abs((last.*way).x_px - 100 * std::cos(2.0));
+        return std::abs((last.*way).x - 100 * std::cos(2.0));
     };
     for (const auto way : {&TimeStepDemo::Row::symplectic_euler, &TimeStepDemo::Row::explicit_euler}) {
         EXPECT_NEAR(error(1000, way) / error(2000, way), 2, 0.05);
