@@ -95,7 +95,7 @@ bool IslandView::needs_population(bool points_at) const {
 }
 
 void IslandView::take_lineage(std::uint32_t island) {
-    if (lineage_version_ == lineage().version() && lineage_bases_.empty() == lineage().empty()) {
+    if (lineage_is_current()) {
         return;
     }
     lineage_version_ = lineage().version();

@@ -120,6 +120,11 @@ class IslandView {
     /// of a founder is its index in this generation, counted island after island.
     const Families& families() const { return families_; }
     std::uint64_t families_since() const { return families_since_; }
+    /// Returns whether lineage_base_of() knows every generation in lineage(). Not between an answer of the server and the
+    /// next update().
+    bool lineage_is_current() const {
+        return lineage_version_ == lineage().version() && lineage_bases_.empty() == lineage().empty();
+    }
     /// Returns the generation from which the lineages of a generation in lineage() are counted.
     std::uint64_t lineage_base_of(std::uint64_t generation) const {
         return lineage_bases_[generation - lineage().first()];

@@ -98,6 +98,11 @@ void FamilyTreePanel::build_choices(Context& context) {
 void FamilyTreePanel::update_tree(Context& context) {
     const IslandView& island_view = context.island_view;
     const Lineage& lineage = island_view.lineage();
+    if (!island_view.lineage_is_current()) {
+        tree_ = {};
+        source_ = {};
+        return;
+    }
     selected_ = selected_in(context);
     const Source source{context.world.feed.place_number(), lineage.version(), kind_,
                         kind_ == Kind::OfSelected ? selected_ : std::nullopt};
