@@ -1,13 +1,11 @@
 // Commands that change a running world: place and remove food, poison and organisms.
 #include "client/ctl/caller.h"
+#include "client/ctl/input_file.h"
 #include "client/ctl/text.h"
 #include "proto/codec/population_csv.h"
 #include "proto/command_line/command.h"
 
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,16 +39,8 @@ std::string check_position(const std::string& word) {
 using Genes = std::vector<float>;
 
 std::vector<Genes> genes_in(const std::string& path) {
-    std::ifstream file{path, std::ios::binary};
-    if (!file.is_open()) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read: " + std::strerror(errno)};
-    }
-    const auto islands = codec::read_population(file);
-    if (!islands) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + islands.error().what};
-    }
     std::vector<Genes> organisms;
-    for (const std::vector<float>& genes : *islands) {
+    for (const std::vector<float>& genes : population_in(path)) {
         for (auto begin = genes.begin(); begin != genes.end(); begin += codec::population_genes) {
             organisms.emplace_back(begin, begin + codec::population_genes);
         }

@@ -1,11 +1,11 @@
 // Commands that control worlds: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
+#include "client/ctl/input_file.h"
 #include "client/ctl/pace.h"
 #include "client/ctl/registry.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
 #include "proto/codec/framing.h"
-#include "proto/codec/population_csv.h"
 #include "proto/command_line/command.h"
 
 #include <unistd.h>
@@ -14,8 +14,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -36,23 +34,6 @@ struct CreateOptions {
     std::optional<std::uint64_t> seed;
 };
 
-/// Opens a file for reading; throws Stop if this fails.
-///
-/// what  kind of the file, for the error message: "experiment".
-std::ifstream open_file(const std::string& what, const std::string& path) {
-    std::error_code error;
-    std::ifstream file;
-    if (std::filesystem::is_directory(path, error)) {
-        errno = EISDIR; // a stream can open a folder, but throws when it reads from it
-    } else {
-        file.open(path, std::ios::binary);
-    }
-    if (!file.is_open()) {
-        throw Stop{ExitCode::Usage, "the " + what + " file " + path + " cannot be read: " + std::strerror(errno)};
-    }
-    return file;
-}
-
 /// Adds the text of an experiment file to a request. The server parses the text.
 void add_experiment(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file = open_file("experiment", path);
@@ -67,12 +48,7 @@ void add_experiment(const std::string& path, v1::CreateWorld& command) {
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
-    std::ifstream file = open_file("population", path);
-    const auto islands = codec::read_population(file);
-    if (!islands) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + islands.error().what};
-    }
-    for (const std::vector<float>& genes : *islands) {
+    for (const std::vector<float>& genes : population_in(path)) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
     // This many bytes are reserved for the other fields of the request, which need much less.
