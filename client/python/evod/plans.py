@@ -138,7 +138,7 @@ class LabPlans:
         """Sets values now or plans the change. If a value is out of range, raises Error before a request is sent."""
         registry = yield from self.registry()
         if at_generation is not None or at_tick is not None:
-            self._require_planned_changes()
+            self._require("planned_changes", "does not support planned changes")
         response = yield from request(
             "set_parameters",
             world=world,
@@ -156,18 +156,10 @@ class LabPlans:
     def cancel_change(self, world: str, change: int | PlannedChange) -> Plan[PlannedChange]:
         """Cancels a planned change. `change` is the change or its id."""
         yield from self.registry()
-        self._require_planned_changes()
+        self._require("planned_changes", "does not support planned changes")
         identity = change.id if isinstance(change, PlannedChange) else change
         response = yield from request("cancel_change", world=world, id=identity)
         return PlannedChange.of(response.planned_change)
-
-    def _require_planned_changes(self) -> None:
-        """Raises Error if the server does not support planned changes, because it would apply them immediately."""
-        welcome = self.core.welcome
-        if welcome is not None and "planned_changes" not in welcome.features:
-            raise Unimplemented(
-                f"the server, evod {welcome.server_version}, does not support planned changes: update it"
-            )
 
     def place(
         self,
@@ -179,7 +171,7 @@ class LabPlans:
     ) -> Plan[EntityIds]:
         """Places items at positions of shape (count, 2), and organisms given as x, y and genes."""
         yield from self.registry()
-        self._require_place()
+        self._require("place", "cannot place or remove items and organisms")
         positions = {"food": _positions("food", food), "poison": _positions("poison", poison)}
         items = [
             c.PlacedItem(kind=kind, x_px=x, y_px=y)
@@ -205,7 +197,7 @@ class LabPlans:
     ) -> Plan[EntityIds]:
         """Removes items and organisms by their ids."""
         yield from self.registry()
-        self._require_place()
+        self._require("place", "cannot place or remove items and organisms")
         response = yield from request(
             "remove",
             world=world,
@@ -218,13 +210,11 @@ class LabPlans:
         ids: EntityIds = result(response.removed)
         return ids
 
-    def _require_place(self) -> None:
-        """Raises Error if the server cannot place items and organisms."""
+    def _require(self, feature: str, what: str) -> None:
+        """Raises Unimplemented if the server lacks a feature. It might apply such a request in another way."""
         welcome = self.core.welcome
-        if welcome is not None and "place" not in welcome.features:
-            raise Unimplemented(
-                f"the server, evod {welcome.server_version}, cannot place or remove items and organisms: update it"
-            )
+        if welcome is not None and feature not in welcome.features:
+            raise Unimplemented(f"the server, evod {welcome.server_version}, {what}: update it")
 
     def create_world(
         self,
@@ -240,7 +230,7 @@ class LabPlans:
         registry = yield from self.registry()
         first, later = registry.planned(parameters)
         if later:
-            self._require_planned_changes()
+            self._require("planned_changes", "does not support planned changes")
         info = yield from request_world(
             "create_world",
             name=name,
