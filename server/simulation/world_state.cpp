@@ -176,8 +176,11 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
         return;
     }
     // Before the first tick, hash_ covers only the chromosomes and what commands have changed.
-    base::StateHash uncovered = whole_hash();
-    uncovered -= hash_;
+    base::StateHash uncovered;
+    if (tick == 0) {
+        uncovered = whole_hash();
+        uncovered -= hash_;
+    }
     std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
     for (const IslandState::Placed& organism : state.placed) {
         placed.push_back({{}, evolution::Chromosome{organism.genes.data()}, organism.tick});
@@ -217,9 +220,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
     }
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
     hash_ = whole_hash();
-    if (tick == 0) {
-        hash_ -= uncovered;
-    }
+    hash_ -= uncovered;
 }
 
 } // namespace evod::simulation
