@@ -151,6 +151,14 @@ bool button(const char* label) {
     return pressed;
 }
 
+void end_popup_with_cancel() {
+    ImGui::SameLine();
+    if (button("Cancel")) {
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
 bool checkbox(const char* label, bool& on, std::string_view name) {
     const bool changed = ImGui::Checkbox(label, &on);
     add_last({.kind = MarkedWidget::Kind::CheckBox,

@@ -96,6 +96,8 @@ void mark_field(std::string_view name, double value);
 /// Draws an ImGui::Button() and registers it with mark().
 bool button(const char* label);
 
+/// Ends an ImGui popup, with a button "Cancel" that closes it.
+void end_popup_with_cancel();
 /// Draws an ImGui::Checkbox() and registers it as a check box.
 ///
 /// name  the name to register, if it differs from the label

@@ -150,11 +150,7 @@ void FreezerPanel::build_actions(Context& context) {
             problem_ = context.freezer->remove(chosen_);
             ImGui::CloseCurrentPopup();
         }
-        ImGui::SameLine();
-        if (widgets::button("Cancel")) {
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndPopup();
+        widgets::end_popup_with_cancel();
     }
 }
 

@@ -144,11 +144,7 @@ void RunPanel::build_reset(ViewedWorld& world, float scale) {
         }
         ImGui::CloseCurrentPopup();
     }
-    ImGui::SameLine();
-    if (widgets::button("Cancel")) {
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::EndPopup();
+    widgets::end_popup_with_cancel();
 }
 
 } // namespace evod::viewer

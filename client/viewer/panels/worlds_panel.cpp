@@ -74,11 +74,7 @@ void WorldsPanel::build_actions(Context& context) {
         world.remove(deleted_);
         ImGui::CloseCurrentPopup();
     }
-    ImGui::SameLine();
-    if (widgets::button("Cancel")) {
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::EndPopup();
+    widgets::end_popup_with_cancel();
 }
 
 void WorldsPanel::refresh() {

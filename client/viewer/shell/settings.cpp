@@ -1,5 +1,7 @@
 #include "client/viewer/shell/settings.h"
 
+#include "client/viewer/world/user_folder.h"
+
 #include <imgui.h>
 #include <imgui_internal.h> // ImGuiSettingsHandler
 
@@ -116,18 +118,8 @@ Panels& panels_of(const ImGuiSettingsHandler* handler) {
 } // namespace
 
 std::optional<std::filesystem::path> in_state_folder(const char* name) {
-    const auto from = [](const char* variable) -> std::filesystem::path {
-        const char* value = std::getenv(variable);
-        return value == nullptr ? "" : value;
-    };
-    if (const auto state = from("XDG_STATE_HOME");
-        state.is_absolute()) { // the XDG specification requires that relative paths are ignored
-        return state / "evod" / name;
-    }
-    if (const auto home = from("HOME"); !home.empty()) {
-        return home / ".local" / "state" / "evod" / name;
-    }
-    return std::nullopt;
+    const std::filesystem::path state = user_folder("XDG_STATE_HOME", ".local/state");
+    return state.empty() ? std::nullopt : std::optional{state / name};
 }
 
 Settings::Settings(std::optional<std::filesystem::path> file, Panels& panels)

@@ -2,13 +2,13 @@
 
 #include "client/viewer/text/numbers.h"
 #include "client/viewer/world/new_world.h"
+#include "client/viewer/world/user_folder.h"
 #include "proto/codec/population_csv.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -148,18 +148,8 @@ std::string Freezer::remove(const std::string& name) {
 }
 
 std::filesystem::path default_freezer_folder() {
-    const auto from = [](const char* variable) -> fs::path {
-        const char* value = std::getenv(variable);
-        return value == nullptr ? "" : value;
-    };
-    if (const fs::path data = from("XDG_DATA_HOME");
-        data.is_absolute()) { // the XDG specification ignores relative ones
-        return data / "evod" / "freezer";
-    }
-    if (const fs::path home = from("HOME"); !home.empty()) {
-        return home / ".local" / "share" / "evod" / "freezer";
-    }
-    return {};
+    const fs::path data = user_folder("XDG_DATA_HOME", ".local/share");
+    return data.empty() ? data : data / "freezer";
 }
 
 } // namespace evod::viewer
