@@ -266,6 +266,7 @@ base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, co
     motion.set_cell_px(report.strip_px);
     motion.set_too_fast_count(island.counts().too_fast_count);
     motion.set_speed_limit_count(island.counts().speed_limit_count);
+    motion.set_generation_tick(world.moment().generation_tick);
     return motion;
 }
 

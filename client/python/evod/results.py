@@ -254,6 +254,7 @@ class Motion(_Result):
     cell_px: float
     too_fast_count: int  #: in this generation
     speed_limit_count: int  #: in this generation
+    generation_tick: int  #: ticks since the generation began
 
 
 # ---- organisms ------------------------------------------------------------------------------------------------------------

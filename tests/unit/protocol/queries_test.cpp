@@ -28,7 +28,8 @@ TEST_F(Queries, AreAnsweredWithTheFieldOfTheirRules) {
     request.mutable_get_organism();
     EXPECT_TRUE(answer(request).has_organism());
     request.mutable_get_motion();
-    EXPECT_TRUE(answer(request).has_motion());
+    EXPECT_EQ(answer(request).motion().tick(), laboratory.find("w").value()->world.moment().tick);
+    EXPECT_EQ(answer(request).motion().generation_tick(), laboratory.find("w").value()->world.moment().generation_tick);
 }
 
 TEST_F(Queries, WithRowsAreConvertedLater) {
