@@ -155,7 +155,9 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
 void IslandView::request_picks(ViewedWorld& world, Clock::time_point now) {
     const evod::v1::Replay* replay = world.replay.info();
     const std::uint64_t newest = replay != nullptr ? replay->last_generation() : generation_;
-    auto wanted = organism_history_->wanted_picks(organism_history_->generation() < newest);
+    selected_has_bred_ = organism_history_->generation() < newest;
+    auto wanted = organism_history_->wanted_picks(selected_has_bred_);
+    awaits_picks_ = wanted.has_value();
     if (!wanted || picks_poll_.is_unsupported() || !picks_poll_.due(world, now)) {
         return;
     }

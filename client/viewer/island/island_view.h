@@ -106,6 +106,10 @@ class IslandView {
     std::optional<OrganismPlace> take_wanted_pick() { return std::exchange(wanted_pick_, std::nullopt); }
     /// Returns why the picks of the selected organism are unknown, as a sentence; empty if they are known or requested.
     const std::string& picks_problem() const { return picks_poll_.problem(); }
+    /// Returns whether picks of the selected organism or of its parents are being requested.
+    bool awaits_picks() const { return awaits_picks_ && picks_problem().empty(); }
+    /// Returns whether the generation of the selected organism has bred.
+    bool selected_has_bred() const { return selected_has_bred_; }
 
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
@@ -173,6 +177,7 @@ class IslandView {
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
     Poll picks_poll_;
+    bool awaits_picks_ = false, selected_has_bred_ = false;
     std::uint64_t taken_count_ = 0;                         // complete populations received
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     Families families_;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -163,6 +164,19 @@ void OrganismPanel::build_freeze(Context& context, const OrganismHistory& histor
     widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");
 }
 
+void OrganismPanel::build_own_picks(Context& context, const OrganismHistory& history) {
+    const OrganismHistory::Picks* picks = history.picks();
+    ImGui::BeginDisabled(picks == nullptr);
+    if (widgets::button("Show its picks")) {
+        context.island_view.show_pick({history.info()->island(), history.generation(), history.id()});
+    }
+    ImGui::EndDisabled();
+    widgets::explain(picks != nullptr                           ? "Opens the glass box at its first pick."
+                     : !context.island_view.selected_has_bred() ? "Its generation has not bred yet."
+                     : context.island_view.awaits_picks()       ? "Loading …"
+                                                                : "Its picks are unknown.");
+}
+
 void OrganismPanel::build(Context& context) {
     const OrganismHistory* history = context.island_view.organism_history();
     if (history == nullptr) {
@@ -226,27 +240,31 @@ void OrganismPanel::build_life(Context& context, const OrganismHistory& history)
         }
     }
     build_freeze(context, history);
+    ImGui::SameLine();
+    build_own_picks(context, history);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
 }
 
-/// Answers the question why this organism exists, and whether it has offspring.
+/// Answers the question why this organism exists, and whether it was picked. The buttons are above the texts, so that they
+/// do not move under the mouse when the numbers arrive.
 void OrganismPanel::build_picks(Context& context, const OrganismHistory& history) {
     const evod::v1::OrganismInfo& info = *history.info();
+    std::vector<std::uint32_t> parents(info.parents().begin(), info.parents().end());
+    if (parents.size() == 2 && parents[0] == parents[1]) {
+        parents.pop_back();
+    }
+    for (const std::uint32_t parent : parents) {
+        build_parent(context, history, parent);
+    }
     widgets::small_text(shown_parents(info, history.origin()), palette::text);
-    std::uint32_t last = 0;
-    for (int i = 0; i < info.parents_size(); ++i) {
-        if (i == 0 || info.parents(i) != last) {
-            last = info.parents(i);
-            build_parent(context, history, last);
+    for (const std::uint32_t parent : parents) {
+        if (const OrganismHistory::Picks* picks = history.picks_of_parent(parent)) {
+            widgets::small_text(shown_picks("Its parent " + std::to_string(parent), *picks), palette::text);
         }
     }
     if (const OrganismHistory::Picks* picks = history.picks()) {
         widgets::small_text(shown_picks("It", *picks), palette::text);
-        if (widgets::button("Show its picks")) {
-            context.island_view.show_pick({info.island(), history.generation(), history.id()});
-        }
-        widgets::explain("Opens the glass box at its first pick.");
     }
     if (!context.island_view.picks_problem().empty()) {
         widgets::small_text("The picks are unknown: " + context.island_view.picks_problem() + ".");
@@ -256,10 +274,9 @@ void OrganismPanel::build_picks(Context& context, const OrganismHistory& history
 void OrganismPanel::build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent) {
     const evod::v1::OrganismInfo& info = *history.info();
     const OrganismHistory::Picks* picks = history.picks_of_parent(parent);
-    if (picks != nullptr) {
-        widgets::small_text(shown_picks("Its parent " + std::to_string(parent), *picks), palette::text);
-    }
     const std::string id = std::to_string(parent);
+    // Only the picks contain whether the parent is a copy of an organism of another island.
+    ImGui::BeginDisabled(picks == nullptr && context.island_view.awaits_picks());
     if (widgets::button(("Go to parent " + id).c_str())) {
         OrganismPlace place{info.island(), history.generation() - 1, parent};
         if (picks != nullptr && picks->migrant) {
@@ -268,14 +285,15 @@ void OrganismPanel::build_parent(Context& context, const OrganismHistory& histor
         }
         context.island_view.go_to(context.world, place);
     }
+    ImGui::EndDisabled();
     widgets::explain("Shows the parent alive, in a replay of its generation. P returns to the live world.");
-    if (picks != nullptr) {
-        ImGui::SameLine();
-        if (widgets::button(("Why " + id + "?").c_str())) {
-            context.island_view.show_pick({info.island(), history.generation() - 1, parent});
-        }
-        widgets::explain("Opens the glass box at the first pick of this parent.");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(picks == nullptr);
+    if (widgets::button(("Why " + id + "?").c_str())) {
+        context.island_view.show_pick({info.island(), history.generation() - 1, parent});
     }
+    ImGui::EndDisabled();
+    widgets::explain("Opens the glass box at the first pick of this parent.");
 }
 
 void OrganismPanel::build_genes(Context& context, const OrganismHistory& history) {

@@ -22,6 +22,7 @@ class OrganismPanel : public Panel {
 
   private:
     void build_freeze(Context& context, const OrganismHistory& history);
+    void build_own_picks(Context& context, const OrganismHistory& history);
     void build_choice(Context& context);
     void build_life(Context& context, const OrganismHistory& history);
     void build_picks(Context& context, const OrganismHistory& history);

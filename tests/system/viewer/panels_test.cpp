@@ -81,9 +81,53 @@ TEST_F(PanelsTest, LeadsFromAnOrganismToThePickOfItsParent) {
                             "\"\nclick \"Why " + id + "?\"\nwait widget \"Pick " +
                             std::to_string(pick - picks.begin() + 1) + "\"\nkey F6\n";
     const std::string replay = "click \"Go to parent " + id +
-                               "\"\nwait widget \"Back to live\"\nwait widget \"Show its picks\"\n"
-                               "key P\nwait gone \"Back to live\"\nquit\n";
+                               "\"\nwait widget \"Back to live\"\nclick \"Show its picks\"\nwait widget \"Pick " +
+                               std::to_string(pick - picks.begin() + 1) +
+                               "\"\nkey F6\nkey P\nwait gone \"Back to live\"\nquit\n";
     const Ran ran = play(server.address(), why + replay);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, TheGlassBoxTakesKeysOnlyWithTheFocus) {
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
+    server.run_generations("", 2);
+    const Ran ran = play(server.address(), R"script(
+wait snapshot
+key F8
+wait widget Play
+wait connected
+click "Click: Select"
+wait connected
+key Space
+wait state running
+timeout 3
+wait widget Play
+quit
+)script");
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, DropDownsReturnToTheFirstChoice) {
+    RealServer server{{"--seed", "7", "--data", folder.file("runs")}};
+    std::string script = "timeout 10\nwait snapshot\n";
+    for (int i = 0; i < 2; ++i) {
+        script += R"script(
+key F4
+set selection truncation
+set selection roulette
+key F5
+set skin classic
+set skin vivid
+set palette cividis
+set palette violet
+set "colour by (C)" health
+set "colour by (C)" "nothing (shade: health)"
+key F7
+set "running mean" "mean of 100"
+set "running mean" "each generation"
+)script";
+    }
+    const Ran ran = play(server.address(), script + "quit\n");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
