@@ -28,9 +28,25 @@ std::string planned_text(const evod::v1::Event& event) {
                               : " from generation " + std::to_string(change.generation()));
 }
 
+/// Returns what a client has placed or removed: "placed 3 food, 1 organism on island 2".
+template <class Entities>
+std::string entities_text(const char* verb, const Entities& entities, bool several_islands) {
+    std::string text;
+    const auto add = [&](int count, const char* one, const char* many) {
+        if (count > 0) {
+            text += (text.empty() ? " " : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
+        }
+    };
+    add(entities.food_size(), "food", "food");
+    add(entities.poison_size(), "poison", "poison");
+    add(entities.organisms_size(), "organism", "organisms");
+    return core::to_text(entities.by()) + " " + verb + text +
+           (several_islands ? " on island " + std::to_string(entities.island()) : "");
+}
+
 } // namespace
 
-std::string event_text(const evod::v1::Event& event) {
+std::string event_text(const evod::v1::Event& event, bool several_islands) {
     switch (event.kind_case()) {
     case evod::v1::Event::kServerGoingAway:
         return "The server is shutting down";
@@ -49,6 +65,10 @@ std::string event_text(const evod::v1::Event& event) {
                name_list(event.change_dropped().name(), [](const std::string& name) { return name; }) + " that " +
                core::to_text(event.change_dropped().by()) +
                " planned was dropped, because it conflicts with the other parameters";
+    case evod::v1::Event::kPlaced:
+        return entities_text("placed", event.placed(), several_islands);
+    case evod::v1::Event::kRemoved:
+        return entities_text("removed", event.removed(), several_islands);
     default:
         return "";
     }

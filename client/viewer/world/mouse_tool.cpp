@@ -97,9 +97,7 @@ void MouseTool::click(ViewedWorld& world, const Target& target) const {
         return world.server.notice(std::move(why));
     }
     if (auto wanted = request(world.feed.name(), target)) {
-        world.server.send(*std::move(wanted), [&world](const core::Result<evod::v1::Response>& response) {
-            world.server.report_if_refused(response);
-        });
+        world.change_entities(*std::move(wanted));
     } else {
         world.server.notice(hint(target));
     }

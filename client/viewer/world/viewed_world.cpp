@@ -14,6 +14,7 @@ ViewedWorld::ViewedWorld(const WantedWorld& wanted)
 
 bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
     if (const auto welcome = server.take_welcome()) {
+        own_changes_.clear(); // the events were lost with the connection
         feed.take_storage(welcome->storage());
         if (replay.is_own()) {
             server.notice("The connection was lost, and the replay was closed with it");
@@ -48,7 +49,8 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     if (!of_this_world && !event.has_server_going_away()) {
         return;
     }
-    if (std::string text = event_text(event); !text.empty()) {
+    std::string text = take_own_change(event) ? "" : event_text(event, feed.island_count() > 1);
+    if (!text.empty()) {
         server.notice(std::move(text));
     }
     if (event.has_world_deleted() && of_this_world) {
@@ -57,9 +59,36 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     }
 }
 
+void ViewedWorld::change_entities(evod::v1::Request request) {
+    server.send(std::move(request), [this](const core::Result<evod::v1::Response>& response) {
+        if (server.report_if_refused(response)) {
+            own_changes_.push_back(*response);
+        }
+    });
+}
+
+/// Returns whether this session has caused the event by change_entities().
+bool ViewedWorld::take_own_change(const evod::v1::Event& event) {
+    const auto same = [](auto of_event, const auto& of_answer) {
+        of_event.clear_by(); // answers do not contain it
+        return of_event.SerializeAsString() == of_answer.SerializeAsString();
+    };
+    const auto found = std::ranges::find_if(own_changes_, [&](const evod::v1::Response& answer) {
+        return event.has_placed()    ? answer.has_placed() && same(event.placed(), answer.placed())
+               : event.has_removed() ? answer.has_removed() && same(event.removed(), answer.removed())
+                                     : false;
+    });
+    if (found == own_changes_.end()) {
+        return false;
+    }
+    own_changes_.erase(found);
+    return true;
+}
+
 void ViewedWorld::show(std::string world, std::uint32_t island) {
     if (world != feed.world()) {
         replay.leave(world);
+        own_changes_.clear();
     }
     feed.show(std::move(world), island);
 }

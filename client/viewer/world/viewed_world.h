@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -47,6 +48,9 @@ class ViewedWorld {
     /// Returns the world that was created or forked to be shown in the other half, once; empty if there is none.
     std::string take_beside() { return std::exchange(beside_, {}); }
 
+    /// Sends a Place or Remove. The event about it causes no notice, unlike those of other sessions.
+    void change_entities(evod::v1::Request request);
+
     /// Makes the window offer to create a second world, to be shown beside this one.
     void offer_new_world() { new_world_offered_ = true; }
     bool take_new_world_offer() { return std::exchange(new_world_offered_, false); }
@@ -67,7 +71,10 @@ class ViewedWorld {
     void take_event(const evod::v1::Event& event);
     std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds) const;
 
+    bool take_own_change(const evod::v1::Event& event);
+
     std::string beside_;
+    std::vector<evod::v1::Response> own_changes_; // answers to change_entities() whose events have not arrived
     bool new_world_offered_ = false;
     bool next_world_wanted_ = false; // show the next world as soon as connected
 };

@@ -43,6 +43,25 @@ TEST(EventText, SaysWhyAPlannedChangeWasNotMade) {
                                  "conflicts with the other parameters");
 }
 
+TEST(EventText, CountsWhatWasPlacedOrRemoved) {
+    evod::v1::Event event;
+    auto& placed = *event.mutable_placed();
+    by_evoctl(placed);
+    placed.set_island(2);
+    for (const std::uint32_t id : {25u, 26u, 27u}) {
+        placed.add_food(id);
+    }
+    EXPECT_EQ(event_text(event), "evoctl 127.0.0.1 placed 3 food");
+    placed.add_organisms(50);
+    EXPECT_EQ(event_text(event, true), "evoctl 127.0.0.1 placed 3 food, 1 organism on island 2");
+    auto& removed = *event.mutable_removed();
+    removed.mutable_by()->set_user("anna");
+    removed.add_poison(4);
+    removed.add_organisms(1);
+    removed.add_organisms(2);
+    EXPECT_EQ(event_text(event), "anna removed 1 poison, 2 organisms");
+}
+
 TEST(EventText, IsEmptyForEventsThatNeedNoNotice) {
     evod::v1::Event event;
     event.mutable_generation_finished();

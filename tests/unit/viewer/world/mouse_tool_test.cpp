@@ -112,6 +112,29 @@ TEST_F(MouseToolInWorldTest, SendsTheRequestAndNoticesARefusal) {
     EXPECT_THAT(world.server.take_notices(), ElementsAre("Nothing to remove here"));
 }
 
+TEST_F(MouseToolInWorldTest, OnlyChangesByOthersCauseANotice) {
+    ViewedWorld world{wanted()};
+    auto session = begin_with(world, {"codec:plain", "place"});
+    tool.choose(Kind::Food);
+    tool.click(world, empty);
+    evod::v1::ServerMessage answer;
+    answer.mutable_response()->set_request_id(session.read_request().request_id());
+    answer.mutable_response()->mutable_placed()->set_island(1);
+    answer.mutable_response()->mutable_placed()->add_food(25);
+    session.send(answer);
+    evod::v1::ServerMessage message;
+    message.mutable_event()->set_world("default");
+    evod::v1::Placed& placed = *message.mutable_event()->mutable_placed();
+    placed = answer.response().placed();
+    placed.mutable_by()->set_user("me");
+    session.send(message);
+    placed.mutable_by()->set_user("anna");
+    placed.set_food(0, 26);
+    session.send(message);
+    until(world, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("anna placed 1 food on island 1"));
+}
+
 TEST_F(MouseToolInWorldTest, AViewerCannotPlace) {
     ViewedWorld world{wanted()};
     auto session = begin_with(world, {"place"}, evod::v1::ROLE_VIEWER);
