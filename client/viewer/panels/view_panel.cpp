@@ -50,7 +50,7 @@ void build_colouring(IslandView& island_view) {
         case ColourBy::Health:
             return "health";
         case ColourBy::Lineage:
-            return "lineage (ancestor in an earlier generation)";
+            return "lineage (common ancestor)";
         default:
             return shown.look.skin == Skin::Vivid ? "nothing (shade: health)" : "nothing";
         }
@@ -71,6 +71,11 @@ void build_colouring(IslandView& island_view) {
             choose(ColourBy::Gene, gene);
         }
         ImGui::EndCombo();
+    }
+    if (shown.colour_by == ColourBy::Lineage && !island_view.lineage_problem().empty()) {
+        widgets::small_text("Lineages are counted from the first generation. " + island_view.lineage_problem() + ".",
+                            palette::warning);
+        widgets::mark("Lineages from the first generation");
     }
     if (widgets::begin_drop_down("palette", std::string{palette::name_of(shown.ramp)}.c_str())) {
         for (const palette::Ramp ramp : palette::ramps) {

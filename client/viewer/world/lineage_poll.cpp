@@ -21,7 +21,10 @@ void LineagePoll::update(ViewedWorld& world, bool wanted, Clock::time_point now)
         export_id_ = 0;
         poll_.reset();
     }
-    if (!poll_.due(world, now)) {
+    if (!wanted && poll_.is_unsupported()) {
+        poll_.reset(); // the next time that the lineage is wanted, it is requested again
+    }
+    if (!poll_.due(world, now) || poll_.is_unsupported()) {
         return;
     }
     if (poll_.pending()) { // the request has timed out

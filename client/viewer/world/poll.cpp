@@ -19,20 +19,21 @@ void Poll::send(ViewedWorld& world, evod::v1::Request request, Clock::time_point
     const std::uint64_t number = ++state_->number, place = state_->place = world.feed.place_number();
     state_->sent = now;
     state_->due_now = false;
-    world.server.send(std::move(request),
-                      [weak = std::weak_ptr{state_}, number, place, interval = interval_, &world,
-                       handler = std::move(handler)](const core::Result<evod::v1::Response>& response) {
-                          const auto state = weak.lock();
-                          if (!state || state->number != number || world.feed.place_number() != place) {
-                              return;
-                          }
-                          const bool accepted = response && core::accepted(*response);
-                          state->sent.reset();
-                          state->next = Clock::now() + (accepted ? interval : Clock::duration{after_refusal});
-                          state->problem = refusal_of(response);
-                          state->unsupported = response && response->status().code() == evod::v1::CODE_UNIMPLEMENTED;
-                          handler(accepted ? &*response : nullptr);
-                      });
+    world.server.send(
+        std::move(request), [weak = std::weak_ptr{state_}, number, place, interval = interval_, &world,
+                             handler = std::move(handler)](const core::Result<evod::v1::Response>& response) {
+            const auto state = weak.lock();
+            if (!state || state->number != number || world.feed.place_number() != place) {
+                return;
+            }
+            const bool accepted = response && core::accepted(*response);
+            state->sent.reset();
+            state->next = Clock::now() + (accepted ? interval : Clock::duration{after_refusal});
+            state->problem = refusal_of(response);
+            state->unsupported = response && (response->status().code() == evod::v1::CODE_UNIMPLEMENTED ||
+                                              response->status().reason() == evod::v1::REASON_RUNS_NOT_KEPT);
+            handler(accepted ? &*response : nullptr);
+        });
 }
 
 void Poll::wait(Clock::duration delay) {

@@ -49,7 +49,8 @@ class Poll {
 
     /// Returns why the last request was refused or not answered, as a sentence; empty if it was answered.
     const std::string& problem() const { return state_->problem; }
-    /// Returns whether the server does not support this request. Sending it again would be useless.
+    /// Returns whether the server does not support this request, or stores no runs that it could read for the answer.
+    /// Sending it again would be useless.
     bool is_unsupported() const { return state_->unsupported; }
 
   private:

@@ -108,6 +108,27 @@ TEST_F(LineagePollTest, ARefusalIsReported) {
     EXPECT_EQ(poll.problem(), "The server keeps no runs");
 }
 
+TEST_F(LineagePollTest, AsksAServerWithoutRunsOncePerChoice) {
+    show(2);
+    const auto refuse = [&](std::uint64_t request_id) {
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request_id);
+        message.mutable_response()->mutable_status()->set_code(evod::v1::CODE_FAILED_PRECONDITION);
+        message.mutable_response()->mutable_status()->set_reason(evod::v1::REASON_RUNS_NOT_KEPT);
+        message.mutable_response()->mutable_status()->set_message("this server stores no runs");
+        session.send(message);
+    };
+    refuse(next().request_id());
+    poll_until([&] { return !poll.problem().empty(); });
+    const auto later = std::chrono::steady_clock::now() + 2 * Poll::after_refusal;
+    poll.update(world, true, later);
+    EXPECT_TRUE(world.all_answered()) << "nothing was sent";
+    EXPECT_EQ(poll.problem(), "This server stores no runs");
+    poll.update(world, false, later);
+    poll.update(world, true, later);
+    EXPECT_FALSE(world.all_answered()) << "chosen again";
+}
+
 TEST_F(LineagePollTest, RequestsNothingUntilItIsWanted) {
     show(2);
     for (int i = 0; i < 20; ++i) {
