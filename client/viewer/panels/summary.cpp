@@ -4,7 +4,7 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/island/styles.h"
 #include "client/viewer/panels/new_world_dialog.h"
-#include "client/viewer/panels/plots/plot.h"
+#include "client/viewer/panels/plots/figures.h"
 #include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
@@ -86,34 +86,28 @@ void Summary::build_marks(Look look, const Gui& gui) {
 }
 
 void Summary::build_curve(const Panel::Context& context) {
-    const HistoryTable& table = context.history->table();
-    const auto generations = table.column(std::nullopt, "generation");
-    const auto mean = table.column(std::nullopt, "fitness_mean"), best = table.column(std::nullopt, "fitness_best");
-    Plot plot;
-    if (generations.empty()) {
-        plot.title = context.history->history().complete() ? "Fitness: the curve begins when the first generation ends"
-                                                           : "Fitness: loading the earlier generations …";
+    const History& history = context.history->history();
+    const auto generations = history.table().column(std::nullopt, "generation");
+    Figure figure = fitness_curves({history.table(), std::nullopt, "", history.changes()});
+    Plot& plot = figure.plot;
+    if (plot.series.empty()) {
+        plot.title = history.complete() ? "Fitness: the curve begins when the first generation ends"
+                                        : "Fitness: loading the earlier generations …";
+        plot.marks.clear();
     } else {
         plot.title = "Fitness, generation " + shown_number(generations.back());
         plot.x_label = "generation";
         plot.note_end = "A click shows this generation in a replay.";
         plot.counted_x = true;
-        plot.series = {{.name = "best",
-                        .newest = significant(best.back()),
-                        .colour = palette::series_orange,
-                        .x = generations,
-                        .y = best},
-                       {.name = "mean",
-                        .newest = significant(mean.back()),
-                        .colour = palette::series_blue,
-                        .x = generations,
-                        .y = mean}};
-        plot.marks = {{context.history->history().changes()}};
     }
-    const Range range = joined(range_of(best), range_of(mean)).value_or(Range{0, 1});
+    std::optional<Range> range;
+    for (const Series& series : plot.series) {
+        range = joined(range, range_of(series.raw));
+    }
+    const double least = range ? std::min(range->min, 0.0) : 0, most = range ? range->max : 1;
     ImGui::PushFont(&context.gui.label());
-    const auto clicked = curve_widget("##fitness", plot, with_room({std::min(range.min, 0.0), range.max}, 0.05),
-                                      curve_height * context.gui.scale());
+    const auto clicked =
+        curve_widget("##fitness", plot, with_room({least, most}, 0.05), curve_height * context.gui.scale());
     ImGui::PopFont();
     widgets::mark("Fitness curve");
     if (clicked) {

@@ -1,5 +1,7 @@
 #include "client/viewer/panels/plots/figures.h"
 
+#include "client/viewer/text/numbers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,7 @@ class FigureBuilder {
         if (other != nullptr) {
             plot().marks.push_back({other->changes, other->name});
         }
-        plot().smoothed = "mean of " + std::to_string(window);
+        plot().smoothed = running_mean_name(window);
     }
 
     Figure take() { return std::move(figure_); }
@@ -120,6 +122,10 @@ bool starts_at_zero(const Subject& subject) {
 
 } // namespace
 
+std::string running_mean_name(std::size_t window) {
+    return "mean of " + std::to_string(window);
+}
+
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene,
                  std::size_t window) {
     FigureBuilder make{subject, other, window};
@@ -190,6 +196,16 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         make.compare("starved_count", "starved", palette::series_sky);
         make.compare("poisoned_count", "poisoned", palette::series_blue);
         break;
+    }
+    return make.take();
+}
+
+Figure fitness_curves(const Subject& subject) {
+    FigureBuilder make{subject, nullptr, running_mean_default};
+    make.line("fitness_best", "best", palette::series_orange, false);
+    make.line("fitness_mean", "mean", palette::series_blue, false);
+    for (Series& series : make.plot().series) {
+        series.newest = significant(series.raw.back());
     }
     return make.take();
 }

@@ -15,6 +15,11 @@ namespace evod::viewer {
 
 enum class Quantity { Fitness, Genes, Selection, Diversity, Survivors, Deaths };
 
+/// Generations of a running mean, unless the user chooses another number.
+constexpr std::size_t running_mean_default = 10;
+/// Returns the name of a running mean of this many generations: "mean of 10".
+std::string running_mean_name(std::size_t window);
+
 /// A plot together with the numbers computed for it. Its series also refer to columns of the history tables, which must
 /// not change while the Figure exists.
 struct Figure {
@@ -41,6 +46,10 @@ struct Subject {
 /// window the number of generations of the running mean of each line and band; 1: none.
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene,
                  std::size_t window);
+
+/// Builds the curves of the best and the mean fitness, as the sidebar shows them: with their running means, and with the
+/// newest values in the legend. Without series while no generation has ended.
+Figure fitness_curves(const Subject& subject);
 
 /// Builds a histogram of a gene's values, one value per organism.
 Figure histogram_of(const std::string& gene, std::vector<float> numbers);

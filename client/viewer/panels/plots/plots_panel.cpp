@@ -23,7 +23,7 @@ struct Tab {
 };
 constexpr std::size_t windows[] = {1, 5, 10, 20, 50, 100}; // generations of a running mean; 1: none
 std::string window_name(std::size_t window) {
-    return window == 1 ? "each generation" : "mean of " + std::to_string(window);
+    return window == 1 ? "each generation" : running_mean_name(window);
 }
 
 /// Explains the plot of selection.

@@ -65,7 +65,7 @@ class PlotsPanel : public Panel {
     Quantity quantity_ = Quantity::Fitness;
     HistoryTable::Island island_;
     std::string gene_;
-    std::size_t window_ = 10; // generations of the running mean; 1: none
+    std::size_t window_ = running_mean_default; // generations of the running mean; 1: none
     bool living_only_ = true;
     PlotView view_, histogram_view_;
     Figure figure_, histogram_;

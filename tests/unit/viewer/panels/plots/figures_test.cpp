@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 namespace evod::viewer {
 namespace {
 
@@ -50,6 +52,26 @@ std::vector<std::string> names_of(const Figure& figure) {
         names.push_back(series.name);
     }
     return names;
+}
+
+TEST(Figures, TheCurvesOfTheSidebarHaveRunningMeans) {
+    HistoryTable table;
+    EXPECT_TRUE(fitness_curves({table, std::nullopt, ""}).plot.series.empty());
+    for (std::uint64_t generation = 1; generation <= 12; ++generation) {
+        v1::GenerationStatistics statistics;
+        statistics.set_generation(generation);
+        statistics.set_organism_count(10);
+        statistics.set_fitness_best(static_cast<double>(10 * generation));
+        statistics.set_fitness_mean(static_cast<double>(generation));
+        table.add(std::array{core::history_numbers(statistics)});
+    }
+    const Figure figure = fitness_curves({table, std::nullopt, ""});
+    ASSERT_THAT(names_of(figure), ElementsAre("best", "mean"));
+    const Series& best = figure.plot.series[0];
+    EXPECT_EQ(best.raw[11], 120);
+    EXPECT_EQ(best.y[11], 75) << "the mean of 30 to 120";
+    EXPECT_EQ(best.newest, "120");
+    EXPECT_EQ(figure.plot.smoothed, "mean of 10");
 }
 
 TEST(Figures, FitnessIsFourLinesAndABand) {
