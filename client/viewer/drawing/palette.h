@@ -94,6 +94,19 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
+/// Colours of lineages. They differ from each other, from food and poison and from the background of every look, with
+/// every kind of colour vision. With some kinds, the vermilion of `kinds` resembles poison, its green resembles food,
+/// and its purple resembles `unknown`.
+constexpr std::array<Colour, 7> lineages{{
+    kinds[0],       // orange
+    kinds[1],       // sky blue
+    {60, 132, 90},  // dark green
+    kinds[3],       // yellow
+    kinds[4],       // blue
+    {140, 70, 255}, // violet
+    {160, 84, 136}  // plum
+}};
+
 /// The colours of an island in one look.
 struct IslandColours {
     Colour outside;              // around the walls

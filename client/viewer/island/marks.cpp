@@ -93,13 +93,13 @@ void FamilyColours::update(const Families& of) {
 }
 
 Colour FamilyColours::of(std::uint8_t family) const {
-    return family < colours_.size() ? palette::kinds[colours_[family]] : palette::unknown;
+    return family < colours_.size() ? palette::lineages[colours_[family]] : palette::unknown;
 }
 
 Colour FamilyColours::of_founder(std::uint32_t founder) const {
     const auto place = std::ranges::find(places_, std::optional{founder});
     return place == places_.end() ? palette::unknown
-                                  : palette::kinds[static_cast<std::size_t>(place - places_.begin())];
+                                  : palette::lineages[static_cast<std::size_t>(place - places_.begin())];
 }
 
 void add_discs(const Positions& organisms, std::vector<Shape>& discs) {

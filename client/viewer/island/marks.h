@@ -50,7 +50,7 @@ class FamilyColours {
 
   private:
     /// For each colour, the founder of the family that has it.
-    std::array<std::optional<std::uint32_t>, palette::kinds.size()> places_{};
+    std::array<std::optional<std::uint32_t>, palette::lineages.size()> places_{};
     /// For each family, the index of its colour.
     std::array<std::uint8_t, Families::shown_max> colours_{};
 };

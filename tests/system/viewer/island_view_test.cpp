@@ -107,7 +107,7 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // founders are 0, 1, 2, 0, …: families of four, three and three
     for (const std::uint32_t id : snapshot.entities->organisms.id) {
-        colours.push_back(palette::kinds[id % 3]);
+        colours.push_back(palette::lineages[id % 3]);
     }
     expect_colours(image, colours);
 }
