@@ -15,9 +15,12 @@ float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, s
     return place.x + size_of(text, font, wrap_width).x;
 }
 
-void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text) {
+void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text,
+                   float scale) {
     const ImVec2 size = size_of(text, font);
-    write(list, font, {centre.x - size.x / 2, centre.y - size.y / 2}, colour, text);
+    list.AddText(&font, scale * font.FontSize,
+                 {std::floor(centre.x - scale * size.x / 2), std::floor(centre.y - scale * size.y / 2)}, ink(colour),
+                 text.data(), text.data() + text.size());
 }
 
 void write_to_the_left(ImDrawList& list, const ImFont& font, ImVec2 right, Colour colour, std::string_view text) {

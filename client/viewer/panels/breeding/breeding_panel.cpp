@@ -35,7 +35,10 @@ Sheet sheet_of(const Gui& gui, float height) {
 }
 
 std::string shown(const std::optional<double>& number, std::string_view unit) {
-    return number ? three_digits(*number) + (unit.empty() ? "" : " ") + std::string{unit} : "–";
+    constexpr double rounding_error = 1e-12; // the numbers are sums of shares
+    return number ? three_digits(std::abs(*number) < rounding_error ? 0 : *number) + (unit.empty() ? "" : " ") +
+                        std::string{unit}
+                  : "–";
 }
 
 /// Continues the line if an item of this width fits into it.
@@ -392,7 +395,7 @@ void BreedingPanel::build_transport(const Gui& gui) {
 void BreedingPanel::take_keys() {
     // Enter in a field ends the input; it must not start to play as well.
     const bool field_was_active = std::exchange(field_active_, ImGui::IsAnyItemActive());
-    if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) || field_active_ || field_was_active) {
+    if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) || field_active_ || field_was_active) {
         return;
     }
     if (pressed(ImGuiKey_LeftArrow)) {
@@ -580,7 +583,7 @@ void BreedingPanel::build_theory(const Gui& gui) {
                                 (complete ? ", observed " + shown(prediction.observed, prediction.unit) : ""),
                             palette::text);
         if (const auto off = prediction.deviation(); off && complete) {
-            widgets::small_text(print("%+.3g standard errors", *off), palette::text);
+            widgets::small_text(with_sign(*off) + " standard errors", palette::text);
         }
         widgets::small_text(std::string{prediction.sentence} + " (" + std::string{prediction.source} + ")");
     }

@@ -4,6 +4,7 @@
 #include "client/viewer/text/numbers.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ Colour gene_colour(const GeneOrigin& gene) {
 /// Draws a family from top to bottom. Each part begins at the lower edge of the part above it.
 class FamilyDrawing {
   public:
-    FamilyDrawing(const Sheet& sheet, const evod::v1::Descendant& descendant, const Family& family)
+    FamilyDrawing(const Sheet& sheet, const evod::v1::Descendant& descendant, const Family& family,
+                  const std::vector<std::string>& gene_names)
         : sheet_{sheet}
         , descendant_{descendant}
         , family_{family}
@@ -36,9 +38,24 @@ class FamilyDrawing {
         , cell_{(sheet.size.x - label_width_) / static_cast<float>(count_)}
         , line_{sheet.line_height()}
         , bar_{line_ + 6}
-        , y_{sheet.corner.y} {}
+        , y_{sheet.corner.y} {
+        for (std::size_t gene = 0; gene < count_; ++gene) {
+            // The cells are narrow, so a name of two words is split into two lines.
+            const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
+            const std::size_t cut = name.find('_');
+            names_.push_back(cut == std::string::npos ? std::array{std::string{}, name}
+                                                      : std::array{name.substr(0, cut), name.substr(cut + 1)});
+            fit(names_.back()[0]);
+            fit(names_.back()[1]);
+        }
+        for (const GeneChange& change : family_.changes) {
+            for (const std::string& text : texts_of(change)) {
+                fit(text);
+            }
+        }
+    }
 
-    void draw_gene_names(const std::vector<std::string>& gene_names);
+    void draw_gene_names();
     void draw_parents();
     void draw_order_mutation();
     void draw_mutations();
@@ -46,6 +63,18 @@ class FamilyDrawing {
     float height() const { return y_ - sheet_.corner.y; }
 
   private:
+    /// Makes the text of all cells small enough for this text, but not too small to read.
+    void fit(const std::string& text) {
+        constexpr float text_scale_min = 0.7f, room = 6;
+        const float width = std::max(size_of(text, sheet_.font).x, 1.f);
+        text_scale_ = std::max(std::min(text_scale_, (cell_ - room) / width), text_scale_min);
+    }
+    static std::array<std::string, 3> texts_of(const GeneChange& change) {
+        return {shown_delta(change.delta()), shown_mutation(change.kind), print("to %.4g", double{change.after})};
+    }
+    void write_in_cell(ImVec2 centre, Colour colour, const std::string& text) const {
+        sheet_.write_centred(centre, colour, text, text_scale_);
+    }
     float left_of(std::size_t gene) const { return sheet_.corner.x + label_width_ + static_cast<float>(gene) * cell_; }
     float middle_of(std::size_t gene) const { return left_of(gene) + cell_ / 2; }
     void draw_label(const std::string& text) const { sheet_.write({sheet_.corner.x, y_ + 3}, palette::text, text); }
@@ -58,23 +87,20 @@ class FamilyDrawing {
     const Family& family_;
     std::size_t count_;
     float label_width_, cell_, line_, bar_;
-    float y_; // top edge of the next part
+    float y_;                                       // top edge of the next part
+    std::vector<std::array<std::string, 2>> names_; // of the genes, in two lines
+    float text_scale_ = 1;                          // of the text in cells
 };
 
 void FamilyDrawing::draw_gene(std::size_t gene, Colour colour, float value) const {
     sheet_.list.AddRectFilled({left_of(gene), y_}, {left_of(gene) + cell_ - 2, y_ + bar_}, ink(colour));
-    sheet_.write_centred({middle_of(gene) - 1, y_ + bar_ / 2}, palette::text_on(colour), print("%.4g", double{value}));
+    write_in_cell({middle_of(gene) - 1, y_ + bar_ / 2}, palette::text_on(colour), print("%.4g", double{value}));
 }
 
-void FamilyDrawing::draw_gene_names(const std::vector<std::string>& gene_names) {
+void FamilyDrawing::draw_gene_names() {
     for (std::size_t gene = 0; gene < count_; ++gene) {
-        const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
-        // The cells are narrow, so a name of two words is split into two lines.
-        const std::size_t cut = name.find('_');
-        sheet_.write_centred({middle_of(gene), y_ + line_ / 2}, palette::text_quiet, name.substr(0, cut));
-        if (cut != std::string::npos) {
-            sheet_.write_centred({middle_of(gene), y_ + 1.5f * line_}, palette::text_quiet, name.substr(cut + 1));
-        }
+        write_in_cell({middle_of(gene), y_ + line_ / 2}, palette::text_quiet, names_[gene][0]);
+        write_in_cell({middle_of(gene), y_ + 1.5f * line_}, palette::text_quiet, names_[gene][1]);
     }
     y_ += 2 * line_ + 4;
 }
@@ -137,9 +163,11 @@ void FamilyDrawing::draw_change(const GeneChange& change, float top) const {
     const bool clamped = change.kind == evod::v1::MUTATION_KIND_CLAMP;
     const Colour colour = clamped ? palette::stopped : palette::glass_mutated;
     const float left = left_of(change.gene), middle = middle_of(change.gene);
-    sheet_.write_centred({middle, top + line_ / 2}, colour, shown_delta(change.delta()));
-    sheet_.write_centred({middle, top + 1.5f * line_}, colour, shown_mutation(change.kind));
-    sheet_.write_centred({middle, top + 2.5f * line_}, colour, print("to %.4g", double{change.after}));
+    float row = top + line_ / 2;
+    for (const std::string& text : texts_of(change)) {
+        write_in_cell({middle, row}, colour, text);
+        row += line_;
+    }
     if (clamped) {
         sheet_.list.AddRect({left, top - 1}, {left + cell_ - 2, top + 3 * line_}, ink(colour));
     }
@@ -219,8 +247,8 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
     if (family.genes.empty()) {
         return 0;
     }
-    FamilyDrawing drawing{sheet, descendant, family};
-    drawing.draw_gene_names(gene_names);
+    FamilyDrawing drawing{sheet, descendant, family, gene_names};
+    drawing.draw_gene_names();
     drawing.draw_parents();
     drawing.draw_order_mutation();
     drawing.draw_mutations();

@@ -321,7 +321,7 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
                     : print("ranks %zu to %zu", column.first + 1, column.last + 1);
             note += print("\npicks %.0f, expected ", column.copies) + three_digits(column.expected);
             if (complete) {
-                note += print("\n%+.3g standard errors", column.deviation);
+                note += "\n" + with_sign(column.deviation) + " standard errors";
             }
             ImGui::SetTooltip("%s", note.c_str());
         }

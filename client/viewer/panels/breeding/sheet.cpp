@@ -6,8 +6,8 @@ void Sheet::write(ImVec2 place, Colour colour, std::string_view text) const {
     viewer::write(list, font, place, colour, text);
 }
 
-void Sheet::write_centred(ImVec2 centre, Colour colour, std::string_view text) const {
-    viewer::write_centred(list, font, centre, colour, text);
+void Sheet::write_centred(ImVec2 centre, Colour colour, std::string_view text, float scale) const {
+    viewer::write_centred(list, font, centre, colour, text, scale);
 }
 
 void Sheet::write_to_the_left(ImVec2 right, Colour colour, std::string_view text) const {

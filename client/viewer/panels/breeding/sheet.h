@@ -18,7 +18,7 @@ struct Sheet {
     float line_height() const { return font.FontSize + 4; }
 
     void write(ImVec2 place, Colour colour, std::string_view text) const;
-    void write_centred(ImVec2 centre, Colour colour, std::string_view text) const;
+    void write_centred(ImVec2 centre, Colour colour, std::string_view text, float scale = 1) const;
     void write_to_the_left(ImVec2 right, Colour colour, std::string_view text) const;
 };
 
