@@ -119,8 +119,9 @@ void IslandView::find_families(const Population& population, std::uint32_t islan
         families_ = {};
         return;
     }
-    if (families_since_ != since_before) {
+    if (families_since_ != since_before || coloured_run_ != shown_.run_id) {
         family_colours_ = {}; // founders have other numbers
+        coloured_run_ = shown_.run_id;
     }
     family_colours_.update(families_);
 }
@@ -210,6 +211,10 @@ void IslandView::forget() {
     IslandView fresh;
     fresh.options = options;
     fresh.lineage_poll_ = std::move(lineage_poll_);
+    // Lineages keep their colours on other islands and in replays of the run.
+    fresh.families_since_ = families_since_;
+    fresh.family_colours_ = family_colours_;
+    fresh.coloured_run_ = std::move(coloured_run_);
     fresh.kept_ = std::move(kept_);
     if (fresh.kept_) {
         fresh.kept_->out_of_sight = true;

@@ -183,6 +183,7 @@ class IslandView {
     Families families_;
     std::uint64_t families_since_ = 1;
     FamilyColours family_colours_;
+    std::string coloured_run_; // the run to which these colours belong
     bool lineage_wanted_ = false;
     std::unique_ptr<LineagePoll> lineage_poll_ = std::make_unique<LineagePoll>(); // kept for replays of the same run
     std::vector<std::uint64_t> lineage_bases_;

@@ -164,8 +164,10 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
     if (snapshot != nullptr && frame.pointed_at) {
         highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
     }
-    if (snapshot != nullptr && chosen) {
+    if (chosen) { // also before the first snapshot: the panels must not use the data of the island shown before
         pane.island_view.update(pane.world, tile.camera, frame.now, highlighted.pointed_at.has_value());
+    }
+    if (snapshot != nullptr && chosen) {
         pane.island_view.follow(pane.world, tile.camera, blend);
         if (const auto selected = pane.world.feed.selected()) {
             highlighted.selected = snapshot->entities->organisms.index_of(*selected);

@@ -9,7 +9,10 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <fstream>
 #include <set>
+#include <span>
 
 namespace evod::viewer {
 namespace {
@@ -153,6 +156,59 @@ TEST_F(FamilyTreeTest, AParentOnAnotherIslandIsShownThere) {
         }
     }
     EXPECT_TRUE(migrated);
+}
+
+TEST_F(FamilyTreeTest, AnotherIslandHasItsOwnLineages) {
+    run(40, 2);
+    TreeWindow window{server, "w"};
+    std::string script = "timeout 20\nwait snapshot\nkey F11\n";
+    std::set<std::uint64_t> bases;
+    for (const std::uint32_t island : {0u, 1u}) {
+        window.world().feed.choose_island(island);
+        ASSERT_TRUE(window.draws_until([&] {
+            return window.island_view().lineage_is_current() && window.lineage().contains(40) &&
+                   window.world().feed.snapshot() != nullptr;
+        }));
+        const std::uint64_t base = window.island_view().lineage_base_of(40);
+        bases.insert(base);
+        script += "wait widget \"lineages since generation " + std::to_string(base) +
+                  "\"\nwait connected\nkey Tab\nwait connected\n";
+    }
+    ASSERT_EQ(bases.size(), 2u);
+    const std::string path = folder.file("script");
+    std::ofstream{path} << script << "quit\n";
+    const Ran ran = run_evoview(server.address() + " --world w --script " + path);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(FamilyTreeTest, LineagesKeepTheirColoursOnOtherIslands) {
+    run(1, 2);
+    TreeWindow window{server, "w"};
+    window.island_view().options.colour_by = ColourBy::Lineage;
+    const auto colours = [&] {
+        std::vector<Colour> all;
+        for (const Families::Family& family : window.island_view().families().shown()) {
+            all.push_back(window.island_view().family_colours().of_founder(family.founder));
+        }
+        return all;
+    };
+    const auto are_new = [&] { // the colours of lineages that appear together
+        const std::vector<Colour> all = colours();
+        return std::ranges::equal(all, std::span{palette::lineages}.first(all.size()));
+    };
+    for (std::uint64_t generation = 2; generation < 30 && are_new(); ++generation) {
+        server.run_generations("w", 1);
+        ASSERT_TRUE(window.draws_until([&] {
+            const Population* population = window.island_view().population();
+            return population != nullptr && population->generation() == generation && !colours().empty();
+        }));
+    }
+    ASSERT_FALSE(are_new());
+    const std::vector<Colour> before = colours();
+    window.world().feed.show_all_islands(true);
+    ASSERT_TRUE(window.draws_until([&] { return colours().empty(); }));
+    ASSERT_TRUE(window.draws_until([&] { return !colours().empty(); }));
+    EXPECT_EQ(colours(), before);
 }
 
 TEST_F(FamilyTreeTest, TheWheelZoomsAndFitShowsTheTreeAgain) {

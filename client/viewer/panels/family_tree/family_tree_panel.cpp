@@ -58,13 +58,17 @@ std::optional<std::uint64_t> replayed_generation(const ViewedWorld& world) {
 void FamilyTreePanel::build(Context& context) {
     context.island_view.want_lineage();
     build_choices(context);
-    if (!context.island_view.lineage_problem().empty()) {
-        widgets::small_text(context.island_view.lineage_problem() + ".", palette::warning);
+    const std::string& problem = context.island_view.lineage_problem();
+    if (!problem.empty()) {
+        widgets::small_text(problem + ".", palette::warning);
     }
     update_tree(context);
     if (tree_.empty()) {
         const bool none_selected = kind_ == Kind::OfSelected && !selected_;
-        widgets::small_text(none_selected ? "Click an organism to select it." : "…", palette::text);
+        widgets::small_text(none_selected     ? "Click an organism to select it."
+                            : problem.empty() ? "…"
+                                              : "",
+                            palette::text);
         return;
     }
     widgets::small_text(sentence(context), palette::text);
@@ -319,16 +323,24 @@ void FamilyTreePanel::build_legend(const Context& context, bool second_parents_l
             list.AddLine(from, {from.x + icon, from.y}, ink(colour), thickness);
         };
     };
-    entry("lineages since generation " + with_separators(since_), [&](ImVec2 from) {
+    const std::string lineages = "lineages since generation " + with_separators(since_);
+    context.gui.widget_positions().add({.name = lineages, .place = {begin.x, begin.y, 0, 0}});
+    entry(lineages, [&](ImVec2 from) {
         for (std::size_t i = 0; i < 4; ++i) {
             const float x = from.x + static_cast<float>(i) * icon / 4;
-            list.AddRectFilled({x, from.y - 4 * pixel}, {x + icon / 4, from.y + 4 * pixel}, ink(palette::kinds[i]));
+            list.AddRectFilled({x, from.y - 4 * pixel}, {x + icon / 4, from.y + 4 * pixel},
+                               ink(on_paper(palette::lineages[i])));
         }
     });
     if (tree_.common_generation()) {
         entry("common ancestor", [&](ImVec2 from) {
             list.AddCircle({from.x + icon / 2, from.y}, 5 * pixel, ink(palette::text), 0, 2 * pixel);
             list.AddCircleFilled({from.x + icon / 2, from.y}, 2 * pixel, ink(palette::text));
+        });
+    }
+    if (context.world.feed.island_count() > 1) {
+        entry("parent on another island", [&](ImVec2 from) {
+            draw_migrant_mark(list, {from.x + icon / 2, from.y}, pixel);
         });
     }
     if (selected_) {

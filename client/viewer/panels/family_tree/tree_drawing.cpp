@@ -14,6 +14,20 @@ constexpr Colour second_parent_line = faint(palette::series_grey, 90);
 
 } // namespace
 
+Colour on_paper(Colour colour) {
+    constexpr double lightness_max = 190, share = 0.78;
+    const double lightness = 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue;
+    const auto darker = [](std::uint8_t part) { return static_cast<std::uint8_t>(part * share); };
+    return lightness > lightness_max ? Colour{darker(colour.red), darker(colour.green), darker(colour.blue)} : colour;
+}
+
+void draw_migrant_mark(ImDrawList& list, ImVec2 at, float pixel) {
+    const float half = 4.5f * pixel;
+    const ImVec2 top{at.x, at.y - half}, right{at.x + half, at.y}, bottom{at.x, at.y + half}, left{at.x - half, at.y};
+    list.AddQuadFilled(top, right, bottom, left, ink(palette::plot_background));
+    list.AddQuad(top, right, bottom, left, ink(palette::text), 1.5f * pixel);
+}
+
 TreeDrawing::TreeDrawing(ImDrawList& list, ImFont& font, float pixel, ImVec2 corner, ImVec2 end, const Subject& subject,
                          const View& view)
     : list_{list}, font_{font}, pixel_{pixel}, corner_{corner}, end_{end}, subject_{subject}, view_{view} {
@@ -40,7 +54,7 @@ bool TreeDrawing::shows(ImVec2 point) const {
 
 Colour TreeDrawing::colour_of(std::uint64_t generation, std::uint32_t place) const {
     const std::uint32_t founder = subject_.tree.row(generation)[place].founder;
-    return founder == FamilyTree::none ? trunk : subject_.colours.of_founder(founder);
+    return founder == FamilyTree::none ? trunk : on_paper(subject_.colours.of_founder(founder));
 }
 
 void TreeDrawing::draw() {
@@ -51,6 +65,9 @@ void TreeDrawing::draw() {
         draw_pedigree();
     } else {
         draw_lines();
+    }
+    if (subject_.lineage.at(subject_.tree.last()).begins.size() > 1) {
+        draw_migrants();
     }
     draw_selected();
     draw_marks();
@@ -209,6 +226,29 @@ void TreeDrawing::draw_selected() {
         }
         at.index = subject_.lineage.at(at.generation).organisms[at.index].parents[0];
         --at.generation;
+    }
+}
+
+/// Marks the organisms whose first parent lived on another island.
+void TreeDrawing::draw_migrants() {
+    constexpr std::size_t row_max = 5'000; // marks in a longer row would hide each other
+    const FamilyTree& tree = subject_.tree;
+    for (std::uint64_t generation = tree.first() + 1; generation <= tree.last(); ++generation) {
+        const auto at = static_cast<double>(generation);
+        const FamilyTree::Row &spots = tree.row(generation), &parents = tree.row(generation - 1);
+        if (!view_.generations.contains(at) || spots.size() > row_max) {
+            continue;
+        }
+        for (std::uint32_t place = 0; place < spots.size(); ++place) {
+            const FamilyTree::Spot& spot = spots[place];
+            if (spot.first == FamilyTree::none || !shows(point(generation, place))) {
+                continue;
+            }
+            const Lineage::Place own = subject_.lineage.place_of(generation, spot.organism);
+            if (subject_.lineage.place_of(generation - 1, parents[spot.first].organism).island != own.island) {
+                draw_migrant_mark(list_, point(generation, place), pixel_);
+            }
+        }
     }
 }
 

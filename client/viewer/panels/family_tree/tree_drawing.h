@@ -23,6 +23,12 @@ struct RunOrganism {
     friend bool operator==(const RunOrganism&, const RunOrganism&) = default;
 };
 
+/// Returns the colour of a lineage as thin lines show it on the light background: yellow is darker.
+Colour on_paper(Colour colour);
+
+/// Draws the mark of an organism whose first parent lived on another island.
+void draw_migrant_mark(ImDrawList& list, ImVec2 at, float pixel);
+
 class TreeDrawing {
   public:
     static constexpr std::size_t lines_max = 12'000;
@@ -67,6 +73,7 @@ class TreeDrawing {
     void draw_pedigree();
     void draw_line_to(ImVec2 parent, ImVec2 child, Colour colour, float thickness);
     void draw_selected();
+    void draw_migrants();
     void draw_marks();
     Colour colour_of(std::uint64_t generation, std::uint32_t place) const;
 
