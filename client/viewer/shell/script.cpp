@@ -156,6 +156,17 @@ core::Result<Acts> parse_click(ScriptLine& line) {
     return acts::click(**place);
 }
 
+core::Result<Acts> parse_drag(ScriptLine& line) {
+    const auto place = acts::island_place(line.words[2], line.words[3]);
+    if (!place) {
+        return word_error(line, 3, "at, organism, left/at, right/at, left/organism, right/organism");
+    }
+    if (!*place) {
+        return word_error(line, 4, place->error().what);
+    }
+    return acts::drag(line.words[1], **place);
+}
+
 struct Verb {
     std::string_view name;
     std::string_view words; // the arguments of the verb, in capitals
@@ -181,6 +192,7 @@ const Verb verbs[] = {
      "clicks on a widget, named by the text on it or beside it; or on the island: organism NUMBER, or at X,Y with "
      "fractions of its width and height",
      1, 2, parse_click},
+    {"drag", "NAME at X,Y", "drags a widget to the island, as an organism of the freezer", 3, 3, parse_drag},
     {"menu", "NAME", "clicks on a widget with the right button, which opens its menu", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return acts::click(line.words[1], sf::Mouse::Right); }},
     {"set", "NAME TEXT",

@@ -178,17 +178,20 @@ void send_mouse_move(Host& host, Point place) {
     host.send(event);
 }
 
+void send_button(Host& host, sf::Event::EventType type, Point place, sf::Mouse::Button button = sf::Mouse::Left) {
+    sf::Event event{};
+    event.type = type;
+    event.mouseButton = {button, static_cast<int>(place.x), static_cast<int>(place.y)};
+    host.send(event);
+}
+
 void send_click(Host& host, Point place, sf::Mouse::Button button, bool with_control = false) {
     const Chord held{.control = with_control};
     if (with_control) {
         send_key(host, true, Key::LControl, held);
     }
-    for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
-        sf::Event event{};
-        event.type = type;
-        event.mouseButton = {button, static_cast<int>(place.x), static_cast<int>(place.y)};
-        host.send(event);
-    }
+    send_button(host, sf::Event::MouseButtonPressed, place, button);
+    send_button(host, sf::Event::MouseButtonReleased, place, button);
     if (with_control) {
         send_key(host, false, Key::LControl, {});
     }
@@ -239,8 +242,8 @@ Waits move_to(Run& run, const std::string& name) {
     return waits;
 }
 
-/// Clicks on a widget under the mouse. If something else is under the mouse, moves the mouse to the widget and waits.
-Waits click_on(Run& run, const std::string& name, sf::Mouse::Button button = sf::Mouse::Left, bool control = false) {
+/// Moves the mouse to a widget, and waits until nothing else is under the mouse.
+Waits point_at(Run& run, const std::string& name) {
     auto waits = move_to(run, name);
     if (!waits || !waits->empty()) {
         return waits;
@@ -250,8 +253,26 @@ Waits click_on(Run& run, const std::string& name, sf::Mouse::Button button = sf:
     if (hovered == 0 || (widget.id != 0 && hovered != widget.id)) {
         return in_quotes(name) + " does not react to clicks, or is covered";
     }
-    send_click(run.host, widget.centre(), button, control);
-    ++run.actions;
+    return "";
+}
+
+Waits click_on(Run& run, const std::string& name, sf::Mouse::Button button = sf::Mouse::Left, bool control = false) {
+    auto waits = point_at(run, name);
+    if (waits && waits->empty()) {
+        send_click(run.host, run.host.find(name).front()->centre(), button, control);
+        ++run.actions;
+    }
+    return waits;
+}
+
+/// Moves the mouse to a place of an island as soon as it is on the screen.
+Waits move_to(Run& run, const Script::IslandPlace& place) {
+    const auto point = run.host.locate(place);
+    if (!point) {
+        return place.organism ? "organism " + std::to_string(*place.organism) + " is not on the screen"
+                              : std::string{"this place is not on the screen"};
+    }
+    send_mouse_move(run.host, *point);
     return "";
 }
 
@@ -263,18 +284,9 @@ Acts click(const std::string& widget, sf::Mouse::Button button) {
 }
 
 Acts click(const Script::IslandPlace& place) {
-    const auto move = [place](Run& run) -> Waits {
-        const auto point = run.host.locate(place);
-        if (!point) {
-            return place.organism ? "organism " + std::to_string(*place.organism) + " is not on the screen"
-                                  : std::string{"this place is not on the screen"};
-        }
-        send_mouse_move(run.host, *point);
-        return "";
-    };
-    return {move,
-            [move, place](Run& run) -> Waits {
-                if (auto waits = move(run); !waits->empty()) {
+    return {[place](Run& run) { return move_to(run, place); },
+            [place](Run& run) -> Waits {
+                if (auto waits = move_to(run, place); !waits->empty()) {
                     return waits; // a moving organism may have left the screen
                 }
                 if (run.host.covered()) {
@@ -289,6 +301,27 @@ Acts click(const Script::IslandPlace& place) {
                 if (place.organism && run.host.selects() && selected != place.organism) {
                     return usage("the click has selected " +
                                  (selected ? "organism " + std::to_string(*selected) : "no organism"));
+                }
+                return "";
+            }};
+}
+
+Acts drag(const std::string& widget, const Script::IslandPlace& place) {
+    return {[widget](Run& run) { return move_to(run, widget); },
+            [widget](Run& run) {
+                auto waits = point_at(run, widget);
+                if (waits && waits->empty()) {
+                    send_button(run.host, sf::Event::MouseButtonPressed, run.host.find(widget).front()->centre());
+                }
+                return waits;
+            },
+            [place](Run& run) { return move_to(run, place); },
+            [widget, place](Run& run) -> Waits {
+                const auto point = run.host.locate(place);
+                send_button(run.host, sf::Event::MouseButtonReleased, point.value_or(Point{}));
+                ++run.actions;
+                if (!point || run.host.selects()) {
+                    return usage(in_quotes(widget) + " cannot be dragged to an island");
                 }
                 return "";
             }};

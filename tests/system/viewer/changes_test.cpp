@@ -238,6 +238,9 @@ key F10
 click Freezer/default-g1-o27
 click Freezer/Thaw
 click at 0.55,0.4
+key Escape
+wait connected
+drag Freezer/default-g1-o27 at 0.7,0.4
 wait connected
 )");
     ASSERT_EQ(ran.status, 0) << ran.output;
@@ -249,10 +252,10 @@ wait connected
     EXPECT_NEAR(double{is.food.x_px(is.food.id.size() - 1)}, 640, pixel_px);
     EXPECT_NEAR(double{is.food.y_px(is.food.id.size() - 1)}, 360, pixel_px);
     EXPECT_NEAR(double{is.poison.y_px(is.poison.id.size() - 1)}, 396, pixel_px);
-    EXPECT_EQ(is.organisms.id.size(), was.organisms.id.size() + 1) << "two placed, one removed";
+    EXPECT_EQ(is.organisms.id.size(), was.organisms.id.size() + 2) << "three placed, one removed";
     EXPECT_FALSE(is.organisms.index_of(5));
     const std::size_t model = is.organisms.index_of(27).value();
-    for (const std::uint32_t id : {50u, 51u}) {
+    for (const std::uint32_t id : {50u, 51u, 52u}) {
         const std::size_t placed = is.organisms.index_of(id).value();
         EXPECT_EQ(is.organisms.radius_px(placed), is.organisms.radius_px(model)) << "the same genes";
         EXPECT_NEAR(double{is.organisms.y_px(placed)}, 288, pixel_px);
