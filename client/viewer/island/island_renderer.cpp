@@ -101,12 +101,51 @@ std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, d
         screen, {.entities = &items}, [&](std::size_t) { return radius_px; }, camera);
 }
 
-void IslandRenderer::set_circles(Layer& layer, const codec::Entities& items, float radius) {
-    shapes_.resize(items.x.size());
-    for (std::size_t i = 0; i < shapes_.size(); ++i) {
-        shapes_[i] = {items.x_px(i), items.y_px(i), radius, radius};
+namespace {
+
+/// Adds the entities of the tiles that are streamed as dots.
+void add_dots(const codec::ReceivedSnapshot& snapshot, codec::DecodedDots::Places codec::DecodedDots::*which,
+              double radius_px, std::vector<Shape>& shapes) {
+    const auto radius = static_cast<float>(radius_px);
+    for (const codec::DecodedTile& tile : snapshot.tiles) {
+        const auto& places = tile.dots.*which;
+        for (std::size_t i = 0; i < places.x_px.size(); ++i) {
+            shapes.push_back({places.x_px[i], places.y_px[i], radius, radius});
+        }
     }
+}
+
+} // namespace
+
+void IslandRenderer::set_dots(Layer& layer, const codec::ReceivedSnapshot& snapshot,
+                              codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px) {
+    shapes_.clear();
+    add_dots(snapshot, which, radius_px, shapes_);
     layer.set(shapes_);
+}
+
+void IslandRenderer::set_items(const codec::ReceivedSnapshot& snapshot) {
+    const double radius_px = snapshot.about.item_radius_px();
+    const auto radius = static_cast<float>(radius_px);
+    const auto read = [&](const codec::Entities& items, codec::DecodedDots::Places codec::DecodedDots::*dots,
+                          std::vector<Shape>& shapes) {
+        shapes.clear();
+        for (std::size_t i = 0; i < items.x.size(); ++i) {
+            shapes.push_back({items.x_px(i), items.y_px(i), radius, radius});
+        }
+        add_dots(snapshot, dots, radius_px, shapes);
+    };
+    read(snapshot.entities->food, &codec::DecodedDots::food, food_shapes_);
+    read(snapshot.entities->poison, &codec::DecodedDots::poison, shapes_);
+    food_.set(food_shapes_);
+    poison_.set(shapes_);
+    // The same share of both, so that the dots show which kind is more frequent.
+    const std::size_t most = std::max({food_shapes_.size(), shapes_.size(), std::size_t{1}});
+    const double share = static_cast<double>(item_dots_max) / static_cast<double>(most);
+    keep_share(share, food_shapes_);
+    keep_share(share, shapes_);
+    few_food_.set(food_shapes_);
+    few_poison_.set(shapes_);
 }
 
 void IslandRenderer::set_boxes(Layer& layer, const Positions& boxes) {
@@ -123,9 +162,7 @@ void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::Received
         return;
     }
     uploaded_ = snapshot;
-    const auto item_radius = static_cast<float>(snapshot->about.item_radius_px());
-    set_circles(food_, snapshot->entities->food, item_radius);
-    set_circles(poison_, snapshot->entities->poison, item_radius);
+    items_uploaded_ = false;
     set_boxes(obstacles_, {.entities = &snapshot->entities->obstacles});
     full_health_ = health_scale(snapshot->entities->organisms, {}).high;
 }
@@ -215,31 +252,18 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
 }
 
 void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles) {
-    const ShapeStyle& food = too_small_to_see(camera) ? styles.food_dot : styles.food;
-    const ShapeStyle& poison = too_small_to_see(camera) ? styles.poison_dot : styles.poison;
-    painter_.draw(poison_, poison);
-    painter_.draw(food_, food);
-    // Tiles streamed as dots contain only positions.
-    const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px,
-                               const ShapeStyle& style) {
-        shapes_.clear();
-        const auto radius = static_cast<float>(radius_px);
-        for (const codec::DecodedTile& tile : snapshot.tiles) {
-            const auto& places = tile.dots.*which;
-            for (std::size_t i = 0; i < places.x_px.size(); ++i) {
-                shapes_.push_back({places.x_px[i], places.y_px[i], radius, radius});
-            }
-        }
-        if (!shapes_.empty()) {
-            dots_.set(shapes_);
-            painter_.draw(dots_, style);
-        }
-    };
-    draw_dots(&codec::DecodedDots::obstacles, typical_radius_px, styles.obstacle);
-    draw_dots(&codec::DecodedDots::crates, typical_radius_px, styles.crate);
-    draw_dots(&codec::DecodedDots::poison, snapshot.about.item_radius_px(), poison);
-    draw_dots(&codec::DecodedDots::food, snapshot.about.item_radius_px(), food);
-    draw_dots(&codec::DecodedDots::organisms, typical_radius_px, styles.organism_dot);
+    if (!std::exchange(items_uploaded_, true)) {
+        set_items(snapshot);
+        set_dots(organism_dots_, snapshot, &codec::DecodedDots::organisms, typical_radius_px);
+        set_dots(crate_dots_, snapshot, &codec::DecodedDots::crates, typical_radius_px);
+        set_dots(obstacle_dots_, snapshot, &codec::DecodedDots::obstacles, typical_radius_px);
+    }
+    const bool small = too_small_to_see(camera);
+    painter_.draw(obstacle_dots_, styles.obstacle);
+    painter_.draw(crate_dots_, styles.crate);
+    painter_.draw(small ? few_poison_ : poison_, small ? styles.poison_dot : styles.poison);
+    painter_.draw(small ? few_food_ : food_, small ? styles.food_dot : styles.food);
+    painter_.draw(organism_dots_, styles.organism_dot);
 }
 
 void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Camera& camera,

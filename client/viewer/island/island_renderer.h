@@ -84,12 +84,17 @@ class IslandRenderer {
                      const Chosen& chosen);
     void draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const IslandView& island_view);
     void draw_flashes(double now_s, const IslandView& island_view);
-    void set_circles(Layer& layer, const codec::Entities& items, float radius);
+    void set_dots(Layer& layer, const codec::ReceivedSnapshot& snapshot,
+                  codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px);
+    void set_items(const codec::ReceivedSnapshot& snapshot);
     void set_boxes(Layer& layer, const Positions& boxes);
 
     ShapePainter painter_;
     Layer shadow_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
-    Layer dots_, density_, radii_, arrows_, targets_, trail_ends_, flashes_;
+    Layer few_food_, few_poison_; // shares of the items, for dots
+    // Tiles streamed as dots contain only positions.
+    Layer organism_dots_, crate_dots_, obstacle_dots_;
+    Layer density_, radii_, arrows_, targets_, trail_ends_, flashes_;
     /// The trail lines between two consecutive snapshots; uploaded once.
     struct TrailSegment {
         std::shared_ptr<const codec::ReceivedSnapshot> from, to;
@@ -97,11 +102,12 @@ class IslandRenderer {
     };
     std::deque<TrailSegment> trail_segments_;
     std::shared_ptr<const codec::ReceivedSnapshot> uploaded_;
-    double full_health_ = 100; // in the uploaded snapshot; see health_scale()
+    bool items_uploaded_ = false; // of this snapshot; densities are drawn without items
+    double full_health_ = 100;    // in the uploaded snapshot; see health_scale()
     std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
-    std::vector<Shape> discs_;  // the organisms in this frame
-    std::vector<Shape> shapes_; // buffers, reused for every layer
+    std::vector<Shape> discs_;                // the organisms in this frame
+    std::vector<Shape> shapes_, food_shapes_; // buffers, reused for every layer
     std::vector<Line> lines_;
     std::vector<Colour> colours_;
     ColouredLines arrow_lines_, target_lines_;

@@ -3,6 +3,7 @@
 #include "client/viewer/text/numbers.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace evod::viewer {
@@ -175,6 +176,22 @@ void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, 
             targets.lines.push_back({x, y, population.target_x_px()[id], population.target_y_px()[id]});
             targets.colours.push_back(colour);
         }
+    });
+}
+
+// ---- items -----------------------------------------------------------------------------------------------------
+
+void keep_share(double share, std::vector<Shape>& items) {
+    if (share >= 1) {
+        return;
+    }
+    const auto limit = static_cast<std::uint32_t>(std::max(share, 0.0) * 0x1p32);
+    std::erase_if(items, [limit](const Shape& item) {
+        // Multiplying by these odd numbers spreads the places over all 32-bit numbers.
+        std::uint32_t mixed =
+            std::bit_cast<std::uint32_t>(item.x) * 0x9E3779B1u ^ std::bit_cast<std::uint32_t>(item.y) * 0x85EBCA77u;
+        mixed = (mixed ^ mixed >> 15) * 0x2C1B3C6Du;
+        return (mixed ^ mixed >> 12) >= limit;
     });
 }
 

@@ -126,6 +126,12 @@ inline bool too_small_to_see(const Camera& camera) {
 inline bool shows_details(const Camera& camera) {
     return typical_radius_px * camera.zoom() >= 0.5;
 }
+/// While organisms are too small to see, at most about this many dots of food are drawn, and of poison.
+constexpr std::size_t item_dots_max = 10'000;
+/// Keeps this share of the items, if it is below 1. Whether an item is kept depends only on its place, so that the choice
+/// stays the same while others appear and disappear.
+void keep_share(double share, std::vector<Shape>& items);
+
 /// Trails and flashes are shown if a snapshot contains fewer organisms than this.
 constexpr std::size_t traced_max = 5'000;
 inline bool shows_traces(const Camera& camera, const codec::ReceivedSnapshot& snapshot) {

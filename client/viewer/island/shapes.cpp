@@ -25,17 +25,23 @@ uniform vec2 origin;                 // centre of the viewport, in pixels
 uniform vec2 centre;
 uniform float zoom, half_pixels_min, line_pixels, edge_pixels;
 uniform vec4 fill, fill_low;
+#if POINT
+flat out float reach;                // half the size of the point, in pixels
+#else
 out vec2 place;                      // offset from the shape's centre, in pixels, along the shape's axes
+#endif
 flat out vec2 half_size;
 flat out vec4 own_fill;
 flat out vec3 arc;                   // of a body: direction across the end of the arc; health
+flat out float rim;                  // of a body: width of the arc; 0: none
 void main() {
-    int index = gl_VertexID / 3;
+    int index = POINT == 1 ? gl_VertexID : gl_VertexID / 3;
     vec4 shape = texelFetch(shapes, index);
     own_fill = coloured ? texelFetch(colours, index) : fill;
-    vec2 middle = (shape.xy - centre) * zoom, along = vec2(1.0, 0.0), around = vec2(1.0);
+    vec2 middle = (shape.xy - centre) * zoom, along = vec2(1.0, 0.0), around = vec2(0.5);
     half_size = max(shape.zw * zoom, vec2(half_pixels_min));
     arc = vec3(0.0);
+    rim = 0.0;
 #if FORM == LINE || FORM == ARROW || FORM == SOFT_LINE
     vec2 way = (shape.zw - shape.xy) * zoom;
     float pixels = length(way);
@@ -45,26 +51,40 @@ void main() {
     around += FORM == ARROW ? vec2(line_pixels, 2.5 * line_pixels) : vec2(line_pixels);
 #elif FORM == BODY
     half_size = half_size.xx;
-    around += 2.0 * edge_pixels;
+    rim = half_size.x < 0.8 * edge_pixels ? 0.0 : min(edge_pixels, 0.4 * half_size.x); // a small body has no arc
+    around += 1.6 * rim;
     arc = vec3(cos(6.2831853 * shape.w), sin(6.2831853 * shape.w), shape.w);
     own_fill = coloured ? own_fill : mix(fill_low, fill, shape.w);
 #elif FORM == LEAF || FORM == STAR
-    around += 0.5 * half_size;
+    around += 0.5 + 0.5 * half_size;
 #endif
+#if POINT
+    bool dot = half_size.x <= 0.5; // fills the pixel at its centre
+    reach = dot ? 0.5 : half_size.x + around.x;
+    gl_PointSize = 2.0 * reach;
+    vec2 pixel = dot ? floor(origin + middle) + 0.5 : origin + middle;
+#else
     int corner_index = gl_VertexID % 3; // one triangle covers the rectangle around the shape
     vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
     place = corner * (half_size + around);
     vec2 pixel = origin + middle + along * place.x + vec2(-along.y, along.x) * place.y;
+#endif
     gl_Position = vec4(pixel.x * pixel_size.x - 1.0, 1.0 - pixel.y * pixel_size.y, 0.0, 1.0);
 }
 )";
 
 // The shader computes how much of a pixel a shape covers from the distance between the pixel's centre and the outline.
 constexpr const char* fragment_source = R"(
+#if POINT
+flat in float reach;
+#define place ((2.0 * gl_PointCoord - 1.0) * reach)
+#else
 in vec2 place;
+#endif
 flat in vec2 half_size;
 flat in vec4 own_fill;
 flat in vec3 arc;
+flat in float rim;
 uniform vec4 edge;
 uniform float edge_pixels, line_pixels;
 out vec4 colour;                     // with premultiplied alpha
@@ -74,7 +94,6 @@ float covered(float outside) {
 #if FORM == BODY
 void main() {
     float radius = half_size.x, distance = length(place);
-    float rim = radius < 0.8 * edge_pixels ? 0.0 : min(edge_pixels, 0.4 * radius); // a small body has no arc
     float outer = radius + 1.6 * rim, share = distance / radius;
     float before_end = -dot(place, arc.xy), after_begin = place.x;
     float within = arc.z < 0.5 ? min(after_begin, before_end) : max(after_begin, before_end);
@@ -129,14 +148,15 @@ void main() {
 #endif
 )";
 
-std::string with_form(const char* source, Form form) {
+std::string with_form(const char* source, Form form, bool point) {
     constexpr std::array<const char*, form_count> names{"CIRCLE", "RECTANGLE", "LINE",   "ARROW",    "BODY",
                                                         "LEAF",   "STAR",      "RIPPLE", "SOFT_LINE"};
     std::string text = "#version 330 core\n";
     for (std::size_t i = 0; i < names.size(); ++i) {
         text += "#define " + std::string{names[i]} + " " + std::to_string(i) + "\n";
     }
-    return text + "#define FORM " + names[static_cast<std::size_t>(form)] + "\n" + source;
+    return text + "#define POINT " + (point ? "1" : "0") + "\n#define FORM " + names[static_cast<std::size_t>(form)] +
+           "\n" + source;
 }
 
 unsigned compile(GLenum kind, const std::string& source) {
@@ -182,6 +202,10 @@ void Layer::Column::set(std::span<const std::byte> bytes) {
 Layer::Layer() : shapes_{GL_RGBA32F}, colours_{GL_RGBA8} {}
 
 void Layer::set(std::span<const Shape> shapes, std::span<const Colour> colours) {
+    half_width_max_ = 0;
+    for (const Shape& shape : shapes) {
+        half_width_max_ = std::max(half_width_max_, shape.half_width);
+    }
     upload(std::as_bytes(shapes), colours);
 }
 
@@ -200,6 +224,9 @@ void Layer::upload(std::span<const std::byte> shapes, std::span<const Colour> co
 }
 
 ShapePainter::ShapePainter() {
+    std::array<float, 2> sizes{}; // the smallest and the largest point that the driver draws
+    glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes.data());
+    point_pixels_max_ = std::min(sizes[1], point_pixels_max_);
     glGenVertexArrays(1, &vertex_array_);
 }
 
@@ -210,13 +237,13 @@ ShapePainter::~ShapePainter() {
     }
 }
 
-const ShapePainter::Program& ShapePainter::program_of(Form form) {
-    Program& program = programs_[static_cast<std::size_t>(form)];
+const ShapePainter::Program& ShapePainter::program_of(Form form, bool point) {
+    Program& program = programs_[2 * static_cast<std::size_t>(form) + (point ? 1 : 0)];
     if (program.name != 0) {
         return program;
     }
-    const unsigned vertex = compile(GL_VERTEX_SHADER, with_form(vertex_source, form));
-    const unsigned fragment = compile(GL_FRAGMENT_SHADER, with_form(fragment_source, form));
+    const unsigned vertex = compile(GL_VERTEX_SHADER, with_form(vertex_source, form, point));
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, with_form(fragment_source, form, point));
     program.name = glCreateProgram();
     glAttachShader(program.name, vertex);
     glAttachShader(program.name, fragment);
@@ -250,6 +277,7 @@ void ShapePainter::begin(const Camera& camera, unsigned width_pixels, unsigned h
     clip_to_viewport();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
+    glEnable(GL_PROGRAM_POINT_SIZE);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glBindVertexArray(vertex_array_);
@@ -278,14 +306,21 @@ void ShapePainter::draw(const Layer& layer, const ShapeStyle& style) {
     if (layer.count_ == 0) {
         return;
     }
-    const Program& program = program_of(style.form);
+    const auto scale = static_cast<float>(camera_.scale()), zoom = static_cast<float>(camera_.zoom());
+    const bool round = style.form == Form::Circle || style.form == Form::Body;
+    const float half_pixels = std::max(layer.half_width_max_ * zoom, scale * style.half_pixels_min);
+    // Drivers in software reject points out of sight much more slowly than triangles: draw points only if the island is
+    // almost whole in sight. When it is fitted into the viewport, the zoom is twice zoom_min().
+    const bool in_sight = camera_.zoom() <= 2.5 * camera_.zoom_min();
+    const bool point =
+        round && in_sight && 2 * (half_pixels + 1.6f * scale * style.edge_pixels + 0.5f) <= point_pixels_max_;
+    const Program& program = program_of(style.form, point);
     const Point middle = camera_.viewport().centre(), centre = camera_.centre();
-    const auto scale = static_cast<float>(camera_.scale());
     glUseProgram(program.name);
     glUniform2f(program.pixel_size, 2.f / static_cast<float>(width_pixels_), 2.f / static_cast<float>(height_pixels_));
     glUniform2f(program.origin, static_cast<float>(middle.x), static_cast<float>(middle.y));
     glUniform2f(program.centre, static_cast<float>(centre.x), static_cast<float>(centre.y));
-    glUniform1f(program.zoom, static_cast<float>(camera_.zoom()));
+    glUniform1f(program.zoom, zoom);
     glUniform1i(program.coloured, layer.coloured_);
     set_colour(program.fill, style.fill);
     set_colour(program.fill_low, style.fill_low);
@@ -297,7 +332,11 @@ void ShapePainter::draw(const Layer& layer, const ShapeStyle& style) {
     glBindTexture(GL_TEXTURE_BUFFER, layer.colours_.texture);
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_BUFFER, layer.shapes_.texture);
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * layer.count_));
+    if (point) {
+        glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(layer.count_));
+    } else {
+        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * layer.count_));
+    }
 }
 
 void ShapePainter::end() {
@@ -307,6 +346,7 @@ void ShapePainter::end() {
     glBindTexture(GL_TEXTURE_BUFFER, 0);
     glBindVertexArray(0);
     glUseProgram(0);
+    glDisable(GL_PROGRAM_POINT_SIZE);
     glDisable(GL_SCISSOR_TEST);
 }
 

@@ -74,6 +74,7 @@ class Layer {
     };
     Column shapes_, colours_;
     std::size_t count_ = 0;
+    float half_width_max_ = 0; // of shapes; unused for lines
     bool coloured_ = false;
 };
 
@@ -95,16 +96,18 @@ class ShapePainter {
     void end();
 
   private:
-    /// The shader for one form, compiled when it is used first. A shader without branches is faster.
+    /// The shader for one form, compiled when it is used first. A shader without branches is faster. Small round shapes
+    /// of a whole island are drawn as points: one vertex each instead of three, and half as many pixels.
     struct Program {
         unsigned name = 0;
         int pixel_size = 0, origin = 0, centre = 0, zoom = 0, coloured = 0, fill = 0, fill_low = 0, edge = 0,
             edge_pixels = 0, half_pixels_min = 0, line_pixels = 0;
     };
-    const Program& program_of(Form form);
+    const Program& program_of(Form form, bool point);
 
-    std::array<Program, form_count> programs_{};
-    unsigned vertex_array_ = 0; // there are no vertex attributes: the shader reads shapes by index
+    std::array<Program, 2 * form_count> programs_{}; // of each form: as triangles, as points
+    float point_pixels_max_ = 10;                    // larger shapes are triangles
+    unsigned vertex_array_ = 0;                      // there are no vertex attributes: the shader reads shapes by index
     Camera camera_;
     unsigned width_pixels_ = 1, height_pixels_ = 1;
 };

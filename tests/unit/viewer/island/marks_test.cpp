@@ -5,7 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -141,6 +143,39 @@ std::shared_ptr<codec::ReceivedSnapshot> snapshot(double s, std::uint64_t genera
     made->about.set_tick(static_cast<std::uint64_t>(s * 60));
     made->about.set_generation(generation);
     return made;
+}
+
+TEST(Items, AShareOfThemIsSpreadOverTheIsland) {
+    std::vector<Shape> all;
+    for (int i = 0; i < 20'000; ++i) {
+        all.push_back({static_cast<float>(i % 200) * 10.25f, static_cast<float>(i / 200) * 10.25f, 4, 4});
+    }
+    std::vector<Shape> kept = all;
+    keep_share(1, kept);
+    EXPECT_EQ(kept.size(), all.size());
+    keep_share(0.25, kept);
+    const auto in_part = [&](float left, float top) {
+        return std::ranges::count_if(kept, [&](const Shape& item) {
+            return item.x >= left && item.x < left + 512.5f && item.y >= top && item.y < top + 512.5f;
+        });
+    };
+    for (const float left : {0.f, 512.5f, 1025.f, 1537.5f}) { // 2,500 items each; 5 standard deviations are 108
+        for (const float top : {0.f, 512.5f}) {
+            EXPECT_NEAR(static_cast<double>(in_part(left, top)), 625, 108) << left << " " << top;
+        }
+    }
+    std::vector<Shape> fewer(all.begin() + 5'000, all.end()); // others have been eaten
+    keep_share(0.25, fewer);
+    EXPECT_TRUE(std::ranges::includes(
+        kept, fewer, {},
+        [](const Shape& item) {
+            return std::pair{item.y, item.x};
+        },
+        [](const Shape& item) {
+            return std::pair{item.y, item.x};
+        }));
+    keep_share(0, kept);
+    EXPECT_TRUE(kept.empty());
 }
 
 TEST(Trails, KeepAFewSnapshotsOfTheLastSeconds) {
