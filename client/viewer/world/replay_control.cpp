@@ -53,7 +53,7 @@ void ReplayControl::take_opened() {
         if (at_start) {
             open_refusal_ = refusal_of(response);
         }
-    } else if (feed_.world() != opening_of_) { // another world is now shown
+    } else if (!opening_of_.empty() && feed_.world() != opening_of_) { // another world is now shown
         close(response->world().name());
     } else {
         const evod::v1::WorldInfo& world = response->world();

@@ -20,6 +20,7 @@ std::uint64_t next_place_number() {
 WorldFeed::WorldFeed(ServerConnection& server, const WantedWorld& wanted)
     : server_{server}
     , world_{wanted.world}
+    , servers_choice_{wanted.world.empty()}
     , island_{wanted.island}
     , rate_hz_{wanted.rate_hz}
     , all_islands_{wanted.all_islands}
@@ -74,6 +75,7 @@ void WorldFeed::show(std::string world, std::uint32_t island) {
         replay_.reset();
     }
     world_ = std::move(world);
+    servers_choice_ = world_.empty();
     island_ = island;
     begin_place();
     streamed_view_.reset();
@@ -195,6 +197,9 @@ bool WorldFeed::take_snapshots(Clock::time_point now) {
         if (control_.known() && snapshot->about.run_id() != control_.run_id()) {
             request_statistics(); // another run has another last generation and other genes
             gene_names_.clear();
+        }
+        if (servers_choice_) { // later requests must name it, because there may then be other worlds
+            world_ = snapshot->about.world();
         }
         control_.update(snapshot->about);
         views_[snapshot->about.island()].add(std::move(snapshot), now);

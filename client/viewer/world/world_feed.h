@@ -53,7 +53,7 @@ class WorldFeed {
     /// after each show().
     void set_view(std::optional<evod::v1::View> view);
 
-    /// Returns the requested world name; empty: the server's choice.
+    /// Returns the requested world name. If none was requested: empty until the server's choice is known.
     const std::string& world() const { return world_; }
     /// Returns the world's name as reported by the server; until then, the same as world().
     const std::string& name() const { return control_.known() ? control_.world() : world_; }
@@ -118,6 +118,7 @@ class WorldFeed {
 
     ServerConnection& server_;
     std::string world_;
+    bool servers_choice_; // no world was requested
     std::uint32_t island_;
     double rate_hz_;
     bool all_islands_;

@@ -22,6 +22,22 @@ TEST_F(WorldFeedTest, ReceivesSnapshotsAndTheLastGeneration) {
     EXPECT_EQ(world.feed.last_generation()->fitness_best(), 101);
 }
 
+TEST_F(WorldFeedTest, NamesTheWorldThatTheServerHasChosen) {
+    ViewedWorld world{{.connection = server.options(), .world = "", .island = 1}};
+    core::FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 6);
+    const auto snapshots = session.read_request();
+    EXPECT_EQ(snapshots.subscribe_snapshots().world(), "");
+    session.answer_subscription(snapshots, 7);
+    send_snapshot(session, 7, 1, 50, "lab");
+    until(world, [&] { return world.feed.snapshot() != nullptr; });
+    EXPECT_EQ(world.feed.world(), "lab");
+    answer_statistics(session, session.read_request());
+    world.feed.choose_island(2);
+    EXPECT_TRUE(session.read_request().has_unsubscribe());
+    EXPECT_EQ(session.read_request().subscribe_snapshots().world(), "lab");
+}
+
 TEST_F(WorldFeedTest, CyclesFromTheLastIslandToTheFirst) {
     ViewedWorld world{wanted()};
     auto session = begin(world);
