@@ -41,9 +41,9 @@ constexpr Callout callouts[] = {
 };
 
 // The following lengths are in pixels at scale 1.
-constexpr float callout_width = 300, callout_distance = 26, frame_gap = 4;
+constexpr float callout_width = 300, callout_distance = 26, frame_gap = 4, arrow_max = 45;
 
-/// Frames the widget and draws an arrow to it.
+/// Frames the widget and draws an arrow to it. If other widgets are in between, draws a line below them instead.
 void point_at(Rectangle widget, ImVec2 from, float scale) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 least{static_cast<float>(widget.left), static_cast<float>(widget.top)},
@@ -51,6 +51,11 @@ void point_at(Rectangle widget, ImVec2 from, float scale) {
     const float gap = frame_gap * scale, size = 9 * scale;
     list.AddRect({least.x - gap, least.y - gap}, {most.x + gap, most.y + gap}, ink(palette::focus), 6 * scale, 0,
                  3 * scale);
+    if (least.x - from.x > arrow_max * scale) {
+        const float below = most.y + gap;
+        list.AddLine({from.x, below}, {least.x + gap, below}, ink(palette::focus), 3 * scale);
+        return;
+    }
     const float x = least.x - gap - 2 * scale, y = std::clamp(from.y, least.y, most.y);
     list.AddTriangleFilled({x - size * 1.6f, y - size}, {x - size * 1.6f, y + size}, {x, y}, ink(palette::focus));
     list.AddLine(from, {x - size * 1.6f, y}, ink(palette::focus), 3 * scale);

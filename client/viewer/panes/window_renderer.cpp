@@ -133,7 +133,11 @@ void WindowRenderer::draw(Panes& panes, const Frame& wanted) {
             panes.focus(i);
         }
     }
-    overlay_.build(gui_, panels_, worlds, frame.now);
+    Rectangle above_timelines = worlds; // notices cover no time line
+    for (std::size_t i = 0; i < panes.size(); ++i) {
+        above_timelines.height = std::min(above_timelines.height, worlds.height - panes[i].timeline_place().height);
+    }
+    overlay_.build(gui_, panels_, above_timelines, frame.now);
     if (frame.interactive) {
         panels_.build({panes.focused().world, gui_, frame.now, panes.focused().island_view},
                       {worlds.width, 0, sidebar, worlds.height});
