@@ -60,6 +60,7 @@ enum class Reason {
     GenerationChanged = 45,
     NoBodies = 46,
     PlacedMax = 47,
+    FitnessNotAwaited = 48,
     RunsNotKept = 50,
     MomentNotFound = 51,
     SeekSuperseded = 52,

@@ -47,7 +47,7 @@ std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const
         last.push_back(course.back().mean);
         extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
     }
-    if (arm.parameters.fitness != parameters::FitnessFunction::Life) {
+    if (!parameters::has_bodies(arm.parameters)) {
         extinct = 0; // no organism can die if fitness is a function of the chromosome alone
     }
     const std::vector<double> rises = rises_of(courses);

@@ -91,6 +91,11 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
     if (auto fits = experiments::match_schedule_to_parameters(experiment); !fits) {
         return fits.error();
     }
+    if (auto fault = experiments::fault_without_network(experiment.parameters)) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "the experiment cannot be run without a network",
+                             .violations = {*std::move(fault)}};
+    }
     if (options.seed) {
         experiment.seed = base::Seed{*options.seed};
     }

@@ -46,6 +46,11 @@ Result<Arm> arm_of(const NamedExperiment& named, const std::vector<std::string>&
     if (auto fits = match_schedule_to_parameters(*experiment); !fits) {
         return fits.error();
     }
+    if (auto fault = fault_without_network(experiment->parameters)) {
+        return base::Refusal{.code = RefusalCode::InvalidArgument,
+                             .message = named.name + " cannot be compared",
+                             .violations = {*std::move(fault)}};
+    }
     return Arm{named.name, experiment->parameters, experiment->schedule};
 }
 

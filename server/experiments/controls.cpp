@@ -47,7 +47,7 @@ Parameters without_mutation(Parameters p) {
 }
 
 std::string why_poison_has_no_effect(const Parameters& p) {
-    if (p.fitness != parameters::FitnessFunction::Life) {
+    if (!parameters::has_bodies(p)) {
         return "the fitness is a function of the chromosome, and organisms do not eat";
     }
     if (parameters::island_plan(p).poison_count == 0) {

@@ -87,6 +87,16 @@ base::Result<void> match_schedule_to_parameters(parameters::Experiment& experime
     return refused;
 }
 
+std::optional<base::Violation> fault_without_network(const parameters::Parameters& parameters) {
+    if (parameters.fitness != parameters::FitnessFunction::External) {
+        return std::nullopt;
+    }
+    return base::Violation{"fitness",
+                           "life, gene_sum or rastrigin: no client can send fitness to this command; start a server "
+                           "with `evod --experiment`",
+                           "external"};
+}
+
 std::string world_name(const std::string& path) {
     std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
     for (char& c : name) {

@@ -3,6 +3,7 @@
 
 #include "server/parameters/experiment.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
 /// Makes the first values of the schedule equal to the parameters of the experiment, and validates every generation of
 /// the schedule. Violations name the generation.
 base::Result<void> match_schedule_to_parameters(parameters::Experiment& experiment);
+
+/// Returns why a command without a network cannot run a world with these parameters: it needs fitness from clients.
+/// Returns nullopt if the command can run it.
+std::optional<base::Violation> fault_without_network(const parameters::Parameters& parameters);
 
 /// Derives the name of an experiment's world from the name of its file, without folder and extension. It has at most 64
 /// characters. Each character other than a-z A-Z 0-9 _ - becomes "_".

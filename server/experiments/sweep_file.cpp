@@ -157,7 +157,10 @@ void check_ends(const Sweep& sweep, SweepErrors& errors) {
 void check_cells(const Sweep& sweep, SweepErrors& errors) {
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
         const Parameters parameters = sweep.parameters_of(cell);
-        const auto faults = parameters::validate(parameters);
+        auto faults = parameters::validate(parameters);
+        if (auto fault = fault_without_network(parameters)) {
+            faults.push_back(*std::move(fault));
+        }
         for (const Violation& fault : faults) {
             errors.add(cell_prefix(sweep, cell) + fault.field, fault.allowed, fault.got);
         }

@@ -295,8 +295,8 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_protocol_version(codec::protocol_version);
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
-    for (const char* feature :
-         {"codec:plain", "codec:delta", "compression:zstd", "acknowledgements", "view", "planned_changes", "place"}) {
+    for (const char* feature : {"codec:plain", "codec:delta", "compression:zstd", "acknowledgements", "view",
+                                "planned_changes", "place", "fitness"}) {
         welcome.add_features(feature);
     }
     *welcome.mutable_limits() = limits();

@@ -281,6 +281,11 @@ IslandPlan island_plan(const Parameters& p) {
     return plan;
 }
 
+bool has_bodies(const Parameters& parameters) {
+    return parameters.fitness == FitnessFunction::Life ||
+           (parameters.fitness == FitnessFunction::External && parameters.external_bodies);
+}
+
 std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
     std::vector<base::Violation> violations;
     const auto refuse = [&](std::string_view field, std::string allowed, std::string got) {
@@ -311,7 +316,7 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
                std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
     }
 
-    if (p.fitness != FitnessFunction::Life) {
+    if (!has_bodies(p)) {
         return violations;
     }
     require_order("generation_s", p.generation_s, "tick_s", p.tick_s);

@@ -19,19 +19,20 @@
 
 namespace evod::parameters {
 
-enum class FitnessFunction { Life, GeneSum, Rastrigin };
+enum class FitnessFunction { Life, GeneSum, Rastrigin, External };
 enum class FleeRule { Nearer, Always };
 enum class IntegratorChoice { SymplecticEuler, ExplicitEuler, BackwardEuler };
 
 } // namespace evod::parameters
 
-EVOD_CHOICE_NAMES(evod::parameters::FitnessFunction, "life", "gene_sum", "rastrigin")
+EVOD_CHOICE_NAMES(evod::parameters::FitnessFunction, "life", "gene_sum", "rastrigin", "external")
 EVOD_CHOICE_NAMES(evod::parameters::FleeRule, "nearer", "always")
 EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
 
 // clang-format off
 #define EVOD_MODEL_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                               \
-    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
+    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone; external: at the end of each generation the world waits until a client has sent the fitness of every organism (SetFitness).") \
+    FLAG(external_bodies, true, Reset, "Whether organisms live on the islands before a client rates them, if fitness is external. Off: there are no bodies, and a generation lasts one tick, as for gene_sum.") \
     REAL(fitness_per_second, 1, -1000, 1000, "fitness/s", NextGeneration, "Weight of each second lived in the fitness function life.") \
     REAL(fitness_per_health, 1, -1000, 1000, "fitness/health", NextGeneration, "Weight of each unit of health at the end in the fitness function life; the health of dead organisms is 0.") \
     REAL(fitness_per_food, 0, -1000, 1000, "fitness/item", NextGeneration, "Weight of each food item eaten in the fitness function life.") \
@@ -85,6 +86,9 @@ struct Parameters : evolution::Parameters {
 using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;
 
 std::string to_text(const ParameterValue& value);
+
+/// Returns whether organisms have bodies and live on islands; false if the fitness needs only their chromosomes.
+bool has_bodies(const Parameters& parameters);
 
 struct RealParameter {
     base::RealRange range;

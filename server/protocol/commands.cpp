@@ -5,6 +5,7 @@
 #include "server/protocol/experiments.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
+#include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world_name.h"
@@ -305,6 +306,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.place(), violations);
         case RequestCase::kRemove:
             return command_of(request.remove(), violations);
+        case RequestCase::kSetFitness:
+            return command_of(request.set_fitness(), violations);
         case RequestCase::kForkWorld:
             return command_of(request.fork_world(), draws, violations);
         default:

@@ -4,6 +4,7 @@
 #include "server/protocol/actors.h"
 #include "server/protocol/entities.h"
 #include "server/protocol/parameters.h"
+#include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
@@ -32,6 +33,13 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        auto& to = *message.mutable_generation_finished();
                        for (const auto& statistics : finished.statistics) {
                            *to.add_statistics() = to_proto(statistics);
+                       }
+                   },
+                   [&](const simulation::FitnessAwaited& awaited) {
+                       auto& to = *message.mutable_fitness_awaited();
+                       to.set_generation(awaited.generation);
+                       if (const auto entry = laboratory.find(event.world)) {
+                           add_awaited_islands((*entry)->world, *to.mutable_islands());
                        }
                    },
                    [&](const simulation::MigrationHappened& migration) {
@@ -141,6 +149,16 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
             [&](const simulation::RemoveEntities&) {
                 *message.mutable_removed() = removed_message(*applied.removed);
                 *message.mutable_removed()->mutable_by() = actor_of(by);
+            },
+            [&](const simulation::SetFitness& set) {
+                auto& to = *message.mutable_fitness_set();
+                *to.mutable_by() = actor_of(by);
+                to.set_generation(set.generation);
+                to.set_island(set.island);
+                to.set_organism_count(static_cast<std::uint32_t>(set.fitness.size()));
+                if (entry) {
+                    add_awaited_islands((*entry)->world, *to.mutable_awaited_islands());
+                }
             },
             [&](const auto&) { set_world(*message.mutable_run_control_changed()); },
         },

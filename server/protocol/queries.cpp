@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace evod::protocol {
@@ -43,14 +44,16 @@ base::Result<FoundIsland> find_island(const simulation::Laboratory& laboratory, 
     return FoundIsland{(*entry)->world, islands[island]};
 }
 
-/// Appends one little-endian number of 4 bytes for each row.
+/// Appends one little-endian number of 4 or 8 bytes for each row.
 template <class Rows, class Of>
 void append_column(std::string& bytes, const Rows& rows, Of&& of) {
+    constexpr std::size_t number_bytes = sizeof(of(rows.front()));
+    using Bits = std::conditional_t<number_bytes == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
     std::size_t at = bytes.size();
-    bytes.resize(at + rows.size() * sizeof(std::uint32_t));
+    bytes.resize(at + rows.size() * number_bytes);
     for (const auto& row : rows) {
-        codec::store(std::bit_cast<std::uint32_t>(of(row)), &bytes[at]);
-        at += sizeof(std::uint32_t);
+        codec::store(std::bit_cast<Bits>(of(row)), &bytes[at]);
+        at += number_bytes;
     }
 }
 
@@ -203,7 +206,16 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
                           .genes = {},
                           .parents = {},
                           .founders = {},
-                          .intentions = world.intentions(island, ids)};
+                          .intentions = world.intentions(island, ids),
+                          .lives = {},
+                          .tick_s = world.parameters().active.tick_s};
+    if (query.with_life() && world.has_bodies()) {
+        const auto tick = static_cast<std::uint32_t>(world.moment().generation_tick);
+        answer.lives.reserve(ids.end - ids.begin);
+        for (std::size_t id = ids.begin; id < ids.end; ++id) {
+            answer.lives.push_back(island.life(static_cast<std::uint32_t>(id), tick));
+        }
+    }
     answer.genes.reserve(ids.end - ids.begin);
     for (std::size_t id = ids.begin; id < ids.end; ++id) {
         answer.genes.emplace_back(born.genes.col(static_cast<Eigen::Index>(id)));
@@ -240,6 +252,12 @@ v1::Population to_proto(const PopulationRows& rows) {
     const auto px = [](physics::Coordinate units) { return static_cast<float>(physics::to_px(units)); };
     append(*population.mutable_targets(), [px](const Intention& i) { return px(i.target_x); });
     append(*population.mutable_targets(), [px](const Intention& i) { return px(i.target_y); });
+    using Life = simulation::Island::Life;
+    append_column(*population.mutable_lived_s(), rows.lives,
+                  [&rows](const Life& life) { return life.lived_ticks * rows.tick_s; });
+    append_column(*population.mutable_health(), rows.lives, [](const Life& life) { return life.health; });
+    append_column(*population.mutable_food_eaten(), rows.lives, [](const Life& life) { return life.food_eaten; });
+    append_column(*population.mutable_poison_eaten(), rows.lives, [](const Life& life) { return life.poison_eaten; });
     return population;
 }
 

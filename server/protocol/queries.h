@@ -50,9 +50,13 @@ struct PopulationRows {
     std::vector<evolution::Parents> parents; // empty in the first generation
     std::vector<std::uint32_t> founders;     // empty if the founders are unknown
     std::vector<simulation::Intention> intentions;
+    // Empty unless the query asks for them, and if there are no bodies.
+    std::vector<simulation::Island::Life> lives;
+    double tick_s; // unit of Life::lived_ticks
 };
-constexpr std::size_t population_row_bytes =
-    sizeof(evolution::Chromosome) + sizeof(evolution::Parents) + sizeof(std::uint32_t) + sizeof(simulation::Intention);
+constexpr std::size_t population_row_bytes = sizeof(evolution::Chromosome) + sizeof(evolution::Parents) +
+                                             sizeof(std::uint32_t) + sizeof(simulation::Intention) +
+                                             sizeof(simulation::Island::Life);
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);
 

@@ -1,6 +1,7 @@
 #include "server/protocol/worlds.h"
 
 #include "server/base/assert.h"
+#include "server/protocol/ratings.h"
 
 namespace evod::protocol {
 
@@ -101,6 +102,10 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
         replay.set_last_generation(entry.replay->last_generation);
         replay.set_first_tick(entry.replay->first_tick);
         replay.set_last_tick(entry.replay->last_tick);
+    }
+    if (world.awaits_fitness()) {
+        to.mutable_awaited_fitness()->set_generation(moment.generation);
+        add_awaited_islands(world, *to.mutable_awaited_fitness()->mutable_islands());
     }
     if (entry.storage) {
         *to.mutable_storage() = to_proto(*entry.storage);

@@ -92,10 +92,10 @@ Result<void> GenerationReader::add_placed(std::uint64_t generation, WholeGenerat
     const std::uint64_t first_tick = whole.begun.opening.moment.tick;
     const std::uint64_t end_tick = whole.ended ? whole.ended->statistics.front().end_tick : ~std::uint64_t{0};
     for (const WorldChange& change : *changes_) {
-        if (change.tick < first_tick || change.tick >= end_tick || !change.entities) {
+        if (change.tick < first_tick || change.tick >= end_tick || !change.checked) {
             continue;
         }
-        if (const auto* place = std::get_if<simulation::PlaceEntities>(&*change.entities)) {
+        if (const auto* place = std::get_if<simulation::PlaceEntities>(&*change.checked)) {
             if (place->island >= born.size()) {
                 return damaged(generation, "has no island on which entry " + std::to_string(change.entry) +
                                                " of the journal placed organisms");

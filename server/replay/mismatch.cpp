@@ -165,6 +165,11 @@ Found compare_island(const std::string& of_island, const std::vector<std::uint32
     return compare_organisms<std::uint32_t>("the founder", of_island, stored, simulated);
 }
 
+Found compare_island(const std::string& of_island, const std::vector<double>& stored,
+                     const std::vector<double>& simulated) {
+    return compare_organisms<double>("the fitness from clients", of_island, stored, simulated);
+}
+
 Found compare_island(const std::string& of_island, const run_file::IslandOutcome& stored,
                      const run_file::IslandOutcome& simulated) {
     if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
@@ -335,7 +340,10 @@ Found compare(const simulation::WorldState& stored, const simulation::WorldState
     if (auto found = compare_islands(stored.islands, simulated.islands)) {
         return found;
     }
-    return compare_islands(stored.ended, simulated.ended);
+    if (auto found = compare_islands(stored.ended, simulated.ended)) {
+        return found;
+    }
+    return compare_islands(stored.given_fitness, simulated.given_fitness);
 }
 
 Found compare(const base::StateHash& stored, const base::StateHash& simulated) {

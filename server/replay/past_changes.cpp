@@ -44,7 +44,7 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
     };
     std::uint64_t planned_count = 0;
     for (const WorldChange& change : changes) {
-        if (change.entities) {
+        if (change.checked) {
             continue;
         }
         if (!change.at) {

@@ -5,8 +5,10 @@
 #include "server/replay/past_changes.h"
 #include "server/run_file/checkpoint.h"
 #include "server/simulation/entities.h"
+#include "server/simulation/rating.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace evod::replay {
@@ -36,6 +38,17 @@ std::optional<simulation::Command> command_of(const std::string& request) {
     }
     auto command = protocol::to_command(message, {});
     return command ? std::optional{*std::move(command)} : std::nullopt;
+}
+
+std::optional<CheckedCommand> checked_command(simulation::Command command) {
+    return std::visit(
+        []<class C>(C& kind) -> std::optional<CheckedCommand> {
+            if constexpr (std::is_constructible_v<CheckedCommand, std::in_place_type_t<C>, C>) {
+                return std::move(kind);
+            }
+            return std::nullopt;
+        },
+        command);
 }
 
 /// Returns the number of the last journal entry that a beginning of a generation, or a checkpoint of it, contains.
@@ -86,13 +99,9 @@ Result<std::vector<WorldChange>> world_changes(const std::string& path,
         if (const auto* cancel = std::get_if<simulation::CancelChange>(&*command)) {
             changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
         }
-        if (auto* place = std::get_if<simulation::PlaceEntities>(&*command)) {
+        if (auto checked = checked_command(*std::move(command))) {
             changes.push_back(
-                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*place)});
-        }
-        if (auto* remove = std::get_if<simulation::RemoveEntities>(&*command)) {
-            changes.push_back(
-                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .entities = std::move(*remove)});
+                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .checked = std::move(checked)});
         }
     }
     return changes;
@@ -118,7 +127,7 @@ Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base:
                        .violations = {},
                        .reason = base::Reason::MomentNotFound};
     }
-    while (rerun && rerun->world().moment().generation < generation) {
+    while (rerun && rerun->world().moment().generation < generation && !rerun->changes().fault()) {
         if (rerun->world().generation_over()) {
             rerun->turn_over(executor);
         } else {
@@ -308,15 +317,16 @@ bool ComingChanges::apply(const WorldChange& change, simulation::World& world) {
     if (change.cancels) {
         return world.cancel(*change.cancels).has_value();
     }
-    if (change.entities) {
+    if (change.checked) {
         const auto can_be = [&](const auto& command) { return check(world, command).has_value(); };
         const auto carry_out =
             base::Overloaded{[&](const simulation::PlaceEntities& command) { (void)world.place(command); },
-                             [&](const simulation::RemoveEntities& command) { (void)world.remove(command); }};
-        if (!std::visit(can_be, *change.entities)) {
+                             [&](const simulation::RemoveEntities& command) { (void)world.remove(command); },
+                             [&](const simulation::SetFitness& command) { world.set_fitness(command); }};
+        if (!std::visit(can_be, *change.checked)) {
             return false;
         }
-        std::visit(carry_out, *change.entities);
+        std::visit(carry_out, *change.checked);
         return true;
     }
     if (change.at) {
@@ -344,14 +354,21 @@ void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
     }
 }
 
+void ComingChanges::fail_without_fitness(std::uint64_t generation) {
+    fault_ = damaged(path_, "its journal does not contain the fitness of generation " + std::to_string(generation));
+}
+
 void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
+    if (world_.awaits_fitness()) {
+        return changes_.fail_without_fitness(world_.moment().generation);
+    }
     world_.advance_tick(executor);
     hash_of_tick_ = world_.hash();
     apply_changes(last);
 }
 
 void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
-    while (world_.moment().tick < tick && world_.outcome() == evolution::Outcome::Running) {
+    while (world_.moment().tick < tick && world_.outcome() == evolution::Outcome::Running && !changes_.fault()) {
         advance_tick(executor);
     }
 }

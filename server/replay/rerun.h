@@ -14,8 +14,11 @@
 
 namespace evod::replay {
 
+/// A command that check() accepts before it changes a world.
+using CheckedCommand = std::variant<simulation::PlaceEntities, simulation::RemoveEntities, simulation::SetFitness>;
+
 /// A command in the journal that changes a world: it changes parameters, plans such a change, cancels a planned change,
-/// or places or removes entities.
+/// places or removes entities, or sets fitness.
 struct WorldChange {
     std::uint64_t entry = 0; // number of the command in the journal
     std::uint64_t tick = 0;  // the command was applied after this tick
@@ -23,7 +26,7 @@ struct WorldChange {
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
     std::string by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
-    std::optional<std::variant<simulation::PlaceEntities, simulation::RemoveEntities>> entities = std::nullopt;
+    std::optional<CheckedCommand> checked = std::nullopt;
 };
 
 /// Reads the changes in a file's journal, in order of ticks. Refused if an entry contains no command, or if
@@ -58,8 +61,10 @@ class ComingChanges {
     void apply_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
     /// Number of the last journal entry that was added.
     std::uint64_t last_entry() const { return last_entry_; }
-    /// Set if a change cannot have been accepted with the parameters of its moment; the file is then damaged.
+    /// Set if a change cannot have been accepted at its moment, or is missing; the file is then damaged.
     const std::optional<base::Refusal>& fault() const { return fault_; }
+    /// Sets fault(): the journal lacks the fitness without which this generation cannot end.
+    void fail_without_fitness(std::uint64_t generation);
 
   private:
     /// Applies one change, as Laboratory applied it. Returns false if Laboratory cannot have accepted the change.
@@ -125,11 +130,11 @@ class Rerun {
     /// The state hash after the last tick, before the commands that followed it. Run files contain these hashes.
     const base::StateHash& hash_of_tick() const { return hash_of_tick_; }
     /// Simulates one tick, then applies the changes after it, up to journal entry `last`. The run must not be
-    /// over.
+    /// over. If the world awaits fitness that the journal does not contain, sets changes().fault() and does nothing.
     void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
     /// Applies the remaining changes after the last tick, up to journal entry `last`.
     void apply_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.apply_due(world_, last); }
-    /// Simulates up to and including this tick, or up to the end of the run.
+    /// Simulates up to and including this tick, up to the end of the run, or up to a fault.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:

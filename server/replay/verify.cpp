@@ -74,7 +74,7 @@ class StretchCheck {
         }
         const double began_s = rerun->world().moment().simulated_s;
         const std::uint64_t began_tick = rerun->world().moment().tick;
-        for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i) {
+        for (std::size_t i = 0; i < stretch_.size() && !done_.difference && !rerun->changes().fault(); ++i) {
             check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, progress);
         }
         if (const auto& fault = rerun->changes().fault()) {
@@ -159,7 +159,7 @@ class StretchCheck {
         auto checkpoint = std::ranges::upper_bound(stored.checkpoints, world.moment().tick, {},
                                                    [](const run_file::StoredCheckpoint& at) { return at.moment.tick; });
         std::uint64_t progress_tick = world.moment().tick;
-        while (world.moment().tick < stored.last_tick && !world.generation_over()) {
+        while (world.moment().tick < stored.last_tick && !world.generation_over() && !rerun.changes().fault()) {
             if (checkpoint != stored.checkpoints.end() && checkpoint->moment.tick == world.moment().tick + 1) {
                 rerun.advance_tick(executor_, checkpoint->journal_entries);
                 if (!check_checkpoint(world, *checkpoint++)) {
@@ -217,6 +217,9 @@ class StretchCheck {
         const bool ended = !stored.statistics.empty();
         if (now.tick < stored.last_tick) {
             return differ(now, {"the generation's end", "later", "at this tick"});
+        }
+        if ((ended || goes_on) && world.awaits_fitness()) {
+            return differ(now, {"the fitness from clients", "not complete in the journal", "needed here"});
         }
         if ((ended || goes_on) && !world.generation_over()) {
             return differ(now, {"the generation's end", "at this tick", "later"});

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -76,7 +77,7 @@ void for_each_count(Counts& counts, Visit&& visit) {
 }
 
 /// The flags in the first byte of a state.
-constexpr std::uint8_t over_flag = 1, placed_flag = 2;
+constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
 
 /// The numbers of entities that were placed on an island.
 struct PlacedCounts {
@@ -132,6 +133,15 @@ std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
                      (std::size_t{shape.food} + shape.poison) * 12;
         }
         bytes += over ? bytes_of_statistics() : 0;
+    }
+    return bytes;
+}
+
+/// The size in bytes of the fitness from clients, and of its counts.
+std::size_t bytes_of(std::span<const std::uint32_t> given_counts) {
+    std::size_t bytes = given_counts.size_bytes();
+    for (const std::uint32_t count : given_counts) {
+        bytes += std::size_t{count} * sizeof(double);
     }
     return bytes;
 }
@@ -240,9 +250,14 @@ std::string pack(const simulation::WorldState& state) {
     if (std::ranges::none_of(placed, has_placed)) {
         placed.clear();
     }
+    std::vector<std::uint32_t> given_counts;
+    for (const std::vector<double>& given : state.given_fitness) {
+        given_counts.push_back(static_cast<std::uint32_t>(given.size()));
+    }
     Packer packer;
-    packer.expect(bytes_of(shapes, over) + bytes_of(placed));
-    packer.value(static_cast<std::uint8_t>((over ? over_flag : 0) | (placed.empty() ? 0 : placed_flag)));
+    packer.expect(bytes_of(shapes, over) + bytes_of(placed) + bytes_of(given_counts));
+    packer.value(static_cast<std::uint8_t>((over ? over_flag : 0) | (placed.empty() ? 0 : placed_flag) |
+                                           (given_counts.empty() ? 0 : given_flag)));
     for (const PlacedCounts& counts : placed) {
         for_each_placed_count(counts, [&](const auto& count) { packer.value(count); });
     }
@@ -251,6 +266,10 @@ std::string pack(const simulation::WorldState& state) {
             packer.value(organism.genes);
             packer.value(organism.tick);
         }
+    }
+    packer.column(given_counts, std::identity{});
+    for (const std::vector<double>& given : state.given_fitness) {
+        packer.column(given, std::identity{});
     }
     for (const IslandState& island : state.islands) {
         for_each_count(island.counts, [&](const auto& count) { packer.value(count); });
@@ -281,8 +300,12 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
     const PlacedCounts most{simulation::placed_max, simulation::placed_max, simulation::placed_max};
     const std::vector<PlacedCounts> most_placed(shapes.size(), most);
+    std::vector<std::uint32_t> most_given;
+    for (const IslandShape& shape : with_placed(shapes, most_placed)) {
+        most_given.push_back(shape.organisms);
+    }
     if (bytes < bytes_of(shapes, false) ||
-        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed)) {
+        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed) + bytes_of(most_given)) {
         return refusal("its size differs from that of a state of this world");
     }
     std::string columns(bytes, '\0');
@@ -294,8 +317,8 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
 }
 
 Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
-    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > (over_flag | placed_flag)) {
-        return refusal("its first byte is not 0, 1, 2 or 3");
+    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > (over_flag | placed_flag | given_flag)) {
+        return refusal("its first byte is not 0 to 7");
     }
     const bool over = (static_cast<std::uint8_t>(bytes.front()) & over_flag) != 0;
     const bool has_counts = (static_cast<std::uint8_t>(bytes.front()) & placed_flag) != 0;
@@ -312,10 +335,24 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
         }
     }
     const std::vector<IslandShape> whole = with_placed(shapes, placed);
-    if (bytes.size() != bytes_of(whole, over) + bytes_of(placed)) {
+    const bool has_given = (static_cast<std::uint8_t>(bytes.front()) & given_flag) != 0;
+    std::vector<std::uint32_t> given_counts(has_given ? shapes.size() : 0);
+    const std::size_t placed_bytes = bytes_of(placed);
+    if (bytes.size() < 1 + placed_bytes + given_counts.size() * sizeof(std::uint32_t)) {
+        return refusal("its size differs from that of a state of this world");
+    }
+    Columns counts{bytes.substr(1 + placed_bytes)};
+    for (std::size_t i = 0; i < given_counts.size(); ++i) {
+        counts.value(given_counts[i]);
+        if (given_counts[i] > whole[i].organisms) {
+            return refusal("it has fitness for more organisms than its world has");
+        }
+    }
+    if (bytes.size() != bytes_of(whole, over) + placed_bytes + bytes_of(given_counts)) {
         return refusal("its size differs from that of a state of this world");
     }
     state.islands.assign(shapes.size(), {});
+    state.given_fitness.assign(given_counts.size(), {});
     state.ended.assign(over ? shapes.size() : 0, {});
     for (std::size_t i = 0; i < placed.size(); ++i) {
         state.islands[i].placed_food = placed[i].food;
@@ -324,6 +361,15 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
         for (IslandState::Placed& organism : state.islands[i].placed) {
             columns.value(organism.genes);
             columns.value(organism.tick);
+        }
+    }
+    for (std::uint32_t& count : given_counts) {
+        columns.value(count);
+    }
+    for (std::size_t i = 0; i < given_counts.size(); ++i) {
+        state.given_fitness[i].resize(given_counts[i]);
+        for (double& fitness : state.given_fitness[i]) {
+            columns.value(fitness);
         }
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {

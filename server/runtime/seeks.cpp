@@ -30,6 +30,9 @@ bool advance_tick(replay::SeekStart& seek, base::Executor& executor) {
         seek.from.turn_over(executor);
     } else if (world.outcome() == evolution::Outcome::Running) {
         seek.from.advance_tick(executor);
+        if (seek.from.changes().fault()) {
+            return true; // the file is damaged; result_of() reports it
+        }
     } else {
         return true; // the run ends before the target; result_of() reports it
     }
@@ -40,6 +43,9 @@ base::Result<SeekResult> result_of(replay::SeekStart seek) {
     const simulation::Moment& there = seek.from.world().moment();
     if (there.generation == seek.to.generation && there.tick == seek.to.tick) {
         return SeekResult{std::move(seek.from), std::move(seek.there)};
+    }
+    if (const auto& fault = seek.from.changes().fault()) {
+        return *fault;
     }
     return refusal(RefusalCode::DataLoss,
                    "the run file contains this moment, but a new simulation of the run does not reach it");

@@ -405,7 +405,8 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     case RunEffect::Ends:
         return recorder_->end(applied.world, before->run_id, std::move(record));
     case RunEffect::Continues:
-        return recorder_->of(applied.world)->journal(std::move(record));
+        recorder_->of(applied.world)->journal(std::move(record));
+        return recorder_->of(applied.world)->follow((*entry)->world); // fitness may have ended a generation
     }
 }
 
@@ -531,6 +532,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             }
             if (entry.replay) {
                 replays_.shown().follow(entry);
+                laboratory_.settle(entry);
             }
             ++taken;
             stopped = !entry.wants_tick();

@@ -122,6 +122,18 @@ struct EntityIds {
     friend bool operator==(const EntityIds&, const EntityIds&) = default;
 };
 
+/// The largest absolute value of a fitness from a client. The sum of the squares of all fitness values is finite.
+constexpr double given_fitness_max = 1e100;
+
+/// Sets the fitness of organisms, if the parameter `fitness` is external and the generation has ended (rating.h).
+struct SetFitness {
+    std::string world;
+    std::uint64_t generation;
+    std::uint32_t island = 0;
+    std::uint32_t first_organism = 0; // id of the organism to which the first number belongs; the others follow
+    std::vector<double> fitness;      // at least one; absolute values at most given_fitness_max
+};
+
 struct ForkWorld {
     std::string world; // the world to fork
     std::string name;  // name of the new world; as in CreateWorld
@@ -131,7 +143,8 @@ struct ForkWorld {
     RunId run_id;
 };
 
-using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume,
-                             SetSpeed, SetParameters, CancelChange, PlaceEntities, RemoveEntities, ForkWorld>;
+using Command =
+    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, SetSpeed,
+                 SetParameters, CancelChange, PlaceEntities, RemoveEntities, SetFitness, ForkWorld>;
 
 } // namespace evod::simulation

@@ -45,10 +45,10 @@ std::optional<Refusal> refusal_of(const World& world, std::uint32_t island, cons
     }
     if (!world.has_bodies()) {
         return refused("the fitness of this world depends only on the chromosome: its islands contain no items or "
-                       "bodies; set fitness to life and reset the world",
+                       "bodies; set fitness to life, or external_bodies to true, and reset the world",
                        base::Reason::NoBodies);
     }
-    if (world.generation_over()) {
+    if (world.is_after_last_tick()) {
         return refused("the generation is over, and the next one begins with the next tick: run one tick first",
                        base::Reason::GenerationOver);
     }

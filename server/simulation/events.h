@@ -14,6 +14,10 @@ namespace evod::simulation {
 struct GenerationFinished {
     std::vector<GenerationStatistics> statistics; // one per island
 };
+/// The last tick of a generation has passed, and the world waits until clients have rated its organisms.
+struct FitnessAwaited {
+    std::uint64_t generation;
+};
 struct MigrationHappened {
     struct Edge {
         std::uint32_t from, to, migrant_count;
@@ -46,8 +50,8 @@ struct ChangeDropped {
 };
 struct GoalReached {}; // the requested generations or ticks have been simulated: the world now waits or is paused
 
-using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, ParametersChanged,
-                               ChangeDropped, GoalReached>;
+using EventKind = std::variant<GenerationFinished, FitnessAwaited, MigrationHappened, Extinction, RunTerminated,
+                               ParametersChanged, ChangeDropped, GoalReached>;
 
 struct Event {
     std::string world;

@@ -85,7 +85,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
         born_hash_ += hash;
     }
     hash_ = born_hash_;
-    if (parameters.fitness == parameters::FitnessFunction::Life) {
+    if (parameters::has_bodies(parameters)) {
         fill(parameters, generation, executor);
     }
 }
@@ -436,6 +436,14 @@ base::StateHash Island::whole_hash() const {
     return hash;
 }
 
+Island::Life Island::life(std::uint32_t id, std::uint32_t tick) const {
+    const bool dead = body_of_[id] == no_body;
+    return {.lived_ticks = dead ? fate_.lived_ticks[id] : tick - placed_tick(id),
+            .health = dead ? 0 : living_.health[body_of_[id]],
+            .food_eaten = fate_.food_eaten[id],
+            .poison_eaten = fate_.poison_eaten[id]};
+}
+
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
                                     base::Executor& executor) const {
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
@@ -443,13 +451,12 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
-                const std::uint32_t placed = placed_tick(static_cast<std::uint32_t>(id));
-                const bool dead = body_of_[id] == no_body;
-                const double lived_s = (dead ? fate_.lived_ticks[id] : tick - placed) * parameters.tick_s;
-                const double health = dead ? 0 : static_cast<double>(living_.health[body_of_[id]]);
-                fitness[id] = parameters.fitness_per_second * lived_s + parameters.fitness_per_health * health +
-                              parameters.fitness_per_food * fate_.food_eaten[id] +
-                              parameters.fitness_per_poison * fate_.poison_eaten[id];
+                const Life its = life(static_cast<std::uint32_t>(id), tick);
+                const double lived_s = its.lived_ticks * parameters.tick_s;
+                fitness[id] = parameters.fitness_per_second * lived_s +
+                              parameters.fitness_per_health * static_cast<double>(its.health) +
+                              parameters.fitness_per_food * its.food_eaten +
+                              parameters.fitness_per_poison * its.poison_eaten;
             }
         });
         return fitness;

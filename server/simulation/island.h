@@ -76,6 +76,15 @@ class Island {
     void restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
                  base::Executor& executor);
 
+    /// What an organism has achieved in this generation.
+    struct Life {
+        std::uint32_t lived_ticks;
+        float health; // 0 for dead organisms
+        std::uint32_t food_eaten, poison_eaten;
+    };
+    /// Returns the life of an organism up to the end of `tick` of the generation. The island must have bodies.
+    Life life(std::uint32_t id, std::uint32_t tick) const;
+
     /// Returns the fitness of every organism, by id, at the end of `tick` of the generation: a weighted sum of
     /// seconds lived, health, food eaten and poison eaten, or a function of the chromosome alone.
     std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,

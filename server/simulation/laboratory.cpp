@@ -1,6 +1,7 @@
 #include "server/simulation/laboratory.h"
 
 #include "server/simulation/entities.h"
+#include "server/simulation/rating.h"
 
 #include <algorithm>
 #include <functional>
@@ -51,7 +52,8 @@ template <class C>
 std::optional<Refusal> refusal_if_replay(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
                                           std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange> ||
-                                          std::is_same_v<C, PlaceEntities> || std::is_same_v<C, RemoveEntities>;
+                                          std::is_same_v<C, PlaceEntities> || std::is_same_v<C, RemoveEntities> ||
+                                          std::is_same_v<C, SetFitness>;
     if (!changes_what_happens || !entry.replay) {
         return std::nullopt;
     }
@@ -130,6 +132,10 @@ bool remove_reached_goals(RunControl& control, const World& world) {
 }
 
 bool Entry::wants_tick() const {
+    return !world.awaits_fitness() && wants_to_run();
+}
+
+bool Entry::wants_to_run() const {
     if (world.outcome() != evolution::Outcome::Running || (replay && world.moment().tick >= replay->last_tick)) {
         return false;
     }
@@ -144,7 +150,7 @@ RunState Entry::state() const {
     if (world.outcome() != evolution::Outcome::Running) {
         return RunState::Terminated;
     }
-    if (wants_tick()) {
+    if (wants_to_run()) {
         return RunState::Running;
     }
     return control.paused ? RunState::Paused : RunState::Waiting;
@@ -152,15 +158,15 @@ RunState Entry::state() const {
 
 void Laboratory::advance(Entry& entry, base::Executor& executor) {
     entry.world.advance_tick(executor);
-    collect_events(entry);
-    if (remove_reached_goals(entry.control, entry.world)) {
-        events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
-    }
+    settle(entry);
 }
 
-void Laboratory::collect_events(Entry& entry) {
+void Laboratory::settle(Entry& entry) {
     for (EventKind& kind : entry.world.take_events()) {
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, std::move(kind)});
+    }
+    if (remove_reached_goals(entry.control, entry.world)) {
+        events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
     }
 }
 
@@ -440,8 +446,17 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RemoveEntities& comman
     }
     Applied applied = applied_now(entry);
     applied.removed = entry.world.remove(command);
-    collect_events(entry);
+    settle(entry);
     return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const SetFitness& command) {
+    if (auto checked = check(entry.world, command); !checked) {
+        return checked.error();
+    }
+    entry.world.set_fitness(command);
+    settle(entry);
+    return applied_now(entry);
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {

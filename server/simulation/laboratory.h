@@ -77,7 +77,9 @@ struct Entry {
     bool replays_another_world() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
-    /// Returns whether the world should advance: it has a goal that it has not reached, and it is not paused.
+    /// Returns whether the world has a goal that it has not reached, and is not paused.
+    bool wants_to_run() const;
+    /// Returns whether the world should advance: it wants to run, and it does not await fitness from clients.
     bool wants_tick() const;
 };
 
@@ -113,8 +115,10 @@ class Laboratory {
     void set_storage(const Storage& storage);
     const std::optional<Storage>& storage() const { return storage_; }
 
-    /// Advances a world that wants a tick by one tick, and removes the goals that it has reached.
+    /// Advances a world that wants a tick by one tick, then calls settle().
     void advance(Entry& entry, base::Executor& executor);
+    /// Collects the events of a world, and removes the goals that it has reached. To be called after a world has changed.
+    void settle(Entry& entry);
 
     /// Returns the world with that name. An empty name means the only world or, if there are several, the world
     /// `default`. If no world is found: a refusal NOT_FOUND that lists the existing names.
@@ -144,12 +148,12 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const PlaceEntities&);
     base::Result<Applied> carry_out(Entry& entry, const RemoveEntities&);
+    base::Result<Applied> carry_out(Entry& entry, const SetFitness&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
     /// Returns why no world with that name can be created; nullopt if one can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;
-    void collect_events(Entry& entry);
 
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Event> events_;

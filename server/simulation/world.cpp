@@ -4,6 +4,7 @@
 #include "server/base/inline_executor.h"
 #include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
+#include "server/simulation/rating.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,7 +157,7 @@ std::span<const std::uint32_t> World::founders(const Island& island) const {
 }
 
 void World::record_change(const parameters::Parameters& requested, const std::string& by) {
-    changes_.add(moment_.generation + (generation_over_ ? 1 : 0), by, parameters_.requested, requested);
+    changes_.add(moment_.generation + (is_after_last_tick() ? 1 : 0), by, parameters_.requested, requested);
 }
 
 void World::request_parameters(const parameters::Parameters& requested, const std::string& by) {
@@ -169,7 +170,7 @@ evolution::Outcome World::outcome() const {
 }
 
 std::vector<Intention> World::intentions(const Island& island, base::Range ids) const {
-    if (generation_over_) {
+    if (is_after_last_tick()) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
     std::optional<parameters::Parameters> first; // the parameters that will be active in the generation's first tick
@@ -388,6 +389,7 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
 
 void World::advance_tick(base::Executor& executor) {
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
+    EVOD_ASSERT(!awaits_fitness());
     turn_over(executor);
     if (moment_.generation_tick == 0) {
         parameters_.active =
@@ -447,8 +449,17 @@ void World::find_fitness(base::Executor& executor) {
 }
 
 void World::end_generation(base::Executor& executor) {
-    const parameters::Parameters& p = parameters_.active;
+    if (is_fitness_external()) {
+        fitness_.assign(islands_.size(), {});
+        events_.push_back(FitnessAwaited{moment_.generation});
+        return;
+    }
     find_fitness(executor);
+    finish_generation(executor);
+}
+
+void World::finish_generation(base::Executor& executor) {
+    const parameters::Parameters& p = parameters_.active;
     std::vector<GenerationStatistics> statistics;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         GenerationStatistics s = generation_statistics(islands_[i], p, fitness_[i], executor);
@@ -476,6 +487,9 @@ void World::close_generation(const std::vector<GenerationStatistics>& statistics
 
 WorldState World::state(base::Executor& executor) const {
     WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
+    if (is_fitness_external()) {
+        state.given_fitness = fitness_;
+    }
     state.islands.resize(islands_.size());
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -537,8 +551,13 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         removed += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Removed));
     }
     // If a command has removed the last living organism after this tick, the generation ends with the next tick.
-    const bool removed_last = alive == 0 && removed > 0 && state.ended.empty() && !ends(tick, 1);
-    const bool over = ends(tick, alive) && !removed_last;
+    const bool removed_last =
+        alive == 0 && removed > 0 && state.ended.empty() && state.given_fitness.empty() && !ends(tick, 1);
+    const bool after_last_tick = ends(tick, alive) && !removed_last;
+    if (!can_be_given(state, after_last_tick && is_fitness_external())) {
+        return wrong("fitness");
+    }
+    const bool over = after_last_tick && is_whole(state);
     if (state.ended.size() != (over ? islands_.size() : 0)) {
         return wrong("end of the generation");
     }
@@ -559,8 +578,12 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     }
     moment_ = moment;
     parameters_ = set;
-    if (over) {
+    if (is_fitness_external()) {
+        fitness_ = state.given_fitness;
+    } else if (over) {
         find_fitness(executor);
+    }
+    if (over) {
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {
             ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
@@ -576,6 +599,9 @@ void World::update_hash() {
     hash_ = base::EntityHash{world_kind, seed_.value}.add(moment_.generation).add(moment_.generation_tick).finish();
     for (const Island& island : islands_) {
         hash_ += base::EntityHash{island_kind, island.index()}.add(island.hash().low).add(island.hash().high).finish();
+    }
+    if (is_fitness_external()) {
+        hash_ += hash_of_given(fitness_);
     }
 }
 

@@ -9,9 +9,12 @@
 // Effect::NextTick take effect in its first tick, so it is still bred with their previous values. At the first moment
 // of a generation, the active parameters are therefore those that bred it.
 //
+// If the fitness comes from clients, the generation ends in two steps. After its last tick the world awaits fitness and
+// cannot advance. When clients have rated all islands (rating.h), statistics are computed, and the generation is over.
+//
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
-//              Changes are those of parameters, and entities that were placed or removed.
+//              Changes are those of parameters, entities that were placed or removed, and fitness from clients.
 #pragma once
 
 #include "server/base/executor.h"
@@ -120,7 +123,8 @@ class World {
     /// memory does not suffice for the new world beside the old one.
     void reset(base::Seed seed);
 
-    /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running.
+    /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running, and the
+    /// world not to await fitness.
     void advance_tick(base::Executor& executor);
 
     /// Breeds and places the next generation, as advance_tick() would; does nothing if no generation has ended. If
@@ -157,10 +161,19 @@ class World {
     /// the ids of the entities.
     EntityIds place(const PlaceEntities& command);
     EntityIds remove(const RemoveEntities& command);
+    /// Sets fitness from a client. check() must have accepted the command (rating.h). After the last missing number, the
+    /// generation is over.
+    void set_fitness(const SetFitness& command);
     /// Whether this is the first moment of a generation, and nothing has been placed or removed in it.
     bool is_as_begun() const;
 
     bool generation_over() const { return generation_over_; }
+    /// Whether the last tick of the generation has passed, but clients have not rated all islands yet.
+    bool awaits_fitness() const { return !generation_over_ && !fitness_.empty(); }
+    /// Whether the last tick of the generation has passed.
+    bool is_after_last_tick() const { return generation_over_ || awaits_fitness(); }
+    /// Whether an island has the fitness of all its organisms.
+    bool is_rated(std::uint32_t island) const;
     /// Returns the termination criterion that holds with the active parameters at the end of a generation; during a
     /// generation, Running.
     evolution::Outcome outcome() const;
@@ -176,8 +189,8 @@ class World {
     Founders founders_of_bred() const;
     /// The founders of the organisms of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
-    /// false if the fitness is a function of the chromosome alone: the islands contain no bodies.
-    bool has_bodies() const { return parameters_.active.fitness == parameters::FitnessFunction::Life; }
+    /// false if the fitness needs only the chromosomes: the islands contain no bodies.
+    bool has_bodies() const { return parameters::has_bodies(parameters_.active); }
     /// Predicts what organisms [ids.begin, ids.end) of an island will do next, if no item reappears before that. The
     /// choice is None for dead organisms, at the end of a generation, and if there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
@@ -191,7 +204,8 @@ class World {
     void set_past_changes(Changes changes) { changes_ = std::move(changes); }
     /// Drops the statistics that a fork does not inherit, the changes of the original, and those planned for it.
     void become_fork();
-    /// The fitness in the ended generation, per island, by id. Empty during a generation.
+    /// The fitness in the ended generation, per island, by id. Empty during a generation. While the world awaits fitness,
+    /// each island has the numbers given so far.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
 
     /// Returns and removes the events since the last call, oldest first.
@@ -217,7 +231,11 @@ class World {
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
     /// Returns whether a generation ends after `generation_tick` if `alive` organisms are then alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
+    bool is_fitness_external() const { return parameters_.active.fitness == parameters::FitnessFunction::External; }
+    /// Ends the generation after its last tick, or makes the world await fitness.
     void end_generation(base::Executor& executor);
+    /// Ends a generation whose fitness is known.
+    void finish_generation(base::Executor& executor);
     void find_fitness(base::Executor& executor);
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);

@@ -83,6 +83,9 @@ struct WorldState {
     parameters::ParameterSet parameters;
     std::vector<IslandState> islands;
     std::vector<GenerationStatistics> ended; // at the end of a generation: one per island; otherwise empty
+    // After the last tick of a generation, if its fitness comes from clients: for each island, the numbers that clients
+    // have given so far, by id. Otherwise empty.
+    std::vector<std::vector<double>> given_fitness = {};
 };
 
 /// Returns whether a state of the beginning of a generation differs from `begun` only by what commands have placed and

@@ -169,7 +169,8 @@ void WatchedServer::watch_mail() {
     mailbox_.wake();
     for (runtime::Mail& mail : waiting) {
         if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
-            require(carried_out_.emplace(command->origin.client_key, command->origin.request_id).second);
+            const run_file::Origin& origin = command->origin;
+            require(carried_out_.emplace(run_file::user_of(origin), origin.client_key, origin.request_id).second);
             if (too_large(command->command)) {
                 const base::Result<simulation::Applied> refused =
                     base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large");

@@ -15,6 +15,7 @@
 
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace evod::fuzz {
@@ -71,8 +72,9 @@ class WatchedServer {
     bool going_away_ = false;
 
     simulation::Laboratory twins_;
-    std::set<std::pair<std::string, std::uint64_t>> carried_out_; // client_key and request_id of commands
-    std::string state_before_;                                    // of all worlds, before the next command
+    // The user, the client_key and the request_id of commands.
+    std::set<std::tuple<std::string, std::string, std::uint64_t>> carried_out_;
+    std::string state_before_; // of all worlds, before the next command
 };
 
 /// Authenticates the tokens "viewer", "controller" and "admin".

@@ -89,7 +89,9 @@ void WatchingClient::said(const codec::Frame& frame) {
         if (!greeted_) {
             refused_since_ = clock().now();
         } else {
-            role_ = admit(message->hello().token())->role;
+            const access::Visitor visitor = *admit(message->hello().token());
+            role_ = visitor.role;
+            user_ = visitor.name;
             said_.set_limits(codec::server_limits);
         }
         return;
@@ -112,7 +114,7 @@ void WatchingClient::said(const codec::Frame& frame) {
     }
     const v1::Request& request = message->request();
     if (protocol::kind_of(request) == v1::REQUEST_KIND_COMMAND) {
-        ++answers_.times_sent[{request.client_key(), request.request_id()}];
+        ++answers_.times_sent[{user_, request.client_key(), request.request_id()}];
     }
     owed(request.request_id(), {.request = request, .place = ++place_});
 }
@@ -208,7 +210,7 @@ void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
     bool once = true;
     if (protocol::kind_of(request) == v1::REQUEST_KIND_COMMAND) {
         require(response.has_applied_tick());
-        const Answers::Command command{request.client_key(), request.request_id()};
+        const Answers::Command command{user_, request.client_key(), request.request_id()};
         const std::string answer = response.SerializeAsString();
         const auto [first, is_first] = answers_.first.try_emplace(command, answer);
         once = answers_.times_sent.at(command) == 1;

@@ -22,13 +22,14 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace evod::fuzz {
 
 /// Shared by all clients of a script: the first answers to commands.
 struct Answers {
-    using Command = std::pair<std::string, std::uint64_t>; // client_key, request_id
+    using Command = std::tuple<std::string, std::string, std::uint64_t>; // user, client_key, request_id
     std::map<Command, std::string> first;
     std::map<Command, int> times_sent;
 };
@@ -104,6 +105,7 @@ class WatchingClient {
     runtime::Clock::time_point all_heard_;                    // when it last had read everything
     std::optional<runtime::Clock::time_point> refused_since_; // since then the server ignores what it sends
     access::Role role_{};
+    std::string user_;
     std::uint64_t request_id_ = 0, place_ = 0, last_place_answered_ = 0;
     std::multimap<std::uint64_t, Asked> outstanding_;     // by request id; 0: unreadable messages
     std::map<std::uint32_t, Subscription> subscriptions_; // to snapshots, by id

@@ -30,7 +30,7 @@ PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 
 LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
     "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
-    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER, "place": CONTROLLER, "remove": CONTROLLER, "seek": CONTROLLER,
+    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER, "place": CONTROLLER, "remove": CONTROLLER, "set_fitness": CONTROLLER, "seek": CONTROLLER,
     "close_replay": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
     "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "get_breeding": VIEWER,

@@ -24,6 +24,7 @@ BASE = {
     "fork_world": c.ForkWorld(name="made"),
     "place": c.Place(items=[c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=640, y_px=360)]),
     "remove": c.Remove(food=[0]),
+    "set_fitness": c.SetFitness(generation=1, fitness=[0]),
     "set_speed": c.SetSpeed(speed=plain.w.Speed(real_time_factor=1)),
     "subscribe_snapshots": c.SubscribeSnapshots(rate_hz=1),
     "seek": c.Seek(to=c.RunMoment(tick=0)),

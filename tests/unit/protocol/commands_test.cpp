@@ -47,7 +47,8 @@ void poison_doubles(v1::Request& request, Message& part, double poison, int& poi
             poison_doubles(request, inner, poison, poisoned);
             reflection.ClearField(&part, &field);
         } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
-            reflection.SetDouble(&part, &field, poison);
+            field.is_repeated() ? reflection.AddDouble(&part, &field, poison)
+                                : reflection.SetDouble(&part, &field, poison);
             ++poisoned;
             if (kind_of(request) == v1::REQUEST_KIND_COMMAND) {
                 auto command = to_command(request, draws);
@@ -82,7 +83,8 @@ TEST(Requests, RefuseNanAndInfinityInEveryNumber) {
             poison_doubles(request, part, poison, poisoned);
         }
     }
-    EXPECT_EQ(poisoned, 3 * 17); // two lists of parameters, a schedule, a speed, a rate, two regions, two positions
+    // Two lists of parameters, a schedule, a speed, a rate, two regions, two positions, a fitness.
+    EXPECT_EQ(poisoned, 3 * 18);
 }
 
 TEST(Requests, NameAllFaultsAtOnce) {

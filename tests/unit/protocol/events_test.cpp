@@ -78,8 +78,8 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
     }
     cases.insert(event_of(simulation::Storage{}).kind_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
-    // All but the two events that the network itself creates.
-    EXPECT_EQ(static_cast<int>(cases.size()) + 2, v1::Event::descriptor()->oneof_decl(0)->field_count());
+    // All but the two events that the network itself creates, and the two about fitness (ratings_test.cpp).
+    EXPECT_EQ(static_cast<int>(cases.size()) + 4, v1::Event::descriptor()->oneof_decl(0)->field_count());
 }
 
 TEST(EventMessage, EveryStateOfTheDiskIsConverted) {

@@ -109,6 +109,7 @@ class RecordedRun {
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
         recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
+        recorder_.of("w")->follow(world());
     }
 
     void delete_world(Done done = [] {}) {

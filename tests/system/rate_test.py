@@ -1,0 +1,95 @@
+"""Fitness from clients without the Python package: evoctl, a plain client, a kill, and the commands that need no network. EVOD
+and EVOCTL name the programs, MESSAGES the folder of the message classes."""
+import json
+import pathlib
+import sys
+import unittest
+
+import access_test as access
+import waiting
+from access_test import EVOD, c, plain
+
+INVALID = 3
+SETTING = {"fitness": "external", "external_bodies": False, "population_size": 4, "island_count": 2}
+
+
+def evod(*words, status=0):
+    done = waiting.run([EVOD, *words], capture_output=True, text=True)
+    assert done.returncode == status, f"{words}\n{done.stdout}\n{done.stderr}"
+    return done.stdout + done.stderr
+
+
+class Rating(access.Access):
+    def setUp(self):
+        super().setUp()
+        self.experiment = self.file("rated.json", json.dumps(SETTING))
+
+    def file(self, name, text):
+        path = pathlib.Path(self.folder, name)
+        path.write_text(text)
+        return str(path)
+
+    def waiting_world(self, client):
+        return plain.until(lambda: client.world("rated").HasField("awaited_fitness") and client.world("rated"),
+                           "the end of the generation")
+
+    def begin(self):
+        server = self.serve("--speed", "max", "--seed", "7", "--experiment", self.experiment)
+        client = self.come(server)
+        client.call(run=c.Run(world="rated", generations=2))
+        self.waiting_world(client)
+        return server, client
+
+    def test_evoctl_rates_and_shows_what_is_missing(self):
+        server, client = self.begin()
+        numbers = self.file("numbers.txt", "1\n-2.5\n3e3\r\n0\n")
+        self.assertIn("waits for fitness", self.evoctl("status", server=server))
+        self.assertIn("1 of 2 islands rated", self.evoctl("rate", numbers, "--generation", "1", server=server))
+        for wrong, got in ((self.file("word.txt", "1\nx\n"), "line 2: got x"), (self.file("five.txt", "1\n" * 5), "got 5"),
+                           (self.file("none.txt", ""), "got none"), (self.folder, "cannot be read"),
+                           (self.file("large.txt", "1e101\n"), "allowed -1e100 to 1e100")):
+            self.assertIn(got, self.evoctl("rate", wrong, "--island", "1", server=server, status=2))
+        self.assertIn("--generation: got 2, allowed 1", self.evoctl("rate", numbers, "--island", "1", "--generation", "2",
+                                                                    server=server, status=1))
+        part = self.evoctl("rate", self.file("two.txt", "1\n2\n"), "--island", "1", server=server)
+        self.assertIn("the island has more organisms", part)
+        self.evoctl("rate", numbers, "--island", "1", server=server)
+        last = plain.until(lambda: client.call(get_statistics=c.GetStatistics(world="rated")).statistics.last, "its end")
+        self.assertEqual([(s.fitness_best, s.best_organism) for s in last], [(3000, 2), (3000, 2)])
+        self.waiting_world(client)
+
+    def test_a_killed_server_waits_as_before(self):
+        server, client = self.begin()
+        client.call(set_fitness=c.SetFitness(world="rated", generation=1, island=1, fitness=[1, 2]))
+        before = client.world("rated")
+        server.process.kill()
+        waiting.ended(server.process)
+        server = self.serve("--speed", "max")
+        client = self.come(server)
+        world = client.world("rated")
+        self.assertEqual((world.state_hash, world.state, world.run_until_generation),
+                         (before.state_hash, plain.w.RUN_STATE_RUNNING, before.run_until_generation))
+        self.assertEqual(list(world.awaited_fitness.islands), [0, 1])
+        client.call(set_fitness=c.SetFitness(world="rated", generation=1, island=1, first_organism=2, fitness=[3, 4]))
+        client.call(INVALID, set_fitness=c.SetFitness(world="rated", generation=1, island=0, first_organism=1, fitness=[3]))
+        for generation in (1, 2):
+            plain.until(lambda: client.world("rated").awaited_fitness.generation == generation, "the next generation")
+            for island in client.world("rated").awaited_fitness.islands:
+                client.call(set_fitness=c.SetFitness(world="rated", generation=generation, island=island, fitness=[0, 1, 2, 3]))
+        self.assertEqual(client.world("rated").state, plain.w.RUN_STATE_WAITING)
+        server.process.terminate()
+        self.assertEqual(waiting.ended(server.process), 0)
+        evod("verify", f"{self.folder}/rated.evod")
+        rows = evod("export", f"{self.folder}/rated.evod", "--what", "organisms", "--format", "jsonl").splitlines()
+        self.assertEqual([json.loads(row)["fitness"] for row in rows][4:8], [1, 2, 3, 4])
+
+    def test_commands_without_network_refuse_it_at_the_start(self):
+        sweep = self.file("sweep.json", json.dumps({"experiment": SETTING, "grid": {"elite_count": [0, 1]}, "generations": 2}))
+        for words, status in ((("run", self.experiment), 2), (("compare", self.experiment, "--controls"), 1),
+                              (("sweep", sweep, "--out", f"{self.folder}/out"), 1)):
+            self.assertIn("fitness: got external, allowed life, gene_sum or rastrigin", evod(*words, status=status))
+        self.assertFalse(pathlib.Path(self.folder, "out").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

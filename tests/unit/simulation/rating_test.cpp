@@ -1,0 +1,281 @@
+#include "server/simulation/rating.h"
+
+#include "server/base/inline_executor.h"
+#include "server/simulation/fitness.h"
+#include "server/simulation/laboratory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace evod::simulation {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two islands with five organisms each.
+parameters::Parameters rated_world(bool bodies) {
+    parameters::Parameters parameters;
+    parameters.fitness = parameters::FitnessFunction::External;
+    parameters.external_bodies = bodies;
+    parameters.population_size = 5;
+    parameters.island_count = 2;
+    parameters.generation_s = 0.5;
+    parameters.migration = evolution::Topology::Ring;
+    return parameters;
+}
+
+std::vector<double> gene_sums(const Island& island) {
+    std::vector<double> sums;
+    for (const auto& genes : island.born().genes.colwise()) {
+        sums.push_back(gene_sum(genes));
+    }
+    return sums;
+}
+
+class RatingTest : public testing::Test {
+  protected:
+    void create(const parameters::Parameters& parameters, const std::string& name = "w") {
+        ASSERT_TRUE(laboratory.apply(CreateWorld{name, parameters, base::Seed{5}, {}}));
+        ASSERT_TRUE(laboratory.apply(simulation::Run{name, {}}));
+    }
+    Entry& entry(const std::string& name = "w") { return **laboratory.find(name); }
+    World& world(const std::string& name = "w") { return entry(name).world; }
+    void advance(const std::string& name = "w") { laboratory.advance(entry(name), executor); }
+    /// Advances to the end of the generation.
+    void advance_to_rating() {
+        do {
+            advance();
+        } while (!world().awaits_fitness());
+    }
+    base::Result<Applied> rate(std::uint32_t island, std::vector<double> fitness, std::uint32_t first = 0) {
+        return laboratory.apply(SetFitness{"w", world().moment().generation, island, first, std::move(fitness)});
+    }
+    template <class Kind>
+    std::size_t count(const std::vector<Event>& events) {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(events, [](const Event& event) { return std::holds_alternative<Kind>(event.kind); }));
+    }
+
+    Laboratory laboratory;
+    base::InlineExecutor executor;
+};
+
+TEST_F(RatingTest, AWorldWaitsUntilAllIslandsAreRated) {
+    create(rated_world(false));
+    advance();
+    EXPECT_TRUE(world().awaits_fitness());
+    EXPECT_FALSE(entry().wants_tick());
+    EXPECT_EQ(entry().state(), RunState::Running); // it continues towards its goal when it is rated
+    EXPECT_EQ(count<FitnessAwaited>(laboratory.take_events()), 1u);
+    ASSERT_TRUE(rate(1, {1, 2, 3, 4, 5}));
+    EXPECT_TRUE(world().awaits_fitness());
+    EXPECT_TRUE(world().history().empty());
+    EXPECT_TRUE(world().is_rated(1));
+    EXPECT_FALSE(world().is_rated(0));
+    ASSERT_TRUE(rate(0, {-7, 9, 0, 0, 0}));
+    EXPECT_FALSE(world().awaits_fitness());
+    EXPECT_TRUE(world().generation_over());
+    EXPECT_TRUE(entry().wants_tick());
+    EXPECT_EQ(count<GenerationFinished>(laboratory.take_events()), 1u);
+    EXPECT_EQ(world().history().back()[0].fitness_best, 9);
+    EXPECT_EQ(world().history().back()[0].best_organism, 1u);
+    EXPECT_EQ(world().history().back()[1].fitness_mean, 3);
+    advance();
+    EXPECT_EQ(world().moment().generation, 2u);
+}
+
+TEST_F(RatingTest, NumbersMayComeInPartsAndBeginAgain) {
+    create(rated_world(false));
+    advance();
+    ASSERT_TRUE(rate(0, {1, 2}));
+    ASSERT_TRUE(rate(0, {3}, 2));
+    const auto gap = rate(0, {4}, 4);
+    ASSERT_FALSE(gap);
+    EXPECT_EQ(gap.error().violations.at(0).field, "set_fitness.first_organism");
+    EXPECT_EQ(gap.error().violations.at(0).allowed, "0 or 3");
+    ASSERT_TRUE(rate(0, {10, 20, 30, 40}));
+    ASSERT_TRUE(rate(0, {50}, 4));
+    EXPECT_THAT(world().fitness()[0], testing::ElementsAre(10, 20, 30, 40, 50));
+}
+
+TEST_F(RatingTest, WrongCommandsAreRefused) {
+    create(rated_world(true));
+    const auto reason = [](const base::Result<Applied>& result) {
+        return result ? base::Reason::Unspecified : result.error().reason;
+    };
+    const auto field = [](const base::Result<Applied>& result) { return result.error().violations.at(0).field; };
+    advance();
+    EXPECT_EQ(reason(rate(0, {1})), base::Reason::FitnessNotAwaited); // the generation has not ended
+    advance_to_rating();
+    const base::StateHash before = world().hash();
+    const auto other_generation = laboratory.apply(SetFitness{"w", 2, 0, 0, {1}});
+    EXPECT_EQ(reason(other_generation), base::Reason::GenerationChanged);
+    EXPECT_EQ(field(other_generation), "set_fitness.generation");
+    EXPECT_EQ(reason(rate(2, {1})), base::Reason::IslandNotFound);
+    const auto too_many = rate(0, {1, 2, 3, 4, 5, 6});
+    EXPECT_EQ(field(too_many), "set_fitness.fitness");
+    EXPECT_THAT(too_many.error().violations.at(0).allowed, HasSubstr("5 numbers"));
+    EXPECT_EQ(world().hash(), before);
+    ASSERT_TRUE(rate(0, {1, 2, 3, 4, 5}));
+    EXPECT_EQ(reason(rate(0, {1, 2, 3, 4, 5})), base::Reason::FitnessNotAwaited); // the island is rated
+    ASSERT_TRUE(rate(1, {1, 2, 3, 4, 5}));
+    EXPECT_EQ(reason(rate(1, {1, 2, 3, 4, 5})), base::Reason::FitnessNotAwaited); // the generation is over
+    const auto placed = laboratory.apply(PlaceEntities{"w", 0, {{ItemKind::Food, 50, 50}}, {}});
+    EXPECT_EQ(reason(placed), base::Reason::GenerationOver);
+
+    create(parameters::Parameters{}, "other");
+    EXPECT_EQ(reason(laboratory.apply(SetFitness{"other", 1, 0, 0, {1}})), base::Reason::FitnessNotAwaited);
+}
+
+TEST_F(RatingTest, EqualsABuiltInFunctionBitForBit) {
+    create(rated_world(false));
+    parameters::Parameters built_in = rated_world(false);
+    built_in.fitness = parameters::FitnessFunction::GeneSum;
+    create(built_in, "sum");
+    for (int generation = 1; generation <= 12; ++generation) {
+        advance();
+        advance("sum");
+        ASSERT_EQ(world().hash(), world("sum").hash()) << generation;
+        ASSERT_TRUE(rate(0, gene_sums(world().islands()[0])));
+        ASSERT_TRUE(rate(1, gene_sums(world().islands()[1])));
+        EXPECT_EQ(world().history().back()[0].fitness_mean, world("sum").history().back()[0].fitness_mean);
+    }
+}
+
+TEST_F(RatingTest, EqualsFitnessOfLifeBitForBit) {
+    create(rated_world(true));
+    parameters::Parameters life = rated_world(true);
+    life.fitness = parameters::FitnessFunction::Life;
+    create(life, "life");
+    for (int tick = 0; tick < 100; ++tick) {
+        advance();
+        advance("life");
+        ASSERT_EQ(world().hash(), world("life").hash()) << tick;
+        for (const Island& island : world().islands()) {
+            std::vector<double> fitness;
+            for (std::uint32_t id = 0; world().awaits_fitness() && id < 5; ++id) {
+                const auto its = island.life(id, static_cast<std::uint32_t>(world().moment().generation_tick));
+                fitness.push_back(its.lived_ticks * rated_world(true).tick_s + static_cast<double>(its.health));
+            }
+            if (!fitness.empty()) {
+                ASSERT_TRUE(rate(island.index(), fitness));
+            }
+        }
+    }
+    EXPECT_EQ(world().moment().generation, 4u);
+}
+
+TEST_F(RatingTest, TheStateHashCoversTheNumbers) {
+    create(rated_world(false));
+    advance();
+    const base::StateHash unrated = world().hash();
+    ASSERT_TRUE(rate(0, {1, 2, 3, 4, 5}));
+    const base::StateHash rated = world().hash();
+    EXPECT_NE(rated, unrated);
+    World other = world().at_its_opening(executor);
+    other.advance_tick(executor);
+    EXPECT_EQ(other.hash(), unrated);
+    other.set_fitness({"w", 1, 0, 0, {1, 2, 3, 5, 4}});
+    EXPECT_NE(other.hash(), rated);
+}
+
+TEST_F(RatingTest, AGoalIsReachedWhenTheLastIslandIsRated) {
+    create(rated_world(false));
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}));
+    advance();
+    EXPECT_EQ(count<GoalReached>(laboratory.take_events()), 0u);
+    ASSERT_TRUE(rate(0, {1, 2, 3, 4, 5}));
+    ASSERT_TRUE(rate(1, {1, 2, 3, 4, 5}));
+    EXPECT_EQ(count<GoalReached>(laboratory.take_events()), 1u);
+    EXPECT_EQ(entry().state(), RunState::Waiting);
+}
+
+TEST_F(RatingTest, ATerminationCriterionUsesTheNumbers) {
+    parameters::Parameters parameters = rated_world(false);
+    parameters.stop_at_target_fitness = true;
+    parameters.target_fitness = 42;
+    create(parameters);
+    advance();
+    ASSERT_TRUE(rate(0, {1, 2, 3, 4, 5}));
+    ASSERT_TRUE(rate(1, {1, 2, 42, 4, 5}));
+    EXPECT_EQ(entry().state(), RunState::Terminated);
+    EXPECT_EQ(count<RunTerminated>(laboratory.take_events()), 1u);
+}
+
+TEST_F(RatingTest, ARestoredWorldContinues) {
+    create(rated_world(true));
+    advance_to_rating();
+    for (int rated = 0; rated <= 3; ++rated) {
+        World again = world().at_its_opening(executor);
+        const auto restored = again.restore(world().state(executor), executor);
+        ASSERT_TRUE(restored) << restored.error().message;
+        EXPECT_EQ(again.hash(), world().hash()) << rated;
+        EXPECT_EQ(again.awaits_fitness(), rated < 3);
+        EXPECT_EQ(again.fitness()[1], world().fitness()[1]);
+        if (rated == 0) {
+            ASSERT_TRUE(rate(1, {5, 4}));
+        } else if (rated == 1) {
+            ASSERT_TRUE(rate(1, {3, 2, 1}, 2));
+        } else if (rated == 2) {
+            ASSERT_TRUE(rate(0, {0, 0, 0, 0, 1}));
+        } else {
+            again.advance_tick(executor);
+            advance();
+            EXPECT_EQ(again.hash(), world().hash());
+        }
+    }
+}
+
+TEST_F(RatingTest, ImpossibleStatesAreRefused) {
+    create(rated_world(true));
+    advance();
+    const WorldState within = world().state(executor);
+    advance_to_rating();
+    ASSERT_TRUE(rate(1, {5, 4}));
+    const WorldState sound = world().state(executor);
+    const auto refused = [&](auto&& damage, WorldState state) {
+        damage(state);
+        World again = world().at_its_opening(executor);
+        return !again.restore(state, executor);
+    };
+    EXPECT_FALSE(refused([](WorldState&) {}, sound));
+    EXPECT_FALSE(refused([](WorldState&) {}, within));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.clear(); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.resize(1); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness[0].resize(6); }, sound));
+    EXPECT_TRUE(
+        refused([](WorldState& s) { s.given_fitness[1][0] = std::numeric_limits<double>::quiet_NaN(); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness[1][0] = -1.1e100; }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness = {{1, 2, 3, 4, 5}, {1, 2, 3, 4, 5}}; }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.resize(2); }, within));
+}
+
+TEST_F(RatingTest, RemovalOfTheLastOrganismStillEndsInRating) {
+    create(rated_world(true));
+    advance();
+    for (const std::uint32_t island : {0u, 1u}) {
+        ASSERT_TRUE(laboratory.apply(RemoveEntities{"w", island, {}, {}, {}, {0, 1, 2, 3, 4}}));
+    }
+    World before = world().at_its_opening(executor);
+    ASSERT_TRUE(before.restore(world().state(executor), executor));
+    EXPECT_FALSE(before.awaits_fitness());
+    advance();
+    EXPECT_TRUE(world().awaits_fitness());
+    World after = world().at_its_opening(executor);
+    ASSERT_TRUE(after.restore(world().state(executor), executor));
+    EXPECT_TRUE(after.awaits_fitness());
+}
+
+TEST_F(RatingTest, AReplayTakesNoFitness) {
+    create(rated_world(false));
+    advance();
+    entry().replay.emplace();
+    const auto refused = rate(0, {1});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().reason, base::Reason::WorldIsReplay);
+}
+
+} // namespace
+} // namespace evod::simulation
