@@ -75,6 +75,13 @@ async def send_every_request(lab):
     removed = await result(world.remove(food=placed.food, poison=placed.poison, generation=1))
     assert removed == placed
 
+    # Fitness from this client.
+    setting = {"fitness": "external", "external_bodies": False, "population_size": 10}
+    rated = await result(lab.create_world("rated", setting))
+    assert [g.number for g in await result(rated.evaluate(lambda genes, life: genes[:, 0], generations=2))] == [1, 2]
+    assert (await result(rated.info())).awaited_fitness is None
+    await result(rated.delete())
+
     # Snapshots, whole and in tiles.
     assert len((await result(world.snapshot())).organisms) == 10
     snapshots = await result(world.snapshots(120, region=(0, 0, 10, 10)))

@@ -36,11 +36,12 @@ from evod.errors import (
     Violation,
 )
 from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, sweep
-from evod.generations import Generation, History, Population
+from evod.generations import Generation, History, Life, Population
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
 from evod.results import (
+    AwaitedFitness,
     Breeding,
     CauseOfDeath,
     Choice,
@@ -75,10 +76,10 @@ from evod.version import __version__
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
 
 __all__ = [
-    "Aborted", "Actor", "AlreadyExists", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
-    "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
+    "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
     "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
     "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",

@@ -196,6 +196,21 @@ class History(list[Generation]):
         return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows)
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class Life:
+    """What the organisms of a generation have achieved until now, as arrays of shape (count,). Without bodies, all are 0."""
+
+    generation: int
+    island: int
+    lived_s: numpy.typing.NDArray[numpy.float64]  #: seconds lived
+    health: numpy.typing.NDArray[numpy.float32]  #: 0 for dead organisms
+    food_eaten: numpy.typing.NDArray[numpy.uint32]
+    poison_eaten: numpy.typing.NDArray[numpy.uint32]
+
+    def __repr__(self) -> str:
+        return f"<life of {len(self.lived_s)} organisms in generation {self.generation}>"
+
+
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Population:
     """All organisms of the current generation on one island, including dead ones. Row i is the organism with id i."""
@@ -208,6 +223,7 @@ class Population:
     choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.Choice of the next tick; 0: none
     forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): force in the next tick, kg px/s²
     targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): position of the target, px
+    life: Life
 
     def __len__(self) -> int:
         return len(self.genes)
@@ -228,8 +244,8 @@ class Population:
         return pandas().DataFrame(columns | self.genes.to_dict())
 
 
-def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
-    """Joins the parts of one population. The parts must be in order."""
+def population_of(parts: Sequence[commands_pb2.Population], island: int) -> Population:
+    """Joins the parts of one population of an island. The parts must be in order."""
 
     def rows(field: str, kind: str, columns: int) -> Any:
         whole = [
@@ -238,13 +254,27 @@ def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
         return numpy.concatenate(whole) if whole else numpy.zeros((0, columns), kind)
 
     gene_count = max((len(part.genes) // 4 // part.count for part in parts if part.count), default=6)
+    genes = Genes(rows("genes", "<f4", gene_count))
+
+    def lived(field: str, kind: str) -> Any:
+        column = rows(field, kind, 1)[:, 0]
+        return column if len(column) else numpy.zeros(len(genes), kind)
+
     return Population(
         generation=parts[-1].generation,
         generation_tick=parts[-1].generation_tick,
-        genes=Genes(rows("genes", "<f4", gene_count)),
+        genes=genes,
         parents=rows("parents", "<u4", 2),
         founders=rows("founders", "<u4", 1)[:, 0],
         choices=rows("choices", "<u1", 1)[:, 0],
         forces=rows("forces", "<f4", 2),
         targets=rows("targets", "<f4", 2),
+        life=Life(
+            generation=parts[-1].generation,
+            island=island,
+            lived_s=lived("lived_s", "<f8"),
+            health=lived("health", "<f4"),
+            food_eaten=lived("food_eaten", "<u4"),
+            poison_eaten=lived("poison_eaten", "<u4"),
+        ),
     )

@@ -21,6 +21,7 @@ from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import (
     DamagedData,
     Error,
+    FailedPrecondition,
     InvalidArgument,
     NotFound,
     Unimplemented,
@@ -31,7 +32,7 @@ from evod.errors import (
     wrong_argument,
 )
 from evod.genes import GENE_NAMES, Genes
-from evod.generations import Generation, History, Population, generations_of, population_of
+from evod.generations import Generation, History, Life, Population, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.results import EntityIds, result
 from evod.snapshots import Snapshot
@@ -69,6 +70,7 @@ TABLES = {
     "events": c.RUN_TABLE_EVENTS,
 }
 FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
+FITNESS_MAX = 1e100  # the largest absolute value of a fitness
 DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
 
 
@@ -209,6 +211,38 @@ class LabPlans:
         )
         ids: EntityIds = result(response.removed)
         return ids
+
+    def evaluate(self, world: str, generations: int | None) -> Plan[GenerationStream]:
+        """Runs a world whose fitness comes from clients. GenerationStream.step() then also returns the fitness it awaits."""
+        parameters = yield from self.parameters(world)
+        self._require("fitness", "computes fitness itself and takes none from clients")
+        if parameters.fitness != "external":
+            raise FailedPrecondition(
+                f"the world '{world}' computes its fitness itself: set fitness to external and reset the world, "
+                "or create a world with fitness external",
+                [Violation("fitness", "external", str(parameters.fitness))],
+            )
+        return (yield from self.run(world, generations))
+
+    def set_fitness(self, world: str, generation: int, island: int, fitness: numpy.typing.NDArray[Any]) -> Plan[bool]:
+        """Sends the fitness of all organisms of an island; returns False if the server needs it no longer."""
+        limit = self.core.welcome.limits.control_frame_bytes_max if self.core.welcome else 0
+        most = max((limit or 65536) - 4096, 8) // 8  # the numbers in one request
+        for first in range(0, len(fitness), most):
+            try:
+                yield from request(
+                    "set_fitness",
+                    world=world,
+                    generation=generation,
+                    island=island,
+                    first_organism=first,
+                    fitness=fitness[first : first + most],
+                )
+            except Error as error:
+                if error.reason in (c.REASON_FITNESS_NOT_AWAITED, c.REASON_GENERATION_CHANGED):
+                    return False
+                raise
+        return True
 
     def _require(self, feature: str, what: str) -> None:
         """Raises Unimplemented if the server lacks a feature. It might apply such a request in another way."""
@@ -424,19 +458,31 @@ class GenerationStream:
         self._ready: list[Generation] = []  # generations that next() returns before it processes another event
         self._began = False  # whether the event caused by this Run has arrived; earlier events belong to earlier commands
         self._over = False  # whether the run has ended; next() then returns only the generations in _ready
+        self._awaited: world_pb2.AwaitedFitness | None = None  # the fitness for which the world waits, for step()
 
     def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
         """Call it with the server's answer to Run and the number of the first generation to return."""
         self.info, self._next = info, first
         self._goal = _goal_of(info)
+        self._await_fitness(info)
 
     def next(self) -> Plan[Generation | None]:
         """Waits for the next generation and returns it; returns None after the last generation."""
+        while True:
+            step = yield from self.step()
+            if not isinstance(step, world_pb2.AwaitedFitness):
+                return step
+
+    def step(self) -> Plan[Generation | world_pb2.AwaitedFitness | None]:
+        """Like next(), but also returns when the world waits for fitness."""
         while True:
             if self._ready:
                 generation = self._ready.pop(0)
                 self._next = generation.number + 1
                 return generation
+            if self._awaited is not None and not self._over:
+                awaited, self._awaited = self._awaited, None
+                return awaited
             if self._over or self._goal is not None and self._next >= self._goal:
                 self.close()
                 return None
@@ -455,6 +501,8 @@ class GenerationStream:
                 yield from self._fill(number - 1)
             if number >= self._next:
                 self._ready += generations_of(event.generation_finished.statistics)
+        elif kind == "fitness_awaited":
+            self._awaited = event.fitness_awaited
         elif kind == "run_control_changed":
             info = event.run_control_changed.world
             self._began = self._began or _goal_of(info) == self._goal and info.state == world_pb2.RUN_STATE_RUNNING
@@ -478,7 +526,11 @@ class GenerationStream:
             raise self._close_with_error("reset")
         self._began = True
         self._update_goal(info)
+        self._await_fitness(info)
         yield from self._fill()
+
+    def _await_fitness(self, info: world_pb2.WorldInfo) -> None:
+        self._awaited = info.awaited_fitness if info.HasField("awaited_fitness") else None
 
     def _update_goal(self, info: world_pb2.WorldInfo) -> None:
         goal = _goal_of(info)
@@ -557,14 +609,17 @@ def population(world: str, island: int) -> Plan[Population]:
     parts: list[c.Population] = []
     first = 0
     while True:
-        part = (yield from request("get_population", world=world, island=island, first_organism=first)).population
+        response = yield from request(
+            "get_population", world=world, island=island, first_organism=first, with_life=True
+        )
+        part = response.population
         if parts and part.generation != parts[-1].generation:  # the next generation has begun: request all parts again
             parts, first = [], 0
             continue
         parts.append(part)
         first = part.first + part.count
         if first >= part.organism_count or part.count == 0:
-            return population_of(parts)
+            return population_of(parts, island)
 
 
 def genes_of(snapshot: Snapshot) -> Plan[Genes]:
@@ -691,6 +746,24 @@ def _with_lists(error: Error, food_count: int) -> Error:
     copy = copy_of(error)
     copy.violations = tuple(Violation(renamed(v.field), v.allowed, v.got) for v in error.violations)
     return copy
+
+
+def rate(function: Callable[[Genes, Life], numpy.typing.ArrayLike], population: Population) -> numpy.typing.NDArray[Any]:
+    """Calls a fitness function and returns its numbers. Raises InvalidArgument for a wrong shape or number."""
+    result = function(population.genes, population.life)
+    allowed = f"an array of {len(population)} numbers, one for each organism"
+    message = f"the fitness function has returned a value that is not allowed in generation {population.generation}"
+    try:
+        fitness = numpy.asarray(result, float)
+    except (TypeError, ValueError):
+        raise wrong_argument("fitness", allowed, repr(result)[:200], message) from None
+    if fitness.shape != (len(population),):
+        raise wrong_argument("fitness", allowed, f"the shape {fitness.shape}", message)
+    wrong = numpy.flatnonzero(~(numpy.abs(fitness) <= FITNESS_MAX))
+    if len(wrong):
+        faults = [Violation(f"fitness[{i}]", f"{-FITNESS_MAX:g} to {FITNESS_MAX:g}", str(fitness[i])) for i in wrong[:5]]
+        raise InvalidArgument(f"{message}: {len(wrong)} of {len(fitness)} numbers", faults)
+    return fitness
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:

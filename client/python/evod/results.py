@@ -136,6 +136,14 @@ class ReplayRange(_Result):
 
 
 @dataclasses.dataclass(frozen=True)
+class AwaitedFitness(_Result):
+    """The fitness for which a world waits at the end of a generation: see `World.evaluate`."""
+
+    generation: int
+    islands: tuple[int, ...]  #: the islands that are not rated completely
+
+
+@dataclasses.dataclass(frozen=True)
 class WorldInfo(_Result):
     """The state of a world, returned by `World.info` and by the functions that control a world."""
 
@@ -160,6 +168,7 @@ class WorldInfo(_Result):
     storage: Storage | None  #: None: the server does not store the run
     leased: bool  #: a client has a lease from `World.run_until_tick`
     slowed: bool  #: the machine is too slow for `speed`
+    awaited_fitness: AwaitedFitness | None  #: None: the world does not wait for fitness from a client
 
 
 # ---- statistics -----------------------------------------------------------------------------------------------------------
@@ -397,7 +406,7 @@ def _genes(values: Sequence[float]) -> Genes:
 
 _CLASSES: Mapping[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
+    for kind in (AwaitedFitness, Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
 } | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {

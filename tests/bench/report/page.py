@@ -334,7 +334,16 @@ class Page:
             ["Python's own processor time per generation, ms",
              with_spread(generations["python_processor_ms_a_generation"])],
             [f"snapshots of {organisms} organisms received as arrays, per second", digits(snapshots["come_per_s"])],
-            ["the same decoded from memory", digits(snapshots["decoded_alone_per_s"])]])
+            ["the same decoded from memory", digits(snapshots["decoded_alone_per_s"])]] + self.evaluate())
+
+    def evaluate(self):
+        figures = self.results["package"].get("evaluate")
+        if figures is None:
+            return []
+        organisms = count(figures["organisms"])
+        return [[f"generations of {organisms} organisms with `World.evaluate()` and a NumPy function, per second",
+                 with_spread(figures["generations_per_s"])],
+                ["the same with a fitness function of evod", with_spread(figures["built_in_generations_per_s"])]]
 
     def drawing(self):
         def own(row):

@@ -207,8 +207,12 @@ def stream(bench):
 
 def package(bench):
     quick = ["--rounds", 3, "--seconds", 2, "--organisms", 2_000] if bench.quick else []
-    return programs.run_json(python, bench.root / "tests/bench/python_cost.py", bench.program("evod"),
-                             bench.build / "python", "--json", *quick)
+    figures = programs.run_json(python, bench.root / "tests/bench/python_cost.py", bench.program("evod"),
+                                bench.build / "python", "--json", *quick)
+    rounds = ["--rounds", 3] if bench.quick else []
+    figures["evaluate"] = programs.run_json(python, bench.root / "tests/bench/evaluate_cost.py", bench.program("evod"),
+                                            bench.build / "python", "--json", *rounds)
+    return figures
 
 
 def clients(bench):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import weakref
-from typing import Any, Iterable, Mapping, Sequence, TypeVar
+from typing import Any, Callable, Iterable, Mapping, Sequence, TypeVar
 
 import numpy.typing
 
@@ -17,8 +17,8 @@ from evod.aio.link import Link, blocking_call
 from evod.core import Core
 from evod.endpoint import Endpoint, read_token, tls_context
 from evod.experiment import Experiment
-from evod.genes import GENE_NAMES
-from evod.generations import Generation, History, Population
+from evod.genes import GENE_NAMES, Genes
+from evod.generations import Generation, History, Life, Population
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.results import Breeding, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
 from evod.snapshots import Snapshot
@@ -547,6 +547,52 @@ class World(ParameterAttributes):
         """
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
+    async def evaluate(
+        self, function: Callable[[Genes, Life], numpy.typing.ArrayLike], generations: int | None = None
+    ) -> History:
+        """Runs the world with any fitness function, and returns the ended generations.
+
+        The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the fitness
+        of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands, and evod is
+        a genetic algorithm that maximises the function. The run file contains all numbers, so the run can be repeated and
+        verified without the function.
+
+        Parameters
+        ----------
+        function
+            It is called with the genes, of shape (count, 6), and the `Life` of the organisms of one island, and returns
+            one number for each organism: larger is better, -1e100 to 1e100.
+        generations
+            The number of further generations, at least 1. By default until the world is paused or a termination criterion
+            ends the run.
+
+        Raises
+        ------
+        FailedPrecondition
+            The world computes its fitness itself.
+        InvalidArgument
+            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for fitness
+            as before. It does so too if the function raises an exception, or if this program ends: any client can go on.
+
+        Examples
+        --------
+        >>> import evod.aio
+        >>> from numpy import abs
+        >>> async with evod.aio.local() as lab:
+        ...     world = await lab.create_world("peak", {"fitness": "external", "external_bodies": False}, seed=3)
+        ...     history = await world.evaluate(lambda genes, life: -abs(genes - 120).sum(axis=1), generations=30)
+        >>> bool(history[-1].best > history[0].best)
+        True
+        """
+        run = Run(self._link, await self._link.perform(self._plans.evaluate(self.name, generations)))
+        async with run:
+            return History(await run._rate(function, self))
+
+    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool:
+        life = population.life
+        plan = self._plans.set_fitness(self.name, life.generation, life.island, fitness)
+        return await self._link.perform(plan)
+
     async def run_until_tick(self, tick: int) -> WorldInfo:
         """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the pause."""
         return await self._command("run_until_tick", tick=tick)
@@ -923,6 +969,24 @@ class Run(_Stream):
         if generation is None:
             raise StopAsyncIteration
         return generation
+
+    async def _rate(self, function: Callable[[Genes, Life], numpy.typing.ArrayLike], world: World) -> list[Generation]:
+        """Rates the organisms with a function until the end of the run, and returns the generations."""
+        generations: list[Generation] = []
+        while True:
+            step = await self._link.perform(self._stream.step())
+            if step is None:
+                return generations
+            if isinstance(step, Generation):
+                generations.append(step)
+                continue
+            for island in step.islands:
+                population = await world.population(island)
+                if population.generation != step.generation:
+                    break  # another client has rated this generation
+                fitness = await blocking_call(plans.rate, function, population)
+                if not await world._set_fitness(population, fitness):
+                    break
 
     async def wait(self) -> Generation | None:
         """Waits for the end of the run and returns the last generation; None if it was already returned before."""

@@ -1,0 +1,265 @@
+"""Fitness from clients: World.evaluate, wrong numbers, killed servers and clients. KILLS states how many are killed."""
+import asyncio
+import concurrent.futures
+import contextlib
+import functools
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import textwrap
+import unittest
+
+import numpy
+
+import evod
+import evod.aio
+import waiting
+from evod.v1 import commands_pb2 as c
+from support import PROGRAM, Relay, Server, until
+
+KILLS = int(os.environ.get("KILLS", 6))
+OPTIMISER = {"fitness": "external", "external_bodies": False, "population_size": 30, "elite_count": 2}
+
+
+def gene_sum(genes, life):
+    """Adds the genes in the order in which evod adds them, so that the sums have equal bits."""
+    return functools.reduce(numpy.add, numpy.asarray(genes, float).T)
+
+
+def rastrigin(genes, life):
+    x = (numpy.asarray(genes, float) - 150) / 25
+    return -(10 * x.shape[1] + (x**2 - 10 * numpy.cos(2 * numpy.pi * x)).sum(axis=1))
+
+
+def verify(folder, world):
+    done = waiting.run([PROGRAM, "verify", f"{folder}/{world}.evod"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+class Evaluate(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.data = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.data.cleanup)
+        cls.lab = evod.local(seed=42, data=cls.data.name)
+        cls.addClassCleanup(cls.lab.close)
+
+    def test_a_function_equals_the_built_in_one_bit_for_bit(self):
+        mine = self.lab.create_world("mine", OPTIMISER, seed=9)
+        built_in = self.lab.create_world("built_in", {**OPTIMISER, "fitness": "gene_sum"}, seed=9)
+        rated = mine.evaluate(gene_sum, generations=40)
+        built_in.run(generations=40).wait()
+        self.assertEqual([g.number for g in rated], list(range(1, 41)))
+        for mine_now, theirs in zip(mine.history(), built_in.history(), strict=True):
+            self.assertEqual(mine_now.islands, theirs.islands)
+        for world in (mine, built_in):
+            world.step()  # the hash after this tick covers the genes of the next generation, but no numbers of a client
+        self.assertEqual(mine.info().state_hash, built_in.info().state_hash)
+        verify(self.data.name, "mine")
+
+    def test_life_equals_the_fitness_of_life_bit_for_bit(self):
+        setting = {"population_size": 20, "generation_s": 4, "island_count": 2, "migration": "ring"}
+        mine = self.lab.create_world("lived", {**setting, "fitness": "external"}, seed=9)
+        built_in = self.lab.create_world("life", setting, seed=9)
+        eaten = []
+
+        def life_fitness(genes, life):
+            eaten.append(life.food_eaten.sum())
+            return life.lived_s + life.health
+
+        mine.evaluate(life_fitness, generations=6)
+        built_in.run(generations=6).wait()
+        for mine_now, theirs in zip(mine.history(), built_in.history(), strict=True):
+            self.assertEqual(mine_now.islands, theirs.islands)
+        self.assertEqual(len(eaten), 12)
+        self.assertEqual(sum(eaten), sum(s.food_eaten for g in mine.history() for s in g.islands))
+
+    def test_rastrigin_is_optimised(self):
+        world = self.lab.create_world("rastrigin", {**OPTIMISER, "population_size": 200}, seed=1)
+        history = world.evaluate(rastrigin, generations=150)
+        self.assertGreater(history[-1].best, history[0].best / 5)  # 0 is the maximum
+
+    def test_a_wrong_result_names_it_and_the_world_waits(self):
+        world = self.lab.create_world("wrong", OPTIMISER, seed=2)
+        for result, field, got in (
+            (numpy.zeros(29), "fitness", "the shape (29,)"),
+            (numpy.zeros((30, 1)), "fitness", "the shape (30, 1)"),
+            (None, "fitness", "the shape ()"),
+            ("abc", "fitness", "'abc'"),
+            ([0.0] * 7 + [numpy.nan] + [0.0] * 22, "fitness[7]", "nan"),
+            ([-numpy.inf] + [0.0] * 29, "fitness[0]", "-inf"),
+        ):
+            with self.assertRaises(evod.InvalidArgument) as raised:
+                world.evaluate(lambda genes, life: result, generations=1)
+            self.assertEqual([(v.field, v.got) for v in raised.exception.violations], [(field, got)])
+            self.assertIn("generation 1", str(raised.exception))
+            self.assertEqual(world.info().awaited_fitness, evod.AwaitedFitness(1, (0,)))
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            world.evaluate(lambda genes, life: 1 / 0, generations=1)
+        self.assertEqual([g.number for g in world.evaluate(gene_sum, generations=2)], [1, 2])
+
+    def test_the_server_refuses_what_the_package_would_not_send(self):
+        world = self.lab.create_world("refused", {**OPTIMISER, "island_count": 2}, seed=2)
+        world.run(generations=1)
+        until(lambda: world.info().awaited_fitness, "the end of the generation")
+
+        def refused(code, field, **fields):
+            with self.assertRaises(evod.Error) as raised:
+                self.lab.request(set_fitness=c.SetFitness(world="refused", **fields))
+            self.assertEqual(raised.exception.code_name, code, raised.exception)
+            self.assertEqual([v.field for v in raised.exception.violations], [field] if field else [])
+            for violation in raised.exception.violations:
+                self.assertTrue(violation.allowed and violation.got)
+
+        before = world.info().state_hash
+        refused("INVALID_ARGUMENT", "fitness", generation=1)
+        refused("INVALID_ARGUMENT", "fitness[1]", generation=1, fitness=[0, numpy.nan])
+        refused("INVALID_ARGUMENT", "fitness", generation=1, fitness=[0] * 31)
+        refused("INVALID_ARGUMENT", "first_organism", generation=1, first_organism=3, fitness=[0])
+        refused("NOT_FOUND", "island", generation=1, island=2, fitness=[0])
+        refused("ABORTED", "generation", generation=2, fitness=[0])
+        self.assertEqual(world.info().state_hash, before)
+        self.lab.request(set_fitness=c.SetFitness(world="refused", generation=1, fitness=[0] * 30))
+        refused("FAILED_PRECONDITION", None, generation=1, fitness=[0] * 30)
+        self.assertEqual(world.info().awaited_fitness.islands, (1,))
+        with self.assertRaises(evod.FailedPrecondition):
+            world.place(food=[(30, 40)])
+        replay = world.open_replay()
+        with self.assertRaises(evod.FailedPrecondition):
+            self.lab.request(set_fitness=c.SetFitness(world=replay.name, generation=1, fitness=[0] * 30))
+        with self.assertRaisesRegex(evod.FailedPrecondition, "set fitness to external"):
+            self.lab.world("default").evaluate(gene_sum, generations=1)
+
+    def test_a_large_population_is_rated_in_parts(self):
+        world = self.lab.create_world("large", {**OPTIMISER, "population_size": 140_000}, seed=2)
+        history = world.evaluate(gene_sum, generations=2)
+        self.assertEqual(history[-1].organism_count, 140_000)
+        with contextlib.closing(sqlite3.connect(f"file:{self.data.name}/large.evod?mode=ro", uri=True)) as run:
+            until(lambda: run.execute("SELECT count(*) FROM journal").fetchone()[0] >= 4, "two commands per generation")
+
+    def test_it_works_with_asyncio(self):
+        async def evaluate():
+            async with evod.aio.local() as lab:
+                world = await lab.create_world("peak", OPTIMISER, seed=3)
+                return await world.evaluate(gene_sum, generations=3)
+
+        self.assertEqual([g.number for g in asyncio.run(evaluate())], [1, 2, 3])
+
+    def test_several_clients_share_a_world(self):
+        world = self.lab.create_world("shared", {**OPTIMISER, "island_count": 3}, seed=2)
+
+        def evaluate(_):
+            with evod.connect(self.lab.address, token="", timeout_s=600) as lab:
+                return len(lab.world("shared").evaluate(gene_sum, generations=30))
+
+        with concurrent.futures.ThreadPoolExecutor(3) as pool:
+            lengths = list(pool.map(evaluate, range(3)))
+        ended = world.info().generation
+        self.assertLessEqual(ended, 90)  # each client asks for thirty generations more from the moment at which it begins
+        self.assertTrue(all(30 <= length <= ended for length in lengths), lengths)
+        self.assertEqual([g.number for g in world.history()], list(range(1, ended + 1)))
+        verify(self.data.name, "shared")
+
+    def test_a_fork_and_a_replay_repeat_the_numbers(self):
+        world = self.lab.create_world("origin", OPTIMISER, seed=4)
+        world.evaluate(gene_sum, generations=8)
+        hashes = world.info().state_hash
+        fork = world.fork("branch", at_generation=5)
+        fork.evaluate(gene_sum, generations=4)
+        self.assertEqual(fork.info().state_hash, hashes)
+        with world.open_replay(generation=7) as replay:
+            replay.resume()
+            until(lambda: replay.info().tick == 8, "the end of the replay")
+            self.assertEqual(replay.info().state_hash, hashes)
+            self.assertEqual(replay.history()[-1].number, 8)
+        for name in ("origin", "branch"):
+            verify(self.data.name, name)
+
+
+CLIENT = """
+    import sys, numpy, evod
+    sys.path.insert(0, sys.argv[3])
+    from evaluate_test import gene_sum
+    with evod.connect(sys.argv[1], timeout_s=600) as lab:
+        print("connected", flush=True)
+        lab.world("long").evaluate(gene_sum, generations=int(sys.argv[2]))
+"""
+
+
+class Kills(unittest.TestCase):
+    """The world `long` is rated by clients, while this test kills servers and clients at random moments."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.data = folder.name
+        self.server = Server("--data", self.data, "--seed", "5", "--speed", "max")
+        self.relay = Relay(self.server.port)
+        self.addCleanup(self.relay.close)
+        self.client = None
+
+    def tearDown(self):
+        if self.client is not None:
+            self.end_client()
+        if self.server.process.poll() is None:
+            self.server.kill()
+
+    def start_client(self):
+        here = os.path.dirname(os.path.abspath(__file__))
+        self.client = subprocess.Popen([sys.executable, "-c", textwrap.dedent(CLIENT), self.relay.address, "100000", here],
+                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.client.stdout.readline()
+
+    def end_client(self):
+        self.client.send_signal(signal.SIGKILL)
+        waiting.ended(self.client)
+        self.client.stdout.close()
+
+    def test_nothing_is_lost_or_doubled(self):
+        chance = random.Random(7)
+        with evod.connect(self.relay.address, timeout_s=600) as lab:
+            world = lab.create_world("long", {**OPTIMISER, "island_count": 2, "migration": "ring"}, seed=6, speed="max")
+            self.start_client()
+            reached = 0
+            for kill in range(KILLS):
+                target = reached + chance.randrange(1, 30)
+                until(lambda: world.info().generation >= target, f"generation {target}")
+                if kill % 2 == 0:
+                    self.server.kill()
+                    self.server = Server("--data", self.data, "--speed", "max")
+                    self.relay.port = self.server.port
+                    self.assertGreaterEqual(world.info().generation, reached)
+                else:
+                    self.end_client()
+                    info = world.info()
+                    self.assertEqual(info.state, evod.RUNNING)
+                    until(lambda: world.info().awaited_fitness, "the world without a client")
+                    self.start_client()
+                reached = world.info().generation
+            until(lambda: world.info().generation > reached + 3, "another client goes on")
+            self.end_client()
+            self.client = None
+            until(lambda: world.info().awaited_fitness, "the world without a client")
+            world.evaluate(gene_sum, generations=1)
+            rated = world.info().generation
+            built_in = lab.create_world("sum", {**OPTIMISER, "fitness": "gene_sum", "island_count": 2, "migration": "ring"},
+                                        seed=6, speed="max")
+            built_in.run(generations=rated).wait()
+            for mine, theirs in zip(world.history(), built_in.history(), strict=True):
+                self.assertEqual(mine.islands, theirs.islands)
+        self.server.end()
+        with contextlib.closing(sqlite3.connect(f"file:{self.data}/long.evod?mode=ro", uri=True)) as run:
+            twice = run.execute("SELECT client_key, request_id FROM journal GROUP BY 1, 2 HAVING count(*) > 1").fetchall()
+            self.assertEqual(twice, [])
+            messages = [c.Request.FromString(row[0]) for row in run.execute("SELECT request FROM journal")]
+        numbers = [(m.set_fitness.generation, m.set_fitness.island) for m in messages if m.HasField("set_fitness")]
+        self.assertEqual(sorted(numbers), [(g, i) for g in range(1, rated + 1) for i in range(2)])
+        verify(self.data, "long")
+
+
+if __name__ == "__main__":
+    unittest.main()
