@@ -69,6 +69,12 @@ std::string to_text(const evod::v1::Status& status) {
     return text;
 }
 
+std::string to_text(const evod::v1::AwaitedFitness& awaited, std::uint32_t island_count) {
+    const auto unrated = static_cast<std::uint32_t>(awaited.islands_size());
+    return std::to_string(island_count - std::min(unrated, island_count)) + " of " + std::to_string(island_count) +
+           (island_count == 1 ? " island rated" : " islands rated");
+}
+
 const char* to_text(State state) {
     constexpr const char* texts[] = {"connecting", "connected", "lost", "failed"};
     return texts[static_cast<std::size_t>(state)];

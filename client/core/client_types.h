@@ -60,6 +60,9 @@ inline bool worlds_wait(const evod::v1::Storage& storage) {
     return storage.state() == evod::v1::STORAGE_STATE_STALLED || storage.state() == evod::v1::STORAGE_STATE_BEHIND;
 }
 
+/// Returns how many islands of a world that waits for fitness have been rated: "0 of 2 islands rated".
+std::string to_text(const evod::v1::AwaitedFitness& awaited, std::uint32_t island_count);
+
 /// Returns the message for people, followed by one line for each violation. Programs read the code and the reason.
 std::string to_text(const evod::v1::Status& status);
 

@@ -151,7 +151,9 @@ std::string state_of(const v1::WorldInfo& world) {
     case v1::RUN_STATE_WAITING:
         return "waiting";
     case v1::RUN_STATE_RUNNING:
-        return core::worlds_wait(world.storage()) ? "waits for the disk" : "running";
+        return core::worlds_wait(world.storage()) ? "waits for the disk"
+               : world.has_awaited_fitness()      ? "waits for fitness"
+                                                  : "running";
     case v1::RUN_STATE_PAUSED:
         return "paused";
     case v1::RUN_STATE_TERMINATED:
@@ -218,6 +220,10 @@ std::string sentence(const v1::WorldInfo& world) {
     std::string text = world.name() + ": " + colored_state_of(world) + " at " + speed_of(world) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
+    if (world.has_awaited_fitness()) {
+        text += (world.state() == v1::RUN_STATE_RUNNING ? ", " : ", waits for fitness, ") +
+                core::to_text(world.awaited_fitness(), world.island_count());
+    }
     // A replay stops at its end and waits there, even if its goal is later.
     const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED ||
                            (world.state() == v1::RUN_STATE_WAITING && world.has_replay());

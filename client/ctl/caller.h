@@ -78,9 +78,9 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
     std::fwrite(output.data(), 1, output.size(), stdout);
 }
 
-/// Returns the state of a world in words: "running", "paused", …, "waits for the disk".
+/// Returns the state of a world in words: "running", "paused", …, "waits for the disk", "waits for fitness".
 std::string state_of(const v1::WorldInfo& world);
-/// Returns the state in a colour: green while the world runs, yellow if it waits for the disk, red if it is extinct.
+/// Returns the state in a colour: green while the world runs, yellow if it waits, red if it is extinct.
 std::string colored_state_of(const v1::WorldInfo& world);
 /// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
 /// Empty if there is no problem.
@@ -109,6 +109,7 @@ inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1
 void add_query_commands(command_line::Command& app, const Common& common);
 void add_parameter_commands(command_line::Command& app, const Common& common);
 void add_place_commands(command_line::Command& app, const Common& common);
+void add_rate_command(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
 void add_breeding_command(command_line::Command& app, const Common& common);
 void add_export_command(command_line::Command& app, const Common& common);

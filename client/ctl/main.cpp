@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
     add_run_commands(app, common);
     add_parameter_commands(app, common);
     add_place_commands(app, common);
+    add_rate_command(app, common);
     add_query_commands(app, common);
     add_breeding_command(app, common);
     add_export_command(app, common);

@@ -197,8 +197,16 @@ class Progress {
             }
         }
     }
-    /// Shows on a terminal how near the goal is.
+    /// Shows on a terminal how near the goal is. Prints that the world waits for fitness if it does so for long.
     void show(const v1::WorldInfo& world) {
+        const std::uint64_t awaited = world.awaited_fitness().generation(); // 0: none
+        if (awaited != 0 && awaited == awaited_ && std::exchange(awaited_reported_, awaited) != awaited) {
+            std::cerr << (live_ && shown_ ? "\n" : "") << world.name() << " waits for fitness from a client: "
+                      << core::to_text(world.awaited_fitness(), world.island_count()) << " in generation " << awaited
+                      << std::endl;
+            shown_ = false;
+        }
+        awaited_ = awaited;
         if (live_ && goal_ && goal_->whole_s > 0) {
             const double left_s = std::max(0.0, goal_->simulated_s - world.simulated_s());
             print_live(progress_text(1 - left_s / goal_->whole_s, real_s(world, goal_->durations, left_s)) +
@@ -228,6 +236,8 @@ class Progress {
     const bool live_ = ::isatty(STDERR_FILENO) == 1;
     bool shown_ = false;
     std::string last_, trouble_; // last_: the generation that ended last
+    // The generation that waited for fitness at the last poll, and the one about which this was printed; 0: none.
+    std::uint64_t awaited_ = 0, awaited_reported_ = 0;
 };
 
 /// Waits until `reached(world)` returns true or the world stops running. Prints each generation when it ends.

@@ -301,6 +301,15 @@ std::string text_of(const v1::Event& event) {
                     ? "goal reached"
                     : core::to_text(event.run_control_changed().by())) +
                "; " + sentence(event.run_control_changed().world());
+    case v1::Event::kFitnessAwaited:
+        return where + "generation " + std::to_string(event.fitness_awaited().generation()) +
+               " waits for fitness from a client";
+    case v1::Event::kFitnessSet: {
+        const auto& set = event.fitness_set();
+        return where + core::to_text(set.by()) + " rated " + std::to_string(set.organism_count()) +
+               " organisms on island " + std::to_string(set.island()) + ", generation " +
+               std::to_string(set.generation());
+    }
     case v1::Event::kMigration: {
         std::uint64_t migrants = 0;
         for (const auto& edge : event.migration().edges()) {
