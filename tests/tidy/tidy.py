@@ -166,7 +166,7 @@ RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_wi
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {
-    ("client/core", "client_types session"): "unit/core/connection_test",
+    ("client/core", "session"): "unit/core/connection_test",
     ("client/core", "request_queue subscriptions"): "unit/core/protocol_state_test: parts of the protocol state",
     ("client/core/example", "*"): "an example, which is only built",
     ("client/ctl", "*"): "system/evoctl_test: commands of evoctl, from the terminal to the server",

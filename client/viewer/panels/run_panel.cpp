@@ -1,5 +1,6 @@
 #include "client/viewer/panels/run_panel.h"
 
+#include "client/core/client_types.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/world/status_text.h"
 
@@ -75,13 +76,19 @@ void RunPanel::build(Context& context) {
 void RunPanel::build_state(const ViewedWorld& world) {
     const RunControl& control = world.feed.control();
     const evod::v1::WorldInfo& info = control.info();
-    std::string state = world.replay.at_end() ? world.state_text() : state_word(control.state(), world.feed.storage());
+    const evod::v1::AwaitedFitness* awaited = control.awaited_fitness();
+    std::string state = world.replay.at_end() ? world.state_text()
+                                              : state_word(control.state(), world.feed.storage(), awaited != nullptr);
     if (control.state() == evod::v1::RUN_STATE_TERMINATED) {
         state += std::string{": "} + outcome_words(control.outcome());
     } else if (info.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
         state += " until generation " + with_separators(info.run_until_generation());
     }
     widgets::small_text(control.world() + ": " + state, palette::text);
+    if (awaited != nullptr) {
+        widgets::small_text("Waits for fitness from a client; " + core::to_text(*awaited, info.island_count()),
+                            palette::stopped);
+    }
     std::string where = "tick " + with_separators(control.tick());
     if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         where = "generation " + with_separators(snapshot->about.generation()) + ", " + where;

@@ -144,7 +144,7 @@ void WorldsPanel::build_worlds(ViewedWorld& world) {
             chosen = listed.name();
         }
         widgets::mark(listed.name());
-        cell(state_word(listed.state(), listed.storage()));
+        cell(state_word(listed.state(), listed.storage(), listed.has_awaited_fitness()));
         cell(with_separators(listed.generation()));
         cell(with_separators(listed.tick()));
         cell(speed_text(listed.speed()) + (listed.slowed() ? " (slower)" : ""));

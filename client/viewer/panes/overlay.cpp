@@ -40,7 +40,7 @@ float text_box(ImDrawList& list, const Gui& gui, Rectangle place, float top, Col
 
 Colour state_colour(const ViewedWorld& world) {
     const bool runs = world.server.connected() && world.feed.control().state() == evod::v1::RUN_STATE_RUNNING &&
-                      !core::worlds_wait(world.feed.storage());
+                      !core::worlds_wait(world.feed.storage()) && world.feed.control().awaited_fitness() == nullptr;
     return runs ? palette::running : palette::stopped;
 }
 

@@ -55,7 +55,8 @@ std::string experiment_text(const evod::v1::ParameterSet& set) {
     const auto choice = [&](const char* name) { return values[name].choice(); };
     const auto weighted = [&](const char* name, const char* part) { return std::pair{number_of(values[name]), part}; };
     const std::string fitness =
-        choice("fitness") != "life"
+        choice("fitness") == "external" ? "comes from a client at the end of each generation"
+        : choice("fitness") != "life"
             ? "is computed from the genes alone (" + choice("fitness") + ")"
             : weighted_sum_text(std::array{weighted("fitness_per_second", "the time lived"),
                                            weighted("fitness_per_health", "the health at the end"),

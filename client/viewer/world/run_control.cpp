@@ -28,6 +28,9 @@ void RunControl::update(const evod::v1::SnapshotFrame& snapshot) {
     // A snapshot older than the last answer or event is outdated. While a request is unanswered, its answer will be
     // newer than the snapshot.
     const bool newer = snapshot.tick() > info_.tick() || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
+    if (snapshot.generation() != awaited_fitness_.generation()) {
+        awaited_fitness_.Clear(); // another generation has begun
+    }
     if (newer && unanswered_count_ == 0) {
         state_ = snapshot.state();
         take(snapshot.speed());
@@ -42,12 +45,19 @@ void RunControl::update(const evod::v1::WorldInfo& world) {
     }
     tick_ = is_replay_ ? world.tick() : std::max(tick_, world.tick());
     info_ = world;
+    awaited_fitness_ = world.awaited_fitness();
     if (unanswered_count_ == 0) {
         state_ = world.state();
         outcome_ = world.outcome();
         take(world.speed());
         step_target_ = state_ == evod::v1::RUN_STATE_RUNNING ? world.run_until_tick() : 0;
         nothing_to_resume_ = nothing_to_resume_ && !(state_ == evod::v1::RUN_STATE_RUNNING && step_target_ == 0);
+    }
+}
+
+void RunControl::update(evod::v1::AwaitedFitness awaited) {
+    if (awaited.generation() >= awaited_fitness_.generation()) { // an event about a command may arrive late
+        awaited_fitness_ = std::move(awaited);
     }
 }
 

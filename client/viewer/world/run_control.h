@@ -23,6 +23,8 @@ class RunControl {
 
     void update(const evod::v1::SnapshotFrame& snapshot);
     void update(const evod::v1::WorldInfo& world);
+    /// Takes an event about the fitness for which the viewed world waits; without islands, it waits no longer.
+    void update(evod::v1::AwaitedFitness awaited);
 
     // The following functions create requests. The caller must send each returned request and call answered() exactly
     // once for it.
@@ -65,6 +67,11 @@ class RunControl {
     /// Returns the newest WorldInfo; empty before the first one arrives. Snapshots may be of later ticks.
     const evod::v1::WorldInfo& info() const { return info_; }
 
+    /// Returns the fitness for which the world waits; nullptr if it waits for none.
+    const evod::v1::AwaitedFitness* awaited_fitness() const {
+        return awaited_fitness_.islands().empty() ? nullptr : &awaited_fitness_;
+    }
+
     static constexpr double factor_min = 0.001,
                             factor_max = 10'000; // in multiples of real time; range allowed by the server
 
@@ -81,7 +88,8 @@ class RunControl {
     evod::v1::Outcome outcome_ = evod::v1::OUTCOME_UNSPECIFIED;
     evod::v1::Speed speed_;
     evod::v1::WorldInfo info_;
-    double factor_ = 1; // the last speed other than the maximum
+    evod::v1::AwaitedFitness awaited_fitness_; // without islands: the world waits for none
+    double factor_ = 1;                        // the last speed other than the maximum
     unsigned unanswered_count_ = 0;
     bool resuming_ = false;          // a Resume request is unanswered
     bool pausing_ = false;           // a Pause request is unanswered

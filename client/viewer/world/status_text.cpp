@@ -46,16 +46,16 @@ std::string storage_text(const evod::v1::Storage& storage) {
     }
 }
 
-const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage) {
-    return state == evod::v1::RUN_STATE_WAITING ? "waiting – Space runs" : state_word(state, storage);
+const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage, bool awaits_fitness) {
+    return state == evod::v1::RUN_STATE_WAITING ? "waiting – Space runs" : state_word(state, storage, awaits_fitness);
 }
 
-const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage) {
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage, bool awaits_fitness) {
     switch (state) {
     case evod::v1::RUN_STATE_WAITING:
         return "waiting";
     case evod::v1::RUN_STATE_RUNNING:
-        return core::worlds_wait(storage) ? "waits for the disk" : "running";
+        return core::worlds_wait(storage) ? "waits for the disk" : awaits_fitness ? "waits for fitness" : "running";
     case evod::v1::RUN_STATE_PAUSED:
         return "paused";
     case evod::v1::RUN_STATE_TERMINATED:

@@ -13,11 +13,11 @@
 namespace evod::viewer {
 
 std::string speed_text(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
-/// Returns the run state with a hint: "running", "waiting – Space runs". `storage` shows whether a running world has to
-/// wait for the server's disk.
-const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage);
+/// Returns the run state with a hint: "running", "waiting – Space runs". A running world may have to wait for the
+/// server's disk (`storage`), or for fitness from clients.
+const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage, bool awaits_fitness);
 /// Returns the run state without the hint: "waiting".
-const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage);
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage, bool awaits_fitness);
 
 /// Returns the problem with the server's run files: "Commands are refused: …", "Worlds wait for the disk: …". Empty if
 /// there is none.

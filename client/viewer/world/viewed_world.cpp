@@ -174,7 +174,7 @@ std::string ViewedWorld::state_text() const {
     if (waiting && replay.info() != nullptr && control.tick() >= replay.info()->last_tick()) {
         return "waiting for the live world";
     }
-    return viewer::state_text(control.state(), feed.storage());
+    return viewer::state_text(control.state(), feed.storage(), control.awaited_fitness() != nullptr);
 }
 
 void ViewedWorld::toggle_replay() {

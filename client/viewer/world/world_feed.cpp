@@ -172,6 +172,16 @@ void WorldFeed::apply(const evod::v1::Event& event) {
         last_generation_.assign(event.generation_finished().statistics().begin(),
                                 event.generation_finished().statistics().end());
         break;
+    case evod::v1::Event::kFitnessAwaited:
+        control_.update(event.fitness_awaited());
+        break;
+    case evod::v1::Event::kFitnessSet: {
+        evod::v1::AwaitedFitness awaited;
+        awaited.set_generation(event.fitness_set().generation());
+        *awaited.mutable_islands() = event.fitness_set().awaited_islands();
+        control_.update(std::move(awaited));
+        break;
+    }
     case evod::v1::Event::kRunControlChanged:
         take_info(event.run_control_changed().world());
         break;

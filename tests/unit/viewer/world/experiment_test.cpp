@@ -67,6 +67,7 @@ TEST(ExperimentText, NamesFitnessOfTheGenesAndItsSelection) {
     EXPECT_THAT(experiment_text(parameters("rastrigin", "random")),
                 AllOf(HasSubstr("from the genes alone (rastrigin)"), HasSubstr("chosen at random")));
     EXPECT_THAT(experiment_text(parameters("gene_sum", "truncation")), HasSubstr("Only the fittest have offspring."));
+    EXPECT_THAT(experiment_text(parameters("external", "random")), HasSubstr("Fitness comes from a client"));
     EXPECT_THAT(experiment_text(parameters("life", "stochastic_universal")),
                 HasSubstr("(stochastic universal selection)"));
 }

@@ -50,6 +50,36 @@ TEST(RunControl, SpaceRunsPausesAndResumes) {
     EXPECT_EQ(resume->resume().world(), "default");
 }
 
+TEST(RunControl, KnowsForWhichFitnessTheWorldWaits) {
+    const auto awaited = [](std::uint64_t generation, std::uint32_t islands) {
+        evod::v1::AwaitedFitness fitness;
+        fitness.set_generation(generation);
+        for (std::uint32_t island = 0; island < islands; ++island) {
+            fitness.add_islands(island);
+        }
+        return fitness;
+    };
+    RunControl control;
+    evod::v1::WorldInfo info = world(running, 10);
+    *info.mutable_awaited_fitness() = awaited(4, 2);
+    control.update(info);
+    ASSERT_TRUE(control.awaited_fitness());
+    EXPECT_EQ(control.awaited_fitness()->islands_size(), 2);
+    control.update(awaited(4, 1));
+    EXPECT_EQ(control.awaited_fitness()->islands_size(), 1);
+    control.update(awaited(5, 2));
+    control.update(awaited(4, 0)); // the event about a command arrives after that of the next generation
+    ASSERT_TRUE(control.awaited_fitness());
+    EXPECT_EQ(control.awaited_fitness()->generation(), 5u);
+    control.update(awaited(5, 0));
+    EXPECT_FALSE(control.awaited_fitness());
+    control.update(awaited(6, 1));
+    evod::v1::SnapshotFrame later = snapshot(running, 20);
+    later.set_generation(7);
+    control.update(later);
+    EXPECT_FALSE(control.awaited_fitness());
+}
+
 TEST(RunControl, SpaceRunsAWaitingWorldThatWasStepped) {
     RunControl control;
     control.update(world(waiting, 10));

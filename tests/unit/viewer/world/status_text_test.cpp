@@ -1,5 +1,7 @@
 #include "client/viewer/world/status_text.h"
 
+#include "client/core/client_types.h"
+
 #include <gmock/gmock.h>
 
 namespace evod::viewer {
@@ -10,20 +12,31 @@ using testing::ElementsAre;
 TEST(StatusText, DescribesTheStateOfTheDisk) {
     evod::v1::Storage storage;
     EXPECT_EQ(storage_text(storage), "");
-    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "running");
     storage.set_state(evod::v1::STORAGE_STATE_FAILING);
     storage.set_reason("it is full");
     EXPECT_EQ(storage_text(storage), "Commands are refused: it is full");
-    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "running");
     storage.set_state(evod::v1::STORAGE_STATE_STALLED);
     EXPECT_EQ(storage_text(storage), "Worlds wait for the disk, commands are refused: it is full");
-    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
-    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_PAUSED, storage), "paused");
-    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage), "paused");
-    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_WAITING, storage), "waiting – Space runs");
-    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage), "waiting");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "waits for the disk");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_PAUSED, storage, false), "paused");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage, false), "paused");
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_WAITING, storage, false), "waiting – Space runs");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage, false), "waiting");
     storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
     EXPECT_EQ(storage_text(storage), "Worlds wait for the disk: it is full");
+}
+
+TEST(StatusText, ARunningWorldMayWaitForFitness) {
+    const evod::v1::Storage storage;
+    EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, true), "waits for fitness");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage, true), "paused");
+    evod::v1::AwaitedFitness awaited;
+    EXPECT_EQ(core::to_text(awaited, 2), "2 of 2 islands rated");
+    awaited.add_islands(1);
+    EXPECT_EQ(core::to_text(awaited, 2), "1 of 2 islands rated");
+    EXPECT_EQ(core::to_text(awaited, 1), "0 of 1 island rated");
 }
 
 TEST(StatusText, FormatsSpeedsAsMultiplesOfRealTime) {
