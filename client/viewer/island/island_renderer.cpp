@@ -1,22 +1,23 @@
 #include "client/viewer/island/island_renderer.h"
 
 #include "client/viewer/drawing/ink.h"
+#include "client/viewer/world/healthiest.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
-#include <string_view>
+#include <string>
 #include <utility>
 
 namespace evod::viewer {
 
 namespace {
 
-constexpr float label_pixels = 14; // height of the health numbers, at scale 1
+constexpr std::size_t named_count = 3;   // the labels of this many of the healthiest organisms contain their ids
+constexpr std::size_t ranked_max = 2000; // larger populations are not ranked in each frame
+constexpr float label_pixels = 14;       // height of the health numbers, at scale 1
 constexpr double density_cell_pixels = 5;
 
 constexpr double outline_zoom_min = 0.3; // smaller coloured organisms have neither outline nor arc
@@ -424,29 +425,34 @@ void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double 
             }
         }
     }
-    if (labelled_.empty() || !labels_are_readable(camera, labelled_.size(), zoom_min)) {
-        labelled_.clear();
-        for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
-            if (index && *index < organisms.size() && std::ranges::find(labelled_, *index) == labelled_.end()) {
-                labelled_.push_back(*index);
-            }
+    named_.clear();
+    if (organisms.size() <= ranked_max) {
+        named_ = healthiest(*organisms.entities, named_count);
+    }
+    for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
+        if (index && *index < organisms.size() && std::ranges::find(named_, *index) == named_.end()) {
+            named_.push_back(*index);
         }
     }
-    std::array<char, 16> room;
-    const auto digits = [&](std::size_t i) {
-        const char* end = std::to_chars(room.begin(), room.end(), shown_health(organisms.entities->health(i))).ptr;
-        return std::string_view{room.data(), static_cast<std::size_t>(end - room.data())};
+    if (labelled_.empty() || !labels_are_readable(camera, labelled_.size(), zoom_min)) {
+        labelled_ = named_;
+    }
+    const auto text_of = [&](std::size_t i) {
+        const std::string health = std::to_string(shown_health(organisms.entities->health(i)));
+        return std::ranges::find(named_, i) == named_.end()
+                   ? health
+                   : "#" + std::to_string(organisms.entities->id[i]) + " " + health;
     };
     labels_.clear();
     for (const std::size_t i : labelled_) {
         const auto [x, y] = organisms[i];
         labels_.push_back({camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom(),
-                           static_cast<double>(size_of(digits(i), font).x)});
+                           static_cast<double>(size_of(text_of(i), font).x)});
     }
     const auto corners = place_labels(labels_, static_cast<double>(font.FontSize), on_screen(camera, snapshot->about));
     for (std::size_t i = 0; i < labelled_.size(); ++i) {
         write(list, font, {static_cast<float>(corners[i].x), static_cast<float>(corners[i].y)}, palette::of(look).label,
-              digits(labelled_[i]));
+              text_of(labelled_[i]));
     }
 }
 

@@ -112,6 +112,7 @@ class IslandRenderer {
     std::vector<Colour> colours_;
     ColouredLines arrow_lines_, target_lines_;
     std::vector<std::size_t> labelled_; // indices of the organisms with a number
+    std::vector<std::size_t> named_;    // indices of those whose label contains the id, too
     std::vector<HealthLabel> labels_;
 };
 

@@ -5,6 +5,7 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/world/freezer.h"
+#include "client/viewer/world/healthiest.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
@@ -66,18 +67,6 @@ void build_health(const std::vector<OrganismHistory::Health>& points) {
 double axis_end(double most) {
     const double step = nice_step(most / 5);
     return step * std::max(std::ceil(most / step), 1.0);
-}
-
-std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count) {
-    std::vector<std::size_t> indices(organisms.id.size());
-    std::iota(indices.begin(), indices.end(), std::size_t{0});
-    count = std::min(count, indices.size());
-    std::ranges::partial_sort(indices, indices.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
-        const float of_a = organisms.health(a), of_b = organisms.health(b);
-        return of_a != of_b ? of_a > of_b : organisms.id[a] < organisms.id[b];
-    });
-    indices.resize(count);
-    return indices;
 }
 
 std::string shown_picks(const std::string& subject, const OrganismHistory::Picks& picks) {

@@ -30,10 +30,6 @@ class OrganismPanel : public Panel {
     void build_genes(Context& context, const OrganismHistory& history);
     void build_offspring(const OrganismHistory& history);
 };
-
-/// Returns the indices in the snapshot of at most `count` organisms, by decreasing health; among equal healths, the
-/// lower id comes first.
-std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count);
 /// Returns how often an organism was picked: "Its parent 45 was picked 3 of 25 times, expected 1.71."
 ///
 /// subject  begin of the sentence: "Its parent 45"

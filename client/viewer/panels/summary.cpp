@@ -2,10 +2,12 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/island/island_renderer.h"
 #include "client/viewer/island/styles.h"
 #include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/plots/figures.h"
 #include "client/viewer/panels/plots/run_history.h"
+#include "client/viewer/world/healthiest.h"
 #include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
@@ -43,6 +45,10 @@ void Summary::build(Panel::Context& context, bool complete) {
     if (complete) {
         build_experiment(context);
         build_curve(context);
+    } else {
+        ImGui::PushFont(&context.gui.label());
+        build_marks(context);
+        ImGui::PopFont();
     }
     build_buttons(context);
     build_speed(context.world);
@@ -60,12 +66,15 @@ void Summary::build_experiment(Panel::Context& context) {
         widgets::small_text(experiment_.text(), palette::text);
     }
     ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), end));
-    build_marks(context.island_view.options.look, context.gui);
+    build_marks(context);
     ImGui::PopFont();
 }
 
 /// Explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
-void Summary::build_marks(Look look, const Gui& gui) {
+/// A second line names the healthiest organisms.
+void Summary::build_marks(const Panel::Context& context) {
+    const Look look = context.island_view.options.look;
+    const Gui& gui = context.gui;
     const float scale = gui.scale(), radius = 7 * scale, gap = 6 * scale, height = 26 * scale;
     const palette::IslandColours& colours = palette::of(look);
     const Styles& styles = styles_of(look);
@@ -83,6 +92,16 @@ void Summary::build_marks(Look look, const Gui& gui) {
     add(styles.food, "food");
     add(styles.poison, "poison");
     ImGui::Dummy({width, height});
+    std::string text;
+    if (const codec::ReceivedSnapshot* snapshot = context.world.feed.snapshot()) {
+        const codec::Entities& organisms = snapshot->entities->organisms;
+        constexpr std::size_t named = 3;
+        for (const std::size_t i : healthiest(organisms, named)) {
+            text += (text.empty() ? "Healthiest now: #" : ", #") + std::to_string(organisms.id[i]) + " (" +
+                    std::to_string(shown_health(organisms.health(i))) + ")";
+        }
+    }
+    widgets::small_text(text.empty() ? "No organism is alive." : text, palette::text);
 }
 
 void Summary::build_curve(const Panel::Context& context) {

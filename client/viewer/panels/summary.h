@@ -27,7 +27,7 @@ class Summary {
 
   private:
     void build_experiment(Panel::Context& context);
-    void build_marks(Look look, const Gui& gui);
+    void build_marks(const Panel::Context& context);
     void build_curve(const Panel::Context& context);
     void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);

@@ -74,8 +74,10 @@ class ExpectedFrame {
         for (std::size_t i = 0; i < all.x.size(); ++i) { // numbers are drawn over everything
             const Point centre = camera_.to_screen({all.x_px(i), all.y_px(i)});
             const double radius = all.radius_px(i) * camera_.zoom();
+            const double wall = camera_.to_screen({snapshot.about.width_px(), 0}).x; // labels stay inside of it
+            const double left = std::min(centre.x - 32, wall - 65);
             for (const double top : {centre.y + radius, centre.y - radius - 17}) {
-                paint(centre.x - 32, top, centre.x + 32, top + 17, [](double, double) { return open; });
+                paint(left, top, centre.x + 32, top + 17, [](double, double) { return open; });
             }
         }
     }

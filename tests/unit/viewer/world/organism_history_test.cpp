@@ -189,13 +189,6 @@ TEST(OrganismHistory, IgnoresAnAnswerAboutAnotherBreeding) {
     EXPECT_EQ(history.picks(), nullptr);
 }
 
-TEST(Healthiest, AreOrderedByHealthThenById) {
-    const auto snapshot = codec::snapshot_with(
-        {.id = {1, 3, 7}, .x = {}, .y = {}, .width = {}, .height = codec::px_column({50, 80, 80})});
-    EXPECT_EQ(healthiest(snapshot->organisms, 2), (std::vector<std::size_t>{1, 2}));
-    EXPECT_EQ(healthiest(snapshot->organisms, 9), (std::vector<std::size_t>{1, 2, 0}));
-}
-
 TEST(HealthAxis, EndsAtTheNextRoundNumber) {
     EXPECT_EQ(axis_end(226), 250);
     EXPECT_EQ(axis_end(250), 250);

@@ -1,0 +1,20 @@
+#include "client/viewer/world/healthiest.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace evod::viewer {
+
+std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count) {
+    std::vector<std::size_t> indices(organisms.id.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    count = std::min(count, indices.size());
+    std::ranges::partial_sort(indices, indices.begin() + static_cast<std::ptrdiff_t>(count), [&](auto a, auto b) {
+        const float of_a = organisms.health(a), of_b = organisms.health(b);
+        return of_a != of_b ? of_a > of_b : organisms.id[a] < organisms.id[b];
+    });
+    indices.resize(count);
+    return indices;
+}
+
+} // namespace evod::viewer
