@@ -24,13 +24,13 @@ std::ifstream open_file(const std::string& what, const std::string& path) {
     return file;
 }
 
-std::vector<std::vector<float>> population_in(const std::string& path) {
+codec::Population population_in(const std::string& path) {
     std::ifstream file = open_file("population", path);
-    auto islands = codec::read_population(file);
-    if (!islands) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + islands.error().what};
+    auto population = codec::read_population(file);
+    if (!population) {
+        throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + population.error().what};
     }
-    return *std::move(islands);
+    return *std::move(population);
 }
 
 } // namespace evod::ctl

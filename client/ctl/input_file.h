@@ -3,6 +3,8 @@
 // Threads      none.
 #pragma once
 
+#include "proto/codec/population_csv.h"
+
 #include <fstream>
 #include <string>
 #include <vector>
@@ -15,8 +17,6 @@ namespace evod::ctl {
 std::ifstream open_file(const std::string& what, const std::string& path);
 
 /// Reads a population file; throws Stop if it is not one.
-///
-/// returns  the genes of each island, as codec::read_population() returns them.
-std::vector<std::vector<float>> population_in(const std::string& path);
+codec::Population population_in(const std::string& path);
 
 } // namespace evod::ctl

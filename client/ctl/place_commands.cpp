@@ -40,9 +40,11 @@ using Genes = std::vector<float>;
 
 std::vector<Genes> genes_in(const std::string& path) {
     std::vector<Genes> organisms;
-    for (const std::vector<float>& genes : population_in(path)) {
-        for (auto begin = genes.begin(); begin != genes.end(); begin += codec::population_genes) {
-            organisms.emplace_back(begin, begin + codec::population_genes);
+    const codec::Population population = population_in(path);
+    const auto gene_count = static_cast<std::ptrdiff_t>(population.gene_names.size());
+    for (const std::vector<float>& genes : population.islands) {
+        for (auto begin = genes.begin(); begin != genes.end(); begin += gene_count) {
+            organisms.emplace_back(begin, begin + gene_count);
         }
     }
     return organisms;

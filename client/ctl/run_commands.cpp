@@ -49,7 +49,7 @@ void add_experiment(const std::string& path, v1::CreateWorld& command) {
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
-    for (const std::vector<float>& genes : population_in(path)) {
+    for (const std::vector<float>& genes : population_in(path).islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
     // This many bytes are reserved for the other fields of the request, which need much less.

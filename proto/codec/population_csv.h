@@ -3,7 +3,7 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// Islands and organisms are numbered from 0, in order. Each gene is the shortest text that parses to the same float.
+// The columns of further genes follow if the chromosomes have more than the six body genes. Islands and organisms are numbered from 0, in order. Each gene is the shortest text that parses to the same float.
 #pragma once
 
 #include "proto/codec/result.h"
@@ -18,13 +18,19 @@ namespace evod::codec {
 
 constexpr std::string_view population_heading =
     "island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius";
-constexpr std::size_t population_genes = 6;
+constexpr std::size_t genes_max = 10'000; // columns of genes in a file
 
-/// Reads the genes. The shape of the result is (islands, organisms · population_genes); the genes of an organism are
-/// adjacent. Does not check whether a world can start with them. Damage reads "line 3: got …, allowed …".
-Result<std::vector<std::vector<float>>> read_population(std::istream& in);
+struct Population {
+    std::vector<std::string> gene_names; // the first six are those in population_heading
+    std::vector<std::vector<float>> islands; // shape (islands, organisms · gene_names.size()): organism by organism
 
-/// Returns the text of a file with these genes, in the shape that read_population() returns.
-std::string population_text(const std::vector<std::vector<float>>& islands);
+    std::size_t organism_count(std::size_t island) const { return islands[island].size() / gene_names.size(); }
+};
+
+/// Reads the genes. Does not check whether a world can start with them. Damage reads "line 3: got …, allowed …".
+Result<Population> read_population(std::istream& in);
+
+/// Returns the text of a file with these genes.
+std::string population_text(const Population& population);
 
 } // namespace evod::codec

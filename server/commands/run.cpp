@@ -159,12 +159,13 @@ int run(const RunOptions& options) {
     if (!first_population) {
         return fail("--population: " + base::to_text(first_population.error()));
     }
+    const std::vector<std::string> gene_names = replay::gene_names_of(experiment->parameters);
     std::ofstream csv;
     std::optional<replay::Table> table;
     if (!options.csv.empty()) {
         errno = 0;
         csv.open(options.csv);
-        table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns());
+        table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns(gene_names));
         if (!csv.flush()) {
             return fail("--csv: cannot write " + options.csv + ": " + std::strerror(errno));
         }
@@ -201,7 +202,7 @@ int run(const RunOptions& options) {
         for (const simulation::GenerationStatistics& statistics : world.history().back()) {
             std::puts(table_row(statistics, several_islands).c_str());
             if (table) {
-                replay::write_row(*table, statistics);
+                replay::write_row(*table, statistics, gene_names);
             }
         }
         std::fflush(stdout);

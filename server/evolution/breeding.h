@@ -15,7 +15,7 @@
 #include "server/evolution/selection.h"
 
 #include <algorithm>
-#include <bit>
+#include <span>
 
 namespace evod::evolution {
 
@@ -42,34 +42,44 @@ Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t want
               base::Executor& executor);
 
 /// Which parent each gene of a child comes from.
+template <std::size_t extent>
 struct Inheritance {
-    Parents parents;          // first: the parent that gave more of the genes, or whose weight is larger
-    GeneMask from_second = 0; // the genes that parents.second gave; at most half of all genes
+    Parents parents;              // first: the parent that gave more of the genes, or whose weight is larger
+    GeneMask<extent> from_second; // the genes that parents.second gave; at most half of all genes
 };
 
 /// Orders the parents of one child by how many genes each gave it; on a tie the pair's first parent stays first.
 ///
-/// mask  Mixture::from_second of the child; bits beyond the genes are ignored.
-inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
-    mask &= all_genes;
-    if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count) {
-        return {pair, mask};
+/// mask  Mixture::from_second of the child.
+template <std::size_t extent>
+Inheritance<extent> inheritance_of(const Parents& pair, const GeneMask<extent>& mask) {
+    Inheritance<extent> inheritance{pair, mask};
+    if (2 * mask.count() > mask.gene_count()) {
+        inheritance.parents = {pair.second, pair.first};
+        inheritance.from_second.complement();
     }
-    return {{pair.second, pair.first}, ~mask & all_genes};
+    return inheritance;
 }
 
 /// Applies the mutations to a chromosome without recording them.
 struct WithoutRecord {
-    static void mutate_order(const OrderMutation& by, Genes genes, base::RandomStream& random) {
+    template <std::size_t extent>
+    static void mutate_order(const OrderMutation& by, std::span<float, extent> genes, base::RandomStream& random) {
         by.apply(genes, random);
     }
-    static unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) {
+    template <std::size_t extent>
+    static unsigned mutate(const ValueMutation<extent>& by, std::span<float, extent> genes,
+                           base::RandomStream& random) {
         return by.apply(genes, random);
     }
-    static unsigned clamp(Genes genes, const GeneBounds& bounds) { return evolution::clamp(genes, bounds); }
+    template <std::size_t extent>
+    static unsigned clamp(std::span<float, extent> genes, const GeneBounds& bounds) {
+        return evolution::clamp(genes, bounds);
+    }
 };
 
 /// Computes the genes of survivors and of children.
+template <std::size_t extent = std::dynamic_extent>
 class Descent {
   public:
     /// present  the parents' generation; must outlive the Descent.
@@ -79,19 +89,22 @@ class Descent {
         , crossover_key_{key.seed, base::Purpose::Crossover, key.island, key.generation}
         , order_mutation_key_{key.seed, base::Purpose::OrderMutation, key.island, key.generation}
         , mutation_key_{key.seed, base::Purpose::Mutation, key.island, key.generation}
-        , crossover_{parameters}
+        , crossover_{parameters, static_cast<unsigned>(present.rows())}
         , order_mutation_{parameters}
         , mutation_{parameters}
-        , bounds_{gene_bounds(parameters)} {}
+        , bounds_{gene_bounds(parameters)} {
+        EVOD_ASSERT(present.rows() == gene_count(parameters));
+    }
 
     // The argument `by` of keep() and make_child() applies the mutations: WithoutRecord, or a class that records them.
 
     /// Writes the genes of a survivor to `genes`. `place` is its index in the next generation. Returns the number of
     /// clamped genes.
     template <class By>
-    unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
+    unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, std::span<float, extent> genes,
+                  By&& by) const {
         EVOD_ASSERT(organism < static_cast<std::size_t>(present_.cols()));
-        std::ranges::copy(column(present_, organism), genes.begin());
+        std::ranges::copy(column<extent>(present_, organism), genes.begin());
         if (!mutates) {
             return by.clamp(genes, bounds_);
         }
@@ -100,8 +113,9 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Draws the mixture of the children of a pair. Returns false and does not change `mixture` if there is no crossover.
-    bool draw_mixture(std::uint32_t pair_index, Mixture& mixture) const {
+    /// Draws the mixture of the children of a pair; `mixture` must be new. Returns false and does not change it if there is
+    /// no crossover.
+    bool draw_mixture(std::uint32_t pair_index, Mixture<extent>& mixture) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(mixture, random);
     }
@@ -109,10 +123,12 @@ class Descent {
     /// Writes the genes of a child to `child`. `second_share` is that of the pair's mixture; `place` is the child's index
     /// in the next generation. Returns the number of clamped genes.
     template <class By>
-    unsigned make_child(const Inheritance& of, double second_share, std::uint32_t place, Genes child, By&& by) const {
+    unsigned make_child(const Inheritance<extent>& of, double second_share, std::uint32_t place,
+                        std::span<float, extent> child, By&& by) const {
         EVOD_ASSERT(of.parents.first < static_cast<std::size_t>(present_.cols()));
         EVOD_ASSERT(of.parents.second < static_cast<std::size_t>(present_.cols()));
-        const ConstGenes first = column(present_, of.parents.first), second = column(present_, of.parents.second);
+        const auto first = column<extent>(present_, of.parents.first),
+                   second = column<extent>(present_, of.parents.second);
         if (second_share > 0) {
             blend(first, second, second_share, child);
         } else {
@@ -126,9 +142,9 @@ class Descent {
   private:
     const GeneMatrix& present_;
     base::RandomKey survivor_key_, crossover_key_, order_mutation_key_, mutation_key_;
-    Crossover crossover_;
+    Crossover<extent> crossover_;
     OrderMutation order_mutation_;
-    ValueMutation mutation_;
+    ValueMutation<extent> mutation_;
     GeneBounds bounds_;
 };
 

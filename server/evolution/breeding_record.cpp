@@ -22,8 +22,9 @@ struct Rows {
         : first{std::min(wanted_first, count)}, end{first + std::min(count - first, count_max)} {}
 };
 
-Chromosome chromosome(const GeneMatrix& genes, std::uint32_t organism) {
-    return genes.col(organism);
+std::vector<float> chromosome(const GeneMatrix& genes, std::uint32_t organism) {
+    const ConstGenes column = evolution::column(genes, organism);
+    return {column.begin(), column.end()};
 }
 
 bool spins_a_wheel(const Parameters& parameters) {
@@ -104,13 +105,13 @@ struct WithRecord {
 
     void mutate_order(const OrderMutation& by, Genes genes, base::RandomStream& random) const {
         base::RandomStream same = random;
-        std::array<std::uint32_t, gene_count> order{};
+        std::vector<std::uint32_t> order(genes.size());
         std::iota(order.begin(), order.end(), 0u);
-        if (by.apply(genes, random) && by.apply(GeneOrder{order}, same)) {
-            of.order = order;
+        if (by.apply(genes, random) && by.apply(std::span{order}, same)) {
+            of.order = std::move(order);
         }
     }
-    unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) const {
+    unsigned mutate(const ValueMutation<>& by, Genes genes, base::RandomStream& random) const {
         return by.apply(genes, random, of.changes);
     }
     unsigned clamp(Genes genes, const GeneBounds& bounds) const { return evolution::clamp(genes, bounds, of.changes); }
@@ -138,12 +139,14 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
     record.picks = picks_of(choice.picks, present, parameters, selection_key(key),
                             {rows.first_pick, pick_count, rows.count_max}, executor);
 
-    const Descent descent{genes, parameters, key};
+    const Descent<> descent{genes, parameters, key};
     const Rows descendants{rows.first_descendant, wanted, rows.count_max};
     for (std::uint32_t place = descendants.first; place < descendants.end; ++place) {
         Descendant& descendant = record.descendants.emplace_back();
         descendant.id = place;
-        const Genes made{descendant.genes.data(), gene_count};
+        descendant.genes.resize(static_cast<std::size_t>(genes.rows()));
+        descendant.from_second = GeneMask<>{static_cast<unsigned>(genes.rows())};
+        const Genes made{descendant.genes};
         if (place < choice.places.survivors) {
             const std::uint32_t organism = choice.survivors()[place];
             descendant.parents = {organism, organism};
@@ -151,10 +154,12 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                          WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
-            Mixture mixture;
+            Mixture<> mixture{static_cast<unsigned>(genes.rows())};
             descendant.crossed = descent.draw_mixture(child / 2, mixture);
-            const Inheritance inheritance =
-                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mixture.from_second : ~mixture.from_second);
+            if (child % 2 == 1) {
+                mixture.from_second.complement();
+            }
+            const auto inheritance = inheritance_of(choice.pairs[child / 2], mixture.from_second);
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
             descendant.second_share = mixture.second_share;

@@ -14,7 +14,6 @@
 #include "server/evolution/next_generation.h"
 #include "server/evolution/selection_law.h"
 
-#include <array>
 #include <optional>
 
 namespace evod::evolution {
@@ -49,14 +48,14 @@ struct BreedingRecord {
     struct Descendant {
         std::uint32_t id = 0;
         Parents parents{};
-        Chromosome first_genes, second_genes; // genes of the first and of the second parent
-        GeneMask from_second = 0;             // the genes that come from the second parent
-        double second_share = 0;              // blend: the weight of the second parent in every gene; otherwise 0
+        std::vector<float> first_genes, second_genes; // genes of the first and of the second parent
+        GeneMask<> from_second{0};                    // the genes that come from the second parent
+        double second_share = 0; // blend: the weight of the second parent in every gene; otherwise 0
         bool crossed = false;
         // After an order mutation: element i is the index of the gene whose value gene i received.
-        std::optional<std::array<std::uint32_t, gene_count>> order;
+        std::optional<std::vector<std::uint32_t>> order;
         std::vector<GeneChange> changes;
-        Chromosome genes; // after all changes
+        std::vector<float> genes; // after all changes
     };
 
     Places places;

@@ -1,54 +1,74 @@
-// Chromosomes: each has six real genes and is one column of a matrix.
+// Chromosomes: real genes (gene_layout.h); each chromosome is one column of a matrix.
 //
 // Determinism  each organism of the first generation has its own stream, so its genes do not depend on the number of
 //              organisms.
 #pragma once
 
 #include "server/base/random.h"
+#include "server/evolution/gene_layout.h"
 #include "server/evolution/parameters.h"
 
 #include <Eigen/Core>
 
-#include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace evod::evolution {
 
-/// The genes, in chromosome order.
-enum Gene : unsigned { NormalSpeed, Impulse, BodySize, BaseHealth, FoodRadius, PoisonRadius };
-constexpr unsigned gene_count = 6;
-constexpr std::array<std::string_view, gene_count> gene_names = {"normal_speed", "impulse",     "body_size",
-                                                                 "base_health",  "food_radius", "poison_radius"};
-
 /// Shape (gene_count, organisms): column i is the chromosome of organism i.
-using GeneMatrix = Eigen::Array<float, gene_count, Eigen::Dynamic>;
-using Chromosome = Eigen::Array<float, gene_count, 1>;
+using GeneMatrix = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic>;
+/// The genes of one body.
+using BodyGenes = Eigen::Array<float, body_gene_count, 1>;
 
-/// A view of one chromosome: a column of a GeneMatrix.
-using Genes = std::span<float, gene_count>;
-using ConstGenes = std::span<const float, gene_count>;
+/// A view of one chromosome, a column of a GeneMatrix, or of a part of it.
+using Genes = std::span<float>;
+using ConstGenes = std::span<const float>;
 
-inline Genes column(GeneMatrix& genes, std::uint32_t organism) {
-    return Genes{genes.data() + std::size_t{gene_count} * organism, gene_count};
+template <std::size_t extent = std::dynamic_extent>
+std::span<float, extent> column(GeneMatrix& genes, std::uint32_t organism) {
+    const std::size_t count = extent == std::dynamic_extent ? static_cast<std::size_t>(genes.rows()) : extent;
+    return std::span<float, extent>{genes.data() + count * organism, count};
 }
-inline ConstGenes column(const GeneMatrix& genes, std::uint32_t organism) {
-    return ConstGenes{genes.data() + std::size_t{gene_count} * organism, gene_count};
+template <std::size_t extent = std::dynamic_extent>
+std::span<const float, extent> column(const GeneMatrix& genes, std::uint32_t organism) {
+    const std::size_t count = extent == std::dynamic_extent ? static_cast<std::size_t>(genes.rows()) : extent;
+    return std::span<const float, extent>{genes.data() + count * organism, count};
+}
+inline BodyGenes body_genes(const GeneMatrix& genes, std::uint32_t organism) {
+    return BodyGenes{column(genes, organism).data()};
 }
 
-/// The allowed range of each gene, both ends included.
-struct GeneBounds {
-    Chromosome min, max;
-};
+/// Returns the genes of `range`. A chromosome of a fixed number of genes has only the genes of the body, so it is returned
+/// whole.
+template <class T, std::size_t extent>
+std::span<T, extent> part_of(std::span<T, extent> genes, GeneRange range) {
+    if constexpr (extent == std::dynamic_extent) {
+        return genes.subspan(range.first, range.count);
+    } else {
+        return genes;
+    }
+}
 
-GeneBounds gene_bounds(const Parameters& parameters);
+/// Divides the genes of a chromosome into blocks of body_gene_count genes, for loops over organisms that are fast if the
+/// number of genes is a constant. Calls visit(first) with the index of each block's first gene. The last block may contain
+/// genes of the block before it.
+template <class Visit>
+void for_each_block_of_genes(unsigned gene_count, const Visit& visit) {
+    unsigned first = 0;
+    for (; first + body_gene_count <= gene_count; first += body_gene_count) {
+        visit(first);
+    }
+    if (first < gene_count) {
+        visit(gene_count - body_gene_count);
+    }
+}
 
 /// Moves every gene outside its bounds to the nearer bound. Returns how many genes it moved.
-unsigned clamp(Genes genes, const GeneBounds& bounds);
+template <std::size_t extent>
+unsigned clamp(std::span<float, extent> genes, const GeneBounds& bounds);
 
-/// Draws the first generation of one island: every gene is uniform in [initial_gene_min, initial_gene_max], and then
-/// clamped to its bounds.
+/// Draws the first generation of one island, and clamps every gene to its bounds. Genes of the body are uniform in
+/// [initial_gene_min, initial_gene_max], weights in their initial range, and free genes in their bounds.
 ///
 /// organism_count  the size of the island's population; may be 0.
 /// returns         shape (gene_count, organism_count); a larger population begins with the organisms of a smaller one.

@@ -3,17 +3,19 @@
 #include "server/base/assert.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace evod::evolution {
 namespace {
 
-int cut_count(const Parameters& parameters) {
+// The masks of all sets of cuts are computed once if there are at most this many.
+constexpr std::uint64_t kept_masks_max = 16;
+
+unsigned cut_count(const Parameters& parameters) {
     switch (parameters.crossover) {
     case CrossoverMethod::SinglePoint:
         return 1;
     case CrossoverMethod::MultiPoint:
-        return static_cast<int>(parameters.crossover_cuts);
+        return parameters.crossover_cuts;
     case CrossoverMethod::Uniform:
     case CrossoverMethod::Blend:
     case CrossoverMethod::None:
@@ -22,52 +24,98 @@ int cut_count(const Parameters& parameters) {
     return 0;
 }
 
+/// Returns the number of sets of `chosen` out of `count` elements. For the numbers of genes and cuts that the parameters
+/// allow, it is below 2^53.
+std::uint64_t set_count(std::uint64_t count, std::uint64_t chosen) {
+    std::uint64_t sets = 1;
+    for (std::uint64_t i = 0; i < chosen; ++i) {
+        sets = count > i ? sets * (count - i) / (i + 1) : 0;
+    }
+    return sets;
+}
+
+std::uint64_t draw_below(std::uint64_t bound, base::RandomStream& random) {
+    if (bound <= ~std::uint32_t{0}) {
+        return random.below(static_cast<std::uint32_t>(bound));
+    }
+    const std::uint64_t fair_end = ~std::uint64_t{0} / bound * bound; // a multiple of the bound
+    while (true) {
+        if (const std::uint64_t word = random.long_word(); word < fair_end) {
+            return word % bound;
+        }
+    }
+}
+
 } // namespace
 
-GeneMask mask_of_cuts(GeneMask cuts) {
-    EVOD_ASSERT(cuts <= all_genes);
-    GeneMask mask = 0, side = 0;
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        side ^= cuts >> gene & 1;
-        mask |= side << gene;
+template <std::size_t extent>
+Crossover<extent>::Crossover(const Parameters& parameters, unsigned gene_count)
+    : method_{parameters.crossover}
+    , chance_{parameters.crossover_chance}
+    , gene_count_{gene_count}
+    , cut_count_{cut_count(parameters)} {
+    if (cut_count_ == 0) {
+        return;
+    }
+    cut_set_count_ = set_count(gene_count - 1, cut_count_);
+    EVOD_ASSERT(cut_set_count_ >= 1);
+    for (std::uint64_t index = 0; index < cut_set_count_ && cut_set_count_ <= kept_masks_max; ++index) {
+        masks_.push_back(mask_of_cuts(index));
+    }
+}
+
+// Source  the combinatorial number system: Knuth 2005, The Art of Computer Programming 4A, 7.2.1.3, theorem L.
+template <std::size_t extent>
+GeneMask<extent> Crossover<extent>::mask_of_cuts(std::uint64_t index) const {
+    GeneMask<extent> mask{gene_count_};
+    unsigned end = gene_count_; // the remaining cuts are before genes 1 … end − 1
+    for (unsigned left = cut_count_; left > 0; --left) {
+        unsigned last =
+            left; // binary search for the last of these genes such that the sets of cuts before it are not enough
+        while (last + 1 < end) {
+            const unsigned middle = last + (end - last) / 2;
+            (set_count(middle - 1, left) <= index ? last : end) = middle;
+        }
+        index -= set_count(last - 1, left);
+        mask.flip_from(last);
+        end = last;
     }
     return mask;
 }
 
-Crossover::Crossover(const Parameters& parameters)
-    : method_{parameters.crossover}, chance_{parameters.crossover_chance} {
-    const int wanted = cut_count(parameters);
-    if (wanted == 0) {
-        return;
-    }
-    for (GeneMask cuts = 2; cuts <= all_genes; cuts += 2) { // even numbers only: bit 0 would be a cut before gene 0
-        if (std::popcount(cuts) == wanted) {
-            masks_.at(mask_count_++) = mask_of_cuts(cuts);
-        }
-    }
-    EVOD_ASSERT(mask_count_ >= 1);
-}
-
-bool Crossover::draw(Mixture& mixture, base::RandomStream& random) const {
+template <std::size_t extent>
+bool Crossover<extent>::draw(Mixture<extent>& mixture, base::RandomStream& random) const {
     if (method_ == CrossoverMethod::None || !chance_.draw(random)) {
         return false;
     }
     if (method_ == CrossoverMethod::Uniform) {
-        mixture.from_second = random.word() & all_genes;
+        mixture.from_second.assign([&] { return random.word(); });
     } else if (method_ == CrossoverMethod::Blend) {
         const double weight = (random.word() + 0.5) * 0x1p-32;
-        mixture = {.from_second = weight > 0.5 ? all_genes : 0, .second_share = std::min(weight, 1 - weight)};
+        mixture.second_share = std::min(weight, 1 - weight);
+        if (weight > 0.5) {
+            mixture.from_second.complement();
+        }
     } else {
-        mixture.from_second = masks_[random.below(mask_count_)];
+        const std::uint64_t index = draw_below(cut_set_count_, random);
+        mixture.from_second = masks_.empty() ? mask_of_cuts(index) : masks_[index];
     }
     return true;
 }
 
-void blend(ConstGenes first, ConstGenes second, double second_share, Genes child) {
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+template class Crossover<body_gene_count>;
+template class Crossover<>;
+
+template <std::size_t extent>
+void blend(std::span<const float, extent> first, std::span<const float, extent> second, double second_share,
+           std::span<float, extent> child) {
+    for (unsigned gene = 0; gene < child.size(); ++gene) {
         const double from = static_cast<double>(first[gene]);
         child[gene] = static_cast<float>(from + second_share * (static_cast<double>(second[gene]) - from));
     }
 }
+template void blend(std::span<const float, body_gene_count>, std::span<const float, body_gene_count>, double,
+                    std::span<float, body_gene_count>);
+template void blend(ConstGenes, ConstGenes, double, Genes);
 
 } // namespace evod::evolution

@@ -11,56 +11,62 @@
 #include "server/base/random.h"
 #include "server/evolution/chance.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/gene_mask.h"
 #include "server/evolution/parameters.h"
 
-#include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace evod::evolution {
 
-/// A set of genes: bit g is 1 if gene g is in the set.
-using GeneMask = std::uint32_t;
-
-constexpr GeneMask all_genes = (1u << gene_count) - 1;
-
-/// How the genes of a pair are mixed into its first child. The default is a copy of the first parent. The second child
-/// has the complement of the mask and the same share.
+/// How the genes of a pair are mixed into its first child. A new object describes a copy of the first parent. The second
+/// child has the complement of the mask and the same share.
+template <std::size_t extent = std::dynamic_extent>
 struct Mixture {
-    GeneMask from_second = 0; // the genes of which the second parent gives all or, with blend, the larger share
-    double second_share = 0;  // blend: the smaller of the two parents' weights, in (0, ½); other methods: 0
+    explicit Mixture(unsigned gene_count) : from_second{gene_count} {}
+
+    GeneMask<extent> from_second; // the genes of which the second parent gives all or, with blend, the larger share
+    double second_share = 0;      // blend: the smaller of the two parents' weights, in (0, ½); other methods: 0
 };
 
-/// Returns the mask for a set of cuts. At every cut, inheritance changes to the other parent. Bit c of `cuts` (c = 1 …
-/// gene_count − 1) is a cut before gene c.
-GeneMask mask_of_cuts(GeneMask cuts);
-
+template <std::size_t extent = std::dynamic_extent>
 class Crossover {
   public:
-    explicit Crossover(const Parameters& parameters);
+    /// gene_count  the number of genes of a chromosome, at least 2.
+    Crossover(const Parameters& parameters, unsigned gene_count);
 
     /// Draws the mixture of one pair and returns true, with probability crossover_chance. Otherwise returns false and
-    /// does not change `mixture`: the children are copies of their parents.
+    /// does not change `mixture`, which must be new: the children are copies of their parents.
     ///
-    /// uniform       each of the 64 masks is equally likely.
-    /// single_point  each of the 5 interior cuts is equally likely.
+    /// uniform       each of the 2^gene_count masks is equally likely.
+    /// single_point  each of the gene_count − 1 interior cuts is equally likely.
     /// multi_point   each set of crossover_cuts different interior cuts is equally likely.
     /// blend         the weight of the second parent is (k + ½)/2^32, where each of the 2^32 values of k is equally
     ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all genes
     ///               if the weight is above ½, otherwise none.
     /// none          always false.
-    bool draw(Mixture& mixture, base::RandomStream& random) const;
+    bool draw(Mixture<extent>& mixture, base::RandomStream& random) const;
+
+    /// Returns the mask of one of the sets of cuts; `index` is below the number of sets. At every cut, inheritance
+    /// changes to the other parent.
+    GeneMask<extent> mask_of_cuts(std::uint64_t index) const;
 
   private:
     CrossoverMethod method_;
     Chance chance_;
-    std::array<GeneMask, 10> masks_{}; // the masks to choose from
-    std::uint32_t mask_count_ = 0;
+    GeneCount<extent> gene_count_;
+    unsigned cut_count_;
+    std::uint64_t cut_set_count_ = 0;
+    std::vector<GeneMask<extent>> masks_; // of all sets of cuts, if they are few
 };
 
-/// Gives `child` the genes of `second` where the mask has a 1, and the genes of `first` where it has a 0.
-inline void cross(ConstGenes first, ConstGenes second, GeneMask mask, Genes child) {
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        child[gene] = (mask >> gene & 1) != 0 ? second[gene] : first[gene];
+/// Gives `child` the genes of `second` that are in the mask, and the other genes of `first`.
+template <std::size_t extent>
+void cross(std::span<const float, extent> first, std::span<const float, extent> second, const GeneMask<extent>& mask,
+           std::span<float, extent> child) {
+    for (unsigned gene = 0; gene < child.size(); ++gene) {
+        child[gene] = mask.contains(gene) ? second[gene] : first[gene];
     }
 }
 
@@ -70,6 +76,8 @@ inline void cross(ConstGenes first, ConstGenes second, GeneMask mask, Genes chil
 /// alone: by at most 2^-23 of the larger absolute value of the two genes.
 ///
 /// second_share  in (0, ½].
-void blend(ConstGenes first, ConstGenes second, double second_share, Genes child);
+template <std::size_t extent>
+void blend(std::span<const float, extent> first, std::span<const float, extent> second, double second_share,
+           std::span<float, extent> child);
 
 } // namespace evod::evolution

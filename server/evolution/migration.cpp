@@ -147,7 +147,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
 
 void migrate(std::span<const Migrant> migrants, std::span<const IslandPopulation> islands) {
     struct Traveller {
-        Chromosome genes;
+        Eigen::ArrayXf genes;
         double fitness;
     };
     std::vector<Traveller> travellers;

@@ -83,6 +83,9 @@ double draw_normal(base::RandomStream& random) {
 // Up to this probability of a flip it is cheaper to draw the distances between flipped bits than to draw for each bit.
 constexpr double rare_flip_chance_max = 0.125;
 
+constexpr unsigned genes_per_draw = 32; // genes for which one call of Chance::draw_bits() decides
+constexpr unsigned genes_per_flips = 6; // genes for which one call of RareEvents::draw() decides
+
 /// Calls `change` for every gene of the mask, in order.
 template <class Change>
 void for_each_gene(std::uint32_t mask, const Change& change) {
@@ -90,6 +93,12 @@ void for_each_gene(std::uint32_t mask, const Change& change) {
         change(static_cast<unsigned>(std::countr_zero(mask)));
     }
 }
+
+/// Sets a gene without recording it.
+struct SetGene {
+    Genes genes;
+    void operator()(unsigned gene, ChangeKind, float value) const { genes[gene] = value; }
+};
 
 } // namespace
 
@@ -109,11 +118,12 @@ float BinaryView::to_value(std::uint32_t code) const {
     return std::clamp(static_cast<float>(min + share * (double{max} - min)), min, max);
 }
 
-ValueMutation::ValueMutation(const Parameters& parameters)
-    : bounds_{gene_bounds(parameters)}
+template <std::size_t extent>
+ValueMutation<extent>::ValueMutation(const Parameters& parameters)
+    : range_{genes_of(parameters.mutate_group, parameters)}
+    , bounds_{gene_bounds(parameters)}
     , creep_{parameters.creep}
     , creep_chance_{parameters.mutation_chance}
-    , step_{parameters.mutation_step}
     , reset_chance_{parameters.reset_chance}
     , scale_chance_{parameters.scale_chance}
     , scale_range_{parameters.scale_range}
@@ -121,17 +131,27 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , bits_{parameters.bit_flip_bits} {
     EVOD_ASSERT(bits_ >= 1);
     EVOD_ASSERT(bits_ <= 24);
-    EVOD_ASSERT(step_ >= 0);
+    if constexpr (extent == std::dynamic_extent) {
+        steps_.resize(gene_count(parameters));
+    }
+    const auto set_steps = [&](GeneGroup group, double step) {
+        EVOD_ASSERT(step >= 0);
+        std::ranges::fill(part_of(std::span{steps_}, genes_of(group, parameters)), step);
+    };
+    set_steps(GeneGroup::Body, parameters.mutation_step);
+    if constexpr (extent == std::dynamic_extent) {
+        set_steps(GeneGroup::Brain, parameters.brain_mutation_step);
+        set_steps(GeneGroup::Free, parameters.free_mutation_step);
+    }
     if (!bit_flip_chance_.is_never() && parameters.bit_flip_chance <= rare_flip_chance_max) {
-        rare_flips_.emplace(gene_count * bits_, parameters.bit_flip_chance);
+        rare_flips_.emplace(genes_per_flips * bits_, parameters.bit_flip_chance);
     }
 }
 
 unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes) {
-    std::array<float, gene_count> before;
-    std::ranges::copy(genes, before.begin());
+    const std::vector<float> before(genes.begin(), genes.end());
     const unsigned clamped = clamp(genes, bounds);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < genes.size(); ++gene) {
         if (genes[gene] != before[gene]) {
             changes.push_back({gene, ChangeKind::Clamp, before[gene], genes[gene]});
         }
@@ -139,13 +159,14 @@ unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& c
     return clamped;
 }
 
-unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
-    return mutate(
-        genes, random, [&](unsigned gene, ChangeKind, float value) { genes[gene] = value; },
-        [&] { return clamp(genes, bounds_); });
+template <std::size_t extent>
+unsigned ValueMutation<extent>::apply(std::span<float, extent> genes, base::RandomStream& random) const {
+    return mutate(genes, random, SetGene{genes}, [&] { return clamp(genes, bounds_); });
 }
 
-unsigned ValueMutation::apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const {
+template <std::size_t extent>
+unsigned ValueMutation<extent>::apply(std::span<float, extent> genes, base::RandomStream& random,
+                                      std::vector<GeneChange>& changes) const requires(extent == std::dynamic_extent) {
     return mutate(
         genes, random,
         [&](unsigned gene, ChangeKind kind, float value) {
@@ -155,17 +176,26 @@ unsigned ValueMutation::apply(Genes genes, base::RandomStream& random, std::vect
         [&] { return clamp(genes, bounds_, changes); });
 }
 
+template <std::size_t extent>
 template <class Change, class Clamp>
-unsigned ValueMutation::mutate(ConstGenes genes, base::RandomStream& random, const Change& change,
-                               const Clamp& clamp_all) const {
+unsigned ValueMutation<extent>::mutate(std::span<const float, extent> genes, base::RandomStream& random,
+                                       const Change& change, const Clamp& clamp_all) const {
+    const unsigned end = range().first + range().count;
+    // Calls change_gene for every gene of the range with the given chance, in order.
+    const auto change_each = [&](const Chance& chance, const auto& change_gene) {
+        for (unsigned first = range().first; first < end; first += genes_per_draw) {
+            const std::uint32_t changing = chance.draw_bits(std::min(genes_per_draw, end - first), random);
+            for_each_gene(changing, [&](unsigned i) { change_gene(first + i); });
+        }
+    };
     if (!creep_chance_.is_never()) {
-        for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
+        change_each(creep_chance_, [&](unsigned gene) {
             const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
-            change(gene, ChangeKind::Creep, static_cast<float>(genes[gene] + step_ * unit));
+            change(gene, ChangeKind::Creep, static_cast<float>(genes[gene] + steps_[gene] * unit));
         });
     }
     if (!reset_chance_.is_never()) {
-        for_each_gene(reset_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
+        change_each(reset_chance_, [&](unsigned gene) {
             change(gene, ChangeKind::Reset, static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene])));
         });
     }
@@ -176,43 +206,53 @@ unsigned ValueMutation::mutate(ConstGenes genes, base::RandomStream& random, con
     }
     const unsigned clamped = clamp_all();
     if (!bit_flip_chance_.is_never()) {
-        flip_bits(genes, random, change);
+        for (unsigned first = range().first; first < end; first += genes_per_flips) {
+            flip_bits(genes, {first, std::min(genes_per_flips, end - first)}, random, change);
+        }
     }
     return clamped;
 }
 
-std::optional<GeneChange> ValueMutation::draw_scale(ConstGenes genes, base::RandomStream& random) const {
+template <std::size_t extent>
+std::optional<GeneChange> ValueMutation<extent>::draw_scale(std::span<const float, extent> genes,
+                                                            base::RandomStream& random) const {
     if (!scale_chance_.draw(random)) {
         return std::nullopt;
     }
-    const unsigned gene = random.below(gene_count);
+    const unsigned gene = range().first + random.below(range().count);
     const double factor = 1 + scale_range_ * symmetric_uniform(random);
     const float before = genes[gene];
     return GeneChange{gene, ChangeKind::Scale, before, static_cast<float>(static_cast<double>(before) * factor)};
 }
 
+template <std::size_t extent>
 template <class Change>
-void ValueMutation::flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const {
-    std::array<std::uint32_t, gene_count> flips{};
+void ValueMutation<extent>::flip_bits(std::span<const float, extent> genes, GeneRange block, base::RandomStream& random,
+                                      const Change& change) const {
+    std::array<std::uint32_t, genes_per_flips> flips{};
     if (rare_flips_) {
         // Divides by bits_ without a division. The result is exact because there are few trials: the error of the
-        // reciprocal adds up to less than 2^16.
+        // reciprocal adds up to less than 2^16. Trials beyond the genes of the block have no effect.
         const unsigned reciprocal = (1u << 16) / bits_ + 1;
         rare_flips_->draw(random, [&](unsigned trial) {
             const unsigned gene = trial * reciprocal >> 16;
             flips[gene] |= 1u << (trial - gene * bits_);
         });
     } else {
-        for (std::uint32_t& flipped : flips) {
-            flipped = bit_flip_chance_.draw_bits(bits_, random);
+        for (unsigned i = 0; i < block.count; ++i) {
+            flips[i] = bit_flip_chance_.draw_bits(bits_, random);
         }
     }
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        if (flips[gene] != 0) {
+    for (unsigned i = 0; i < block.count; ++i) {
+        if (flips[i] != 0) {
+            const unsigned gene = block.first + i;
             const BinaryView view{bounds_.min[gene], bounds_.max[gene], bits_};
-            change(gene, ChangeKind::BitFlip, view.to_value(view.to_code(genes[gene]) ^ flips[gene]));
+            change(gene, ChangeKind::BitFlip, view.to_value(view.to_code(genes[gene]) ^ flips[i]));
         }
     }
 }
+
+template class ValueMutation<body_gene_count>;
+template class ValueMutation<>;
 
 } // namespace evod::evolution

@@ -8,6 +8,7 @@
 #include "server/base/random.h"
 #include "server/evolution/chance.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/gene_mask.h"
 #include "server/evolution/parameters.h"
 #include "server/evolution/rare_events.h"
 
@@ -41,14 +42,16 @@ struct GeneChange {
 /// Works like clamp() in chromosome.h, and also appends the genes that it moved to `changes`.
 unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes);
 
+template <std::size_t extent = std::dynamic_extent>
 class ValueMutation {
   public:
     explicit ValueMutation(const Parameters& parameters);
 
-    /// Mutates one chromosome, in this order:
+    /// Mutates one chromosome, in this order. Only the genes of mutate_group change, except that all genes are moved to
+    /// their bounds.
     ///
-    /// creep     adds mutation_step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or
-    ///           standard normal.
+    /// creep     adds step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or standard normal,
+    ///           and the step is mutation_step, brain_mutation_step or free_mutation_step.
     /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
     /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1). Each
     ///           gene is equally likely. Draws the chance, the gene and one word.
@@ -57,28 +60,41 @@ class ValueMutation {
     ///           bit keeps its exact value. A gene with one gets the value of its new code.
     ///
     /// returns  the number of clamped genes.
-    unsigned apply(Genes genes, base::RandomStream& random) const;
+    unsigned apply(std::span<float, extent> genes, base::RandomStream& random) const;
     /// Mutates one chromosome, and also appends the changes to `changes`, in order.
-    unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
+    unsigned apply(std::span<float, extent> genes, base::RandomStream& random, std::vector<GeneChange>& changes) const
+        requires(extent == std::dynamic_extent);
 
   private:
     /// Mutates a chromosome. change(gene, kind, value) must set a gene.
     template <class Change, class Clamp>
-    unsigned mutate(ConstGenes genes, base::RandomStream& random, const Change& change, const Clamp& clamp_all) const;
-    std::optional<GeneChange> draw_scale(ConstGenes genes, base::RandomStream& random) const;
+    unsigned mutate(std::span<const float, extent> genes, base::RandomStream& random, const Change& change,
+                    const Clamp& clamp_all) const;
+    std::optional<GeneChange> draw_scale(std::span<const float, extent> genes, base::RandomStream& random) const;
     template <class Change>
-    void flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const;
+    void flip_bits(std::span<const float, extent> genes, GeneRange block, base::RandomStream& random,
+                   const Change& change) const;
 
+    /// The genes that mutate.
+    constexpr GeneRange range() const {
+        if constexpr (extent == std::dynamic_extent) {
+            return range_;
+        } else {
+            return {0, extent};
+        }
+    }
+
+    GeneRange range_;
     GeneBounds bounds_;
     Creep creep_;
     Chance creep_chance_;
-    double step_;
+    PerGene<double, extent> steps_{};
     Chance reset_chance_;
     Chance scale_chance_;
     double scale_range_;
     Chance bit_flip_chance_;
     unsigned bits_;
-    std::optional<RareEvents> rare_flips_; // over the bits of a chromosome, if flips are rare
+    std::optional<RareEvents> rare_flips_; // over the bits of a block of genes, if flips are rare
 };
 
 } // namespace evod::evolution

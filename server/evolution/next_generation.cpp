@@ -1,88 +1,9 @@
 #include "server/evolution/next_generation.h"
 
 #include "server/base/assert.h"
-#include "server/evolution/breeding.h"
-
-#include <algorithm>
-#include <numeric>
+#include "server/evolution/breeding_loops.h"
 
 namespace evod::evolution {
-namespace {
-
-constexpr std::size_t pairs_per_piece = 512;
-constexpr std::size_t survivors_per_piece = 1024;
-constexpr std::size_t pairs_prefetched = 8;
-
-class Breeding {
-  public:
-    Breeding(const GeneMatrix& genes, const Parameters& parameters, const BreedingKey& key, base::Executor& executor)
-        : present_{genes}, executor_{executor}, descent_{genes, parameters, key} {}
-
-    /// Copies the survivors, and mutates all of them except the first `kept`.
-    void keep(std::span<const std::uint32_t> survivors, std::uint32_t kept, NextGeneration& next) const {
-        next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
-            const auto place = static_cast<std::uint32_t>(i);
-            if (i + pairs_prefetched < survivors.size()) {
-                prefetch(survivors[i + pairs_prefetched]);
-            }
-            next.parents[i] = {survivors[i], survivors[i]};
-            return descent_.keep(survivors[i], place, place >= kept, column(next.genes, place), WithoutRecord{});
-        });
-    }
-
-    /// Fills the places from `first` on with two children per pair; the last pair may have room for only one.
-    void breed(std::span<const Parents> pairs, std::uint32_t first, NextGeneration& next) const {
-        const auto organisms = static_cast<std::uint32_t>(next.genes.cols());
-        next.clamped_count += counted(pairs.size(), pairs_per_piece, [&](std::size_t i) {
-            if (i + pairs_prefetched < pairs.size()) {
-                prefetch(pairs[i + pairs_prefetched].first);
-                prefetch(pairs[i + pairs_prefetched].second);
-            }
-            const Parents pair = pairs[i];
-            Mixture mixture;
-            descent_.draw_mixture(static_cast<std::uint32_t>(i), mixture);
-            GeneMask mask = mixture.from_second;
-            unsigned clamped = 0;
-            const auto begin = first + 2 * static_cast<std::uint32_t>(i);
-            for (std::uint32_t place = begin; place < std::min(begin + 2, organisms); ++place, mask = ~mask) {
-                const Inheritance inheritance = inheritance_of(pair, mask);
-                next.parents[place] = inheritance.parents;
-                clamped += descent_.make_child(inheritance, mixture.second_share, place, column(next.genes, place),
-                                               WithoutRecord{});
-            }
-            return clamped;
-        });
-    }
-
-  private:
-    /// Prefetches a chromosome that will be read soon, because parents are scattered over memory.
-    void prefetch(std::uint32_t organism) const {
-        const ConstGenes genes = column(present_, organism);
-        __builtin_prefetch(&genes.front());
-        __builtin_prefetch(&genes.back());
-    }
-
-    /// Runs `work` for each index and returns the sum of its results.
-    template <class Work>
-    std::uint64_t counted(std::size_t count, std::size_t grain, const Work& work) const {
-        std::vector<std::uint64_t> of_piece((count + grain - 1) / grain);
-        executor_.parallel_for(count, grain, [&](base::Range piece) {
-            std::uint64_t sum = 0;
-            for (std::size_t i = piece.begin; i < piece.end; ++i) {
-                sum += work(i);
-            }
-            of_piece[piece.begin / grain] = sum;
-        });
-        return std::accumulate(of_piece.begin(), of_piece.end(), std::uint64_t{0});
-    }
-
-    const GeneMatrix& present_;
-    base::Executor& executor_;
-    Descent descent_;
-};
-
-} // namespace
-
 NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, base::Executor& executor) {
     EVOD_ASSERT(!fitness.empty());
@@ -92,14 +13,16 @@ NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix
     const Choice choice = choose(ranking, parameters, wanted, key, executor);
     const Places& places = choice.places;
 
-    NextGeneration next{.genes = GeneMatrix(gene_count, wanted),
+    NextGeneration next{.genes = GeneMatrix(genes.rows(), wanted),
                         .parents = std::vector<Parents>(wanted),
                         .elite_count = places.elite,
                         .survivor_count = places.survivors,
                         .clamped_count = 0};
-    const Breeding breeding{genes, parameters, key, executor};
-    breeding.keep(choice.survivors(), parameters.mutate_survivors ? places.elite : places.survivors, next);
-    breeding.breed(choice.pairs, places.survivors, next);
+    if (genes.rows() == body_gene_count) {
+        fill<body_gene_count>(next, choice, genes, parameters, key, executor);
+    } else {
+        fill_wide(next, choice, genes, parameters, key, executor);
+    }
     return next;
 }
 

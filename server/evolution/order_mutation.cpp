@@ -10,37 +10,33 @@ struct Slice {
     unsigned first, last; // first < last, both inclusive
 };
 
-Slice draw_slice(base::RandomStream& random) {
+Slice draw_slice(unsigned gene_count, base::RandomStream& random) {
     const unsigned a = random.below(gene_count);
     const unsigned other = random.below(gene_count - 1);
     const unsigned b = other < a ? other : other + 1;
     return {std::min(a, b), std::max(a, b)};
 }
 
-template <class T>
-void swap_pair(std::span<T, gene_count> genes, base::RandomStream& random) {
-    const Slice pair = draw_slice(random);
+template <class T, std::size_t extent>
+void swap_pair(std::span<T, extent> genes, base::RandomStream& random) {
+    const Slice pair = draw_slice(static_cast<unsigned>(genes.size()), random);
     std::swap(genes[pair.first], genes[pair.last]);
 }
 
 } // namespace
 
 OrderMutation::OrderMutation(const Parameters& parameters)
-    : method_{parameters.rearranging}, chance_{parameters.rearrange_chance} {}
+    : method_{parameters.rearranging}
+    , chance_{parameters.rearrange_chance}
+    , range_{genes_of(parameters.mutate_group, parameters)} {}
 
-bool OrderMutation::apply(Genes genes, base::RandomStream& random) const {
-    return mutate_order(genes, random);
-}
-
-bool OrderMutation::apply(GeneOrder order, base::RandomStream& random) const {
-    return mutate_order(order, random);
-}
-
-template <class T>
-bool OrderMutation::mutate_order(std::span<T, gene_count> genes, base::RandomStream& random) const {
-    if (is_off() || !chance_.draw(random)) {
+template <class T, std::size_t extent>
+bool OrderMutation::apply(std::span<T, extent> items, base::RandomStream& random) const {
+    const std::span<T, extent> genes = part_of(items, range_);
+    if (is_off() || genes.size() < 2 || !chance_.draw(random)) {
         return false;
     }
+    const auto gene_count = static_cast<unsigned>(genes.size());
     switch (method_) {
     case OrderMutationMethod::None:
         break;
@@ -53,17 +49,20 @@ bool OrderMutation::mutate_order(std::span<T, gene_count> genes, base::RandomStr
         break;
     }
     case OrderMutationMethod::Scramble: {
-        const Slice slice = draw_slice(random);
+        const Slice slice = draw_slice(gene_count, random);
         random.shuffle(std::span<T>{genes}.subspan(slice.first, slice.last - slice.first + 1));
         break;
     }
     case OrderMutationMethod::Inversion: {
-        const Slice slice = draw_slice(random);
+        const Slice slice = draw_slice(gene_count, random);
         std::reverse(genes.begin() + slice.first, genes.begin() + slice.last + 1);
         break;
     }
     }
     return true;
 }
+template bool OrderMutation::apply(std::span<float, body_gene_count>, base::RandomStream&) const;
+template bool OrderMutation::apply(Genes, base::RandomStream&) const;
+template bool OrderMutation::apply(std::span<std::uint32_t>, base::RandomStream&) const;
 
 } // namespace evod::evolution

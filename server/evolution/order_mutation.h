@@ -14,37 +14,32 @@
 
 namespace evod::evolution {
 
-/// Element i is the index of the gene whose value gene i received.
-using GeneOrder = std::span<std::uint32_t, gene_count>;
-
 class OrderMutation {
   public:
     explicit OrderMutation(const Parameters& parameters);
 
-    /// Mutates with probability rearrange_chance. A pair or slice is given by two different indices; every choice of
-    /// them is equally likely.
+    /// Mutates with probability rearrange_chance. Only the genes of mutate_group take part; if there is only one, nothing
+    /// happens. A pair or slice is given by two different indices; every choice of them is equally likely.
     ///
     /// swap       the two genes of a pair exchange values; with probability 1/2 so do those of a second pair, which may
     ///            be the same pair.
     /// scramble   the genes of a slice, both ends included, are shuffled; every order is equally likely, the present
-    ///            one too. If all genes differ, nothing changes with probability 2383/10800.
+    ///            one too. If there are six genes and all differ, nothing changes with probability 2383/10800.
     /// inversion  the genes of a slice, both ends included, are reversed.
     ///
     /// Genes may be out of their bounds afterwards, because each gene has its own bounds.
     ///
+    /// items    one element per gene of the chromosome: the values of the genes, or anything that moves with them.
     /// returns  whether the operation was applied (probability rearrange_chance).
-    bool apply(Genes genes, base::RandomStream& random) const;
-    /// Applies the same operation to gene indices instead of gene values.
-    bool apply(GeneOrder order, base::RandomStream& random) const;
+    template <class T, std::size_t extent>
+    bool apply(std::span<T, extent> items, base::RandomStream& random) const;
 
     bool is_off() const { return method_ == OrderMutationMethod::None || chance_.is_never(); }
 
   private:
-    template <class T>
-    bool mutate_order(std::span<T, gene_count> items, base::RandomStream& random) const;
-
     OrderMutationMethod method_;
     Chance chance_;
+    GeneRange range_;
 };
 
 } // namespace evod::evolution

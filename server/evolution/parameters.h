@@ -13,6 +13,7 @@ enum class SelectionMethod { Roulette, StochasticUniversal, Tournament, Random, 
 enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, Blend, None };
 enum class OrderMutationMethod { None, Swap, Scramble, Inversion };
 enum class Creep { Uniform, Gaussian };
+enum class GeneGroup { All, Body, Brain, Free };
 enum class Topology { None, Ring, FullyConnected, Random };
 enum class Emigrants { Best, Random };
 enum class Replaced { Worst, Random };
@@ -26,6 +27,7 @@ EVOD_CHOICE_NAMES(evod::evolution::SelectionMethod, "roulette", "stochastic_univ
 EVOD_CHOICE_NAMES(evod::evolution::CrossoverMethod, "uniform", "single_point", "multi_point", "blend", "none")
 EVOD_CHOICE_NAMES(evod::evolution::OrderMutationMethod, "none", "swap", "scramble", "inversion")
 EVOD_CHOICE_NAMES(evod::evolution::Creep, "uniform", "gaussian")
+EVOD_CHOICE_NAMES(evod::evolution::GeneGroup, "all", "body", "brain", "free")
 EVOD_CHOICE_NAMES(evod::evolution::Topology, "none", "ring", "fully_connected", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Emigrants, "best", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
@@ -49,18 +51,21 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents.")                   \
     REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
     COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
+    CHOICE(mutate_group, GeneGroup, All, NextTick, "Which genes mutate: all, those of the body, the weights of the brain, or the free genes. Crossover mixes all genes.") \
     CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how the values of genes are exchanged within a chromosome.") \
     REAL(rearrange_chance, 0.1, 0, 1, "chance", NextTick, "Chance per chromosome of an order mutation.")               \
-    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ±mutation_step, or gaussian with the standard deviation mutation_step.") \
+    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ± the step, or gaussian with the step as standard deviation. The step of a gene of the body is mutation_step, that of a weight of the brain is brain_mutation_step, and that of a free gene is free_mutation_step.") \
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
-    REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation: its largest step if creep is uniform, its standard deviation if creep is gaussian.")                              \
+    REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a gene of the body: its largest step if creep is uniform, its standard deviation if creep is gaussian.") \
+    REAL(brain_mutation_step, 0.5, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a weight of the brain, as for mutation_step.") \
+    REAL(free_mutation_step, 0.1, 0, 1e6, "gene units", NextTick, "Size of a creep mutation of a free gene, as for mutation_step.") \
     REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
     REAL(scale_chance, 0, 0, 1, "chance", NextTick, "Chance per chromosome that one random gene is multiplied by a random factor; 0 means off.") \
     REAL(scale_range, 0.1, 0, 1, "", NextTick, "Range of the factor of a scale mutation: uniform between 1 − scale_range and 1 + scale_range.") \
     REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
     COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
-    REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene in the first generation.")      \
-    REAL(initial_gene_max, 120, 0, 10'000, "gene units", Reset, "Highest value of a gene in the first generation.")    \
+    REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene of the body in the first generation.") \
+    REAL(initial_gene_max, 120, 0, 10'000, "gene units", Reset, "Highest value of a gene of the body in the first generation.") \
     REAL(normal_speed_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene normal_speed.")             \
     REAL(normal_speed_max, 250, 0, 10'000, "gene units", NextTick, "Upper bound of the gene normal_speed.")            \
     REAL(impulse_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene impulse.")                       \
@@ -73,6 +78,9 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     REAL(food_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene food_radius.")              \
     REAL(poison_radius_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene poison_radius.")           \
     REAL(poison_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene poison_radius.")          \
+    COUNT(free_genes, 0, 0, 1000, "genes", Reset, "Genes beyond those of the body, which the simulation does not read; for a fitness function outside evod. Their names are free0, free1, and so on.") \
+    REAL(free_gene_min, 0, -1e6, 1e6, "gene units", NextTick, "Lower bound of every free gene. In the first generation, free genes are uniform between their bounds.") \
+    REAL(free_gene_max, 1, -1e6, 1e6, "gene units", NextTick, "Upper bound of every free gene.") \
     COUNT(generation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations; 0 means no limit.") \
     FLAG(stop_at_target_fitness, false, NextTick, "Whether the run ends when an organism reaches target_fitness.")     \
     REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "Fitness at which the run ends if stop_at_target_fitness is on.") \

@@ -21,10 +21,10 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/pairing.h"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace evod::evolution {
 
@@ -36,7 +36,7 @@ struct GeneAccount {
 };
 
 /// One account per gene, in chromosome order.
-using SelectionAccount = std::array<GeneAccount, gene_count>;
+using SelectionAccount = std::vector<GeneAccount>;
 
 /// Computes how the genes changed from the previous generation to this one.
 ///
@@ -48,11 +48,13 @@ using SelectionAccount = std::array<GeneAccount, gene_count>;
 SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_from, const GeneMatrix& born,
                              std::span<const Parents> parents, base::Executor& executor);
 
-/// Calls visit(name, value) for every number, in the order of columns in files. A value is a std::optional<double>,
-/// nullopt if there is no account.
-template <class Visit>
-void for_each_number(const std::optional<SelectionAccount>& account, Visit&& visit) {
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+/// Calls visit(name, value) for every number of the first genes, in the order of columns in files. A value is a
+/// std::optional<double>, nullopt if there is no account.
+///
+/// gene_names  the names of the genes, in chromosome order; at most as many as the account has.
+template <class Names, class Visit>
+void for_each_number(const std::optional<SelectionAccount>& account, const Names& gene_names, Visit&& visit) {
+    for (std::size_t gene = 0; gene < gene_names.size(); ++gene) {
         const auto number = [&](const char* name, double GeneAccount::*of) {
             visit(std::string{gene_names[gene]} + name,
                   account ? std::optional{(*account)[gene].*of} : std::optional<double>{});
@@ -64,13 +66,13 @@ void for_each_number(const std::optional<SelectionAccount>& account, Visit&& vis
     }
 }
 
-/// The inverse of for_each_number(): reads an account; nullopt if any number is missing.
+/// The inverse of for_each_number(): reads the account of `gene_count` genes; nullopt if any number is missing.
 ///
 /// next  must return the next number, a std::optional<double>; called once per number, in the order of
 ///       for_each_number().
 template <class Next>
-std::optional<SelectionAccount> account_from(Next&& next) {
-    SelectionAccount account;
+std::optional<SelectionAccount> account_from(std::size_t gene_count, Next&& next) {
+    SelectionAccount account(gene_count);
     bool whole = true;
     for (GeneAccount& gene : account) {
         for (double* number : {&gene.selection, &gene.transmission, &gene.migration, &gene.change}) {

@@ -3,7 +3,9 @@
 #include "proto/codec/population_csv.h"
 #include "server/files/regular_file.h"
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -15,6 +17,21 @@ using base::RefusalCode;
 namespace {
 
 constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take about 70 MB
+
+/// Returns a violation if a file has other columns than the world has genes.
+std::optional<base::Violation> other_genes(const std::vector<std::string>& in_file,
+                                           const std::vector<std::string>& in_world) {
+    const auto [file, world] = std::ranges::mismatch(in_file, in_world);
+    if (file == in_file.end() && world == in_world.end()) {
+        return std::nullopt;
+    }
+    const auto column = [](auto name, const std::vector<std::string>& names) {
+        return name == names.end() ? "no column" : "the column " + *name;
+    };
+    return base::Violation{"population: gene " + std::to_string(file - in_file.begin() + 1) + " of " +
+                               std::to_string(in_world.size()),
+                           column(world, in_world), column(file, in_file)};
+}
 
 } // namespace
 
@@ -28,15 +45,20 @@ base::Result<simulation::FirstPopulation> load_population(const std::string& pat
         return text.error();
     }
     std::istringstream csv{*std::move(text)};
-    const auto islands = codec::read_population(csv);
-    if (!islands) {
-        return refusal(RefusalCode::InvalidArgument, path + ": " + islands.error().what);
+    const auto read = codec::read_population(csv);
+    if (!read) {
+        return refusal(RefusalCode::InvalidArgument, path + ": " + read.error().what);
     }
-    static_assert(codec::population_genes == evolution::gene_count);
+    if (auto wrong = other_genes(read->gene_names, evolution::gene_layout(parameters).names)) {
+        return base::Refusal{.code = RefusalCode::InvalidArgument,
+                             .message = path + ": does not match the parameters of the world",
+                             .violations = {*std::move(wrong)}};
+    }
     std::vector<evolution::GeneMatrix> matrices;
-    for (const std::vector<float>& genes : *islands) {
+    for (std::size_t island = 0; island < read->islands.size(); ++island) {
         matrices.push_back(Eigen::Map<const evolution::GeneMatrix>{
-            genes.data(), evolution::gene_count, static_cast<Eigen::Index>(genes.size() / evolution::gene_count)});
+            read->islands[island].data(), static_cast<Eigen::Index>(read->gene_names.size()),
+            static_cast<Eigen::Index>(read->organism_count(island))});
     }
     const simulation::FirstPopulation population =
         std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(matrices));

@@ -180,7 +180,7 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
     for (const parameters::ParameterDescription* parameter : sweep.swept) {
         columns.emplace_back(parameter->name);
     }
-    const std::vector<std::string> statistics = replay::statistics_columns();
+    const std::vector<std::string> statistics = replay::statistics_columns(replay::body_gene_names());
     columns.insert(columns.end(), statistics.begin(), statistics.end());
     return columns;
 }

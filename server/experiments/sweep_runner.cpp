@@ -21,12 +21,13 @@ using parameters::Parameters;
 /// Writes the rows of the generation that has just ended, in the format of runs.csv.
 void write_generation(replay::Table& table, const Sweep& sweep, std::size_t run, const simulation::World& world) {
     const std::size_t cell = run / sweep.replicates, replicate = run % sweep.replicates;
+    static const std::vector<std::string> body_genes = replay::body_gene_names();
     for (const simulation::GenerationStatistics& statistics : world.history().back()) {
         table.number(cell).number(replicate).number(world.seed().value);
         for (const parameters::ParameterValue& value : sweep.cells[cell]) {
             table.text(parameters::to_text(value));
         }
-        replay::write_row(table, statistics);
+        replay::write_row(table, statistics, body_genes);
     }
 }
 

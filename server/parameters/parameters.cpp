@@ -4,6 +4,7 @@
 #include "proto/text/suggestion.h"
 #include "server/base/elementary.h"
 #include "server/base/overloaded.h"
+#include "server/evolution/gene_layout.h"
 
 #include <algorithm>
 #include <charconv>
@@ -286,6 +287,13 @@ bool has_bodies(const Parameters& parameters) {
            (parameters.fitness == FitnessFunction::External && parameters.external_bodies);
 }
 
+namespace {
+
+/// The genes of all organisms together: 4 million organisms with 31 genes each, or 1.9 million with 64.
+constexpr double genes_max = 124e6;
+
+} // namespace
+
 std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
     std::vector<base::Violation> violations;
     const auto refuse = [&](std::string_view field, std::string allowed, std::string got) {
@@ -303,6 +311,7 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     require_order("base_health_max", p.base_health_max, "base_health_min", p.base_health_min);
     require_order("food_radius_max", p.food_radius_max, "food_radius_min", p.food_radius_min);
     require_order("poison_radius_max", p.poison_radius_max, "poison_radius_min", p.poison_radius_min);
+    require_order("free_gene_max", p.free_gene_max, "free_gene_min", p.free_gene_min);
     require_order("tournament_size", p.tournament_size, "tournament_winners", p.tournament_winners);
     if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement) {
         require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
@@ -314,6 +323,15 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     if (organisms > 4e6) {
         refuse("island_count", "at most 4000000 organisms on all islands together",
                std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
+    }
+    if (const double genes = organisms * evolution::gene_count(p); genes > genes_max) {
+        refuse("free_genes", "at most " + number_text(genes_max) + " genes in all organisms together",
+               number_text(organisms) + " organisms with a total of " + number_text(genes) + " genes");
+    }
+    if (evolution::genes_of(p.mutate_group, p).count == 0) {
+        const bool brain = p.mutate_group == evolution::GeneGroup::Brain;
+        refuse("mutate_group", brain ? "all, body or free: organisms have no brain" : "all, body or brain: free_genes is 0",
+               brain ? "brain" : "free");
     }
 
     if (!has_bodies(p)) {

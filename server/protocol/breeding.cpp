@@ -68,7 +68,7 @@ v1::DescendantKind kind_of(std::uint32_t id, const evolution::Places& places) {
 
 v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant, const evolution::Places& places,
                         evolution::OrderMutationMethod rearranging) {
-    const auto add = [](const evolution::Chromosome& genes, auto& to) { to.Add(genes.begin(), genes.end()); };
+    const auto add = [](const std::vector<float>& genes, auto& to) { to.Add(genes.begin(), genes.end()); };
     v1::Descendant to;
     to.set_id(descendant.id);
     to.set_kind(kind_of(descendant.id, places));
@@ -76,7 +76,9 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     to.set_second_parent(descendant.parents.second);
     add(descendant.first_genes, *to.mutable_first_genes());
     add(descendant.second_genes, *to.mutable_second_genes());
-    to.set_from_second(descendant.from_second);
+    const auto words = descendant.from_second.words();
+    to.set_from_second(words.front());
+    to.mutable_more_from_second()->Add(words.begin() + 1, words.end());
     to.set_second_share(descendant.second_share);
     to.set_crossed(descendant.crossed);
     if (descendant.order) {

@@ -53,15 +53,8 @@ simulation::PlaceEntities command_of(const v1::Place& request, Violations& viola
     }
     for (int i = 0; i < request.organisms_size(); ++i) {
         const v1::PlacedOrganism& organism = request.organisms(i);
-        simulation::PlaceEntities::Organism& placed = command.organisms.emplace_back(
-            simulation::PlaceEntities::Organism{organism.x_px(), organism.y_px(), evolution::Chromosome::Zero()});
-        if (organism.genes_size() == static_cast<int>(evolution::gene_count)) {
-            std::ranges::copy(organism.genes(), placed.genes.data());
-        } else {
-            violations.push_back({"place.organisms[" + std::to_string(i) + "].genes",
-                                  std::to_string(evolution::gene_count) + " numbers",
-                                  std::to_string(organism.genes_size())});
-        }
+        command.organisms.push_back(simulation::PlaceEntities::Organism{
+            organism.x_px(), organism.y_px(), {organism.genes().begin(), organism.genes().end()}});
     }
     return command;
 }

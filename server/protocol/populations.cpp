@@ -5,7 +5,7 @@
 
 namespace evod::protocol {
 
-simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
+simulation::FirstPopulation first_population_of(const v1::CreateWorld& request, unsigned gene_count,
                                                 std::vector<base::Violation>& violations) {
     if (request.population().empty()) {
         return nullptr;
@@ -15,14 +15,14 @@ simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
     for (int island = 0; island < request.population_size(); ++island) {
         const auto& genes = request.population(island).genes();
         evolution::GeneMatrix& matrix =
-            islands.emplace_back(evolution::gene_count, genes.size() / static_cast<int>(evolution::gene_count));
+            islands.emplace_back(gene_count, genes.size() / static_cast<int>(gene_count));
         if (matrix.size() == genes.size()) {
             std::copy(genes.begin(), genes.end(), matrix.data());
             continue;
         }
         whole = false;
         violations.push_back({"create_world.population[" + std::to_string(island) + "].genes",
-                              "a multiple of " + std::to_string(evolution::gene_count) + " numbers",
+                              "a multiple of " + std::to_string(gene_count) + " numbers",
                               std::to_string(genes.size())});
     }
     return whole ? std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands)) : nullptr;

@@ -50,7 +50,7 @@ void append_column(std::string& bytes, const Rows& rows, Of&& of) {
     constexpr std::size_t number_bytes = sizeof(of(rows.front()));
     using Bits = std::conditional_t<number_bytes == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
     std::size_t at = bytes.size();
-    bytes.resize(at + rows.size() * number_bytes);
+    bytes.resize(at + static_cast<std::size_t>(rows.size()) * number_bytes);
     for (const auto& row : rows) {
         codec::store(std::bit_cast<Bits>(of(row)), &bytes[at]);
         at += number_bytes;
@@ -142,14 +142,14 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
     const std::uint64_t first = query.has_first_generation() ? query.first_generation() : 0;
     const std::uint64_t last =
         query.has_last_generation() ? query.last_generation() : std::numeric_limits<std::uint64_t>::max();
-    answer.begins_late = history.size() >= simulation::World::history_generations_kept_of(world.islands().size()) &&
+    answer.begins_late = history.size() >= world.history_generations_kept_here() &&
                          std::max<std::uint64_t>(first, 1) < history.front().front().generation;
     auto generation = std::partition_point(history.begin(), history.end(),
                                            [first](const auto& rows) { return rows.front().generation < first; });
     std::size_t count = 0;
     for (; generation != history.end() && generation->front().generation <= last; ++generation) {
-        count += query.has_island() ? 1 : generation->size();
-        if (!answer.generations.empty() && count > history_statistics_max) {
+        count += (query.has_island() ? 1 : generation->size()) * generation->front().genes.size();
+        if (!answer.generations.empty() && count > history_statistics_max * evolution::body_gene_count) {
             answer.next_generation = generation->front().generation;
             break;
         }
@@ -198,7 +198,9 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
         return not_found_refusal("organism", "get_population.first_organism", count, first,
                                  base::Reason::OrganismNotFound);
     }
-    const base::Range ids{first, std::min(count, first + population_rows_max)};
+    const auto genes = static_cast<std::size_t>(born.genes.rows());
+    const std::size_t rows_max = std::max<std::size_t>(population_rows_max * evolution::body_gene_count / genes, 1);
+    const base::Range ids{first, std::min(count, first + rows_max)};
     PopulationRows answer{.generation = world.moment().generation,
                           .generation_tick = world.moment().generation_tick,
                           .organism_count = static_cast<std::uint32_t>(count),
@@ -216,10 +218,8 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
             answer.lives.push_back(island.life(static_cast<std::uint32_t>(id), tick));
         }
     }
-    answer.genes.reserve(ids.end - ids.begin);
-    for (std::size_t id = ids.begin; id < ids.end; ++id) {
-        answer.genes.emplace_back(born.genes.col(static_cast<Eigen::Index>(id)));
-    }
+    answer.genes = born.genes.middleCols(static_cast<Eigen::Index>(ids.begin),
+                                         static_cast<Eigen::Index>(ids.end - ids.begin));
     if (!born.parents.empty()) {
         answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
     }
@@ -235,9 +235,10 @@ v1::Population to_proto(const PopulationRows& rows) {
     population.set_generation_tick(rows.generation_tick);
     population.set_organism_count(rows.organism_count);
     population.set_first(rows.first);
-    population.set_count(static_cast<std::uint32_t>(rows.genes.size()));
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-        append_column(*population.mutable_genes(), rows.genes, [gene](const auto& genes) { return genes(gene); });
+    population.set_count(static_cast<std::uint32_t>(rows.genes.cols()));
+    for (Eigen::Index gene = 0; gene < rows.genes.rows(); ++gene) {
+        const Eigen::ArrayXf values = rows.genes.row(gene);
+        append_column(*population.mutable_genes(), values, [](float value) { return value; });
     }
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.first; });
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.second; });
@@ -370,7 +371,9 @@ void add_rows(const QueryResult& result, v1::Response& response) {
 std::size_t row_bytes_max(const v1::Request& request) {
     switch (request.kind_case()) {
     case v1::Request::kGetHistory:
-        return history_statistics_max * sizeof(simulation::GenerationStatistics) +
+        return history_statistics_max * (sizeof(simulation::GenerationStatistics) +
+                                         evolution::body_gene_count *
+                                             (sizeof(simulation::GeneStatistics) + sizeof(evolution::GeneAccount))) +
                simulation::Changes::values_kept * sizeof(simulation::ChangedValue);
     case v1::Request::kGetPopulation:
         return population_rows_max * population_row_bytes;

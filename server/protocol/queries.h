@@ -46,7 +46,7 @@ v1::History to_proto(const HistoryPart& part);
 struct PopulationRows {
     std::uint64_t generation, generation_tick;
     std::uint32_t organism_count, first;
-    std::vector<evolution::Chromosome> genes;
+    evolution::GeneMatrix genes;             // a column for each organism
     std::vector<evolution::Parents> parents; // empty in the first generation
     std::vector<std::uint32_t> founders;     // empty if the founders are unknown
     std::vector<simulation::Intention> intentions;
@@ -54,7 +54,7 @@ struct PopulationRows {
     std::vector<simulation::Island::Life> lives;
     double tick_s; // unit of Life::lived_ticks
 };
-constexpr std::size_t population_row_bytes = sizeof(evolution::Chromosome) + sizeof(evolution::Parents) +
+constexpr std::size_t population_row_bytes = sizeof(evolution::BodyGenes) + sizeof(evolution::Parents) +
                                              sizeof(std::uint32_t) + sizeof(simulation::Intention) +
                                              sizeof(simulation::Island::Life);
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);

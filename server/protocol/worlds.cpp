@@ -35,6 +35,20 @@ v1::Outcome to_proto(evolution::Outcome outcome) {
     return v1::OUTCOME_UNSPECIFIED;
 }
 
+v1::GeneGroup to_proto(evolution::GeneGroup group) {
+    switch (group) {
+    case evolution::GeneGroup::All:
+        break;
+    case evolution::GeneGroup::Body:
+        return v1::GENE_GROUP_BODY;
+    case evolution::GeneGroup::Brain:
+        return v1::GENE_GROUP_BRAIN;
+    case evolution::GeneGroup::Free:
+        return v1::GENE_GROUP_FREE;
+    }
+    return v1::GENE_GROUP_UNSPECIFIED;
+}
+
 v1::Speed to_proto(const simulation::Speed& speed) {
     v1::Speed to;
     if (speed) {
@@ -92,8 +106,10 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
         to.set_run_until_tick(*entry.control.until_tick);
     }
     to.set_ticks_per_s(entry.ticks_per_s);
-    for (const std::string_view name : evolution::gene_names) {
-        to.add_gene_names(std::string{name});
+    const evolution::GeneLayout layout = evolution::gene_layout(world.parameters().active);
+    for (std::size_t gene = 0; gene < layout.names.size(); ++gene) {
+        to.add_gene_names(layout.names[gene]);
+        to.add_gene_groups(to_proto(layout.groups[gene]));
     }
     if (entry.replay) {
         v1::Replay& replay = *to.mutable_replay();
@@ -176,8 +192,8 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     to.set_id(id);
     to.set_island(island.index());
     to.set_generation(world.moment().generation);
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-        to.add_genes(born.genes(gene, id));
+    for (const float gene : evolution::column(born.genes, id)) {
+        to.add_genes(gene);
     }
     const bool is_placed = id >= island.bred_count();
     if (is_placed) {

@@ -25,8 +25,8 @@ std::size_t bytes_of(const Record& record) {
                                   bytes += founders.size() * sizeof(std::uint32_t);
                               }
                               for (const evolution::NextGeneration& born : begun.born) {
-                                  bytes += static_cast<std::size_t>(born.genes.cols()) *
-                                           (sizeof(float) * evolution::gene_count + sizeof(evolution::Parents));
+                                  bytes += static_cast<std::size_t>(born.genes.size()) * sizeof(float) +
+                                           static_cast<std::size_t>(born.genes.cols()) * sizeof(evolution::Parents);
                               }
                               return bytes;
                           },

@@ -62,7 +62,7 @@ bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descen
                 const evolution::NextGeneration& stored) {
     return std::ranges::all_of(descendants, [&](const auto& descendant) {
         return descendant.id < stored.parents.size() && descendant.parents == stored.parents[descendant.id] &&
-               (descendant.genes == stored.genes.col(descendant.id)).all();
+               std::ranges::equal(descendant.genes, evolution::column(stored.genes, descendant.id));
     });
 }
 

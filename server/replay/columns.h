@@ -4,16 +4,25 @@
 #include "server/replay/table.h"
 #include "server/simulation/statistics.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
 namespace evod::replay {
 
 /// The columns of the statistics table.
-std::vector<std::string> statistics_columns();
-void write_row(Table& table, const simulation::GenerationStatistics& statistics);
+///
+/// gene_names  names of the first genes of the chromosomes, all of which the table then contains.
+std::vector<std::string> statistics_columns(std::span<const std::string> gene_names);
+void write_row(Table& table, const simulation::GenerationStatistics& statistics,
+               std::span<const std::string> gene_names);
 
 /// Returns the columns of the table `population`, with which another world can begin.
-std::vector<std::string> population_columns();
+std::vector<std::string> population_columns(std::span<const std::string> gene_names);
+
+/// The names of the genes that the world of a run has.
+std::vector<std::string> gene_names_of(const parameters::Parameters& parameters);
+/// The names of the body genes, which all worlds have.
+std::vector<std::string> body_gene_names();
 
 } // namespace evod::replay

@@ -70,9 +70,10 @@ Result<void> GenerationReader::add_placed(std::uint64_t generation, WholeGenerat
     }
     std::vector<NextGeneration>& born = whole.begun.born;
     whole.placed.resize(born.size());
-    const auto add = [&](std::size_t island, const evolution::Chromosome& genes, std::uint64_t tick) {
-        born[island].genes.conservativeResize(Eigen::NoChange, born[island].genes.cols() + 1);
-        born[island].genes.rightCols<1>() = genes;
+    const auto add = [&](std::size_t island, evolution::ConstGenes genes, std::uint64_t tick) {
+        evolution::GeneMatrix& matrix = born[island].genes;
+        matrix.conservativeResize(Eigen::NoChange, matrix.cols() + 1);
+        std::ranges::copy(genes, evolution::column(matrix, static_cast<std::uint32_t>(matrix.cols() - 1)).begin());
         whole.placed[island].push_back(static_cast<std::uint32_t>(tick));
     };
     const run_file::RunIdentity& identity = file_.identity();
@@ -84,7 +85,7 @@ Result<void> GenerationReader::add_placed(std::uint64_t generation, WholeGenerat
         }
         for (const simulation::Island& island : fork->world().islands()) {
             for (std::uint32_t id = island.bred_count(); id < island.born().genes.cols(); ++id) {
-                add(island.index(), island.born().genes.col(id), island.placed_tick(id));
+                add(island.index(), evolution::column(island.born().genes, id), island.placed_tick(id));
             }
         }
     }
@@ -101,6 +102,10 @@ Result<void> GenerationReader::add_placed(std::uint64_t generation, WholeGenerat
                                                " of the journal placed organisms");
             }
             for (const auto& organism : place->organisms) {
+                if (organism.genes.size() != static_cast<std::size_t>(born[place->island].genes.rows())) {
+                    return damaged(generation, "has another number of genes than an organism that entry " +
+                                                   std::to_string(change.entry) + " of the journal placed");
+                }
                 add(place->island, organism.genes, change.tick - first_tick);
             }
         }

@@ -55,6 +55,15 @@ std::string text_of(const base::StateHash& hash) {
     return to_text(hash);
 }
 
+/// Returns names for this number of genes; messages name the genes that are not body genes by their index.
+std::vector<std::string> names_of(std::size_t gene_count) {
+    std::vector<std::string> names{evolution::body_gene_names.begin(), evolution::body_gene_names.end()};
+    for (std::size_t gene = names.size(); gene < gene_count; ++gene) {
+        names.push_back("gene " + std::to_string(gene));
+    }
+    return names;
+}
+
 template <class T>
 Found compare_part(const std::string& part, const T& stored, const T& simulated) {
     if (stored == simulated) {
@@ -106,9 +115,14 @@ Found compare_account(const std::string& name, const std::string& of_island,
     if (!stored) {
         return std::nullopt;
     }
-    const auto texts_of = [](const std::optional<evolution::SelectionAccount>& account) {
+    const std::vector<std::string> names = names_of(stored->size());
+    if (simulated && simulated->size() != stored->size()) {
+        return compare_part(name + "the number of genes" + of_island, std::uint64_t{stored->size()},
+                            std::uint64_t{simulated->size()});
+    }
+    const auto texts_of = [&](const std::optional<evolution::SelectionAccount>& account) {
         std::vector<std::string> texts;
-        evolution::for_each_number(account, [&](const std::string&, std::optional<double> value) {
+        evolution::for_each_number(account, names, [&](const std::string&, std::optional<double> value) {
             texts.push_back(value ? text_of(*value) : "none");
         });
         return texts;
@@ -116,7 +130,7 @@ Found compare_account(const std::string& name, const std::string& of_island,
     const std::vector<std::string> ours = texts_of(stored), again = texts_of(simulated);
     Found found;
     std::size_t place = 0;
-    evolution::for_each_number(stored, [&](const std::string& number, auto) {
+    evolution::for_each_number(stored, names, [&](const std::string& number, auto) {
         if (!found && ours[place] != again[place]) {
             found = Mismatch{name + number + of_island, ours[place], again[place]};
         }
@@ -129,6 +143,10 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
     const auto genes_of = [](const NextGeneration& born) {
         return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
     };
+    if (auto found = compare_part("the number of genes" + of_island, static_cast<std::uint64_t>(stored.genes.rows()),
+                                  static_cast<std::uint64_t>(simulated.genes.rows()))) {
+        return found;
+    }
     const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
     if (stored_genes.size() != simulated_genes.size()) {
         return compare_part("the number of organisms" + of_island, static_cast<std::uint64_t>(stored.genes.cols()),
@@ -136,9 +154,9 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
     }
     if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
         const auto place = static_cast<std::size_t>(one - stored_genes.begin());
-        return compare_part("the chromosomes: gene " +
-                                std::string{evolution::gene_names[place % evolution::gene_count]} + " of organism " +
-                                std::to_string(place / evolution::gene_count) + of_island,
+        const auto gene_count = static_cast<std::size_t>(stored.genes.rows());
+        return compare_part("the chromosomes: gene " + names_of(gene_count)[place % gene_count] + " of organism " +
+                                std::to_string(place / gene_count) + of_island,
                             double{*one}, double{*other});
     }
     if (auto found =
@@ -184,12 +202,20 @@ Found compare_island(const std::string& of_island, const run_file::IslandOutcome
 
 Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
                      const simulation::GenerationStatistics& simulated) {
+    if (auto found = compare_part("the statistics: the number of genes" + of_island, stored.genes.size(),
+                                  simulated.genes.size())) {
+        return found;
+    }
+    const std::vector<std::string> names = names_of(stored.genes.size());
+    const auto for_each_number = [&](const auto& statistics, const auto& visit) {
+        simulation::for_each_number(statistics, visit);
+        simulation::for_each_gene_number(statistics, names, visit);
+    };
     std::vector<std::string> again;
-    simulation::for_each_number(simulated,
-                                [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
+    for_each_number(simulated, [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
     Found found;
     auto simulated_text = again.begin();
-    simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
+    for_each_number(stored, [&](const std::string& name, const auto& value) {
         const std::string text = text_of(value); // the text contains all digits
         if (!found && text != *simulated_text) {
             found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};

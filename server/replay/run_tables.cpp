@@ -182,14 +182,15 @@ std::string kind_of(const v1::Request& request) {
 }
 
 Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
-    Table table{out, format, statistics_columns()};
+    const std::vector<std::string> gene_names = gene_names_of(run.file.identity().parameters);
+    Table table{out, format, statistics_columns(gene_names)};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
         const auto statistics = run.file.generations().statistics_of(generation);
         if (!statistics) {
             return statistics.error();
         }
         for (const simulation::GenerationStatistics& island : *statistics) {
-            write_row(table, island);
+            write_row(table, island, gene_names);
         }
         return {};
     });
@@ -197,7 +198,8 @@ Result<void> write_generations(const RunSource& run, std::ostream& out, Table::F
 
 Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::Format format) {
     std::vector<std::string> columns{"generation", "island", "organism", "parent_first", "parent_second", "origin"};
-    columns.insert(columns.end(), evolution::gene_names.begin(), evolution::gene_names.end());
+    const std::vector<std::string> gene_names = gene_names_of(run.file.identity().parameters);
+    columns.insert(columns.end(), gene_names.begin(), gene_names.end());
     columns.insert(columns.end(), {"fitness", "lived_s", "cause"});
     Table table{out, format, std::move(columns)};
     GenerationReader reader{run.file, run.executor, run.stop};
@@ -305,7 +307,7 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
         const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
         population.push_back(genes.leftCols(genes.cols() - std::ssize(whole->placed[i])));
     }
-    write_population(population, format, out);
+    write_population(population, gene_names_of(run.file.identity().parameters), format, out);
     return {};
 }
 
@@ -363,8 +365,9 @@ std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
     return count;
 }
 
-void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out) {
-    Table table{out, format, population_columns()};
+void write_population(const std::vector<evolution::GeneMatrix>& population, std::span<const std::string> gene_names,
+                      Table::Format format, std::ostream& out) {
+    Table table{out, format, population_columns(gene_names)};
     for (std::size_t island = 0; island < population.size(); ++island) {
         const evolution::GeneMatrix& genes = population[island];
         for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {

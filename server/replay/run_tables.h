@@ -58,6 +58,7 @@ base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, 
 std::uint64_t generations_out_of_reach(run_file::RunFile& file);
 
 /// Writes a population that is not from a run file as a table `population`.
-void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out);
+void write_population(const std::vector<evolution::GeneMatrix>& population, std::span<const std::string> gene_names,
+                      Table::Format format, std::ostream& out);
 
 } // namespace evod::replay

@@ -41,7 +41,7 @@ bool can_be_simulated(const StoredGeneration& generation) {
     const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
-        return born.genes.cols() == parameters.population_size &&
+        return born.genes.cols() == parameters.population_size && born.genes.rows() == bounds.min.rows() &&
                ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all();
     });
 }

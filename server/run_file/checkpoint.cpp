@@ -106,17 +106,30 @@ std::vector<IslandShape> with_placed(std::span<const IslandShape> shapes, std::s
     return whole;
 }
 
-std::size_t bytes_of_statistics() {
+/// Calls visit(number) for every number of the statistics.
+template <class Statistics, class Visit>
+void for_each_statistic(Statistics& statistics, const Visit& visit) {
+    simulation::for_each_number(statistics, [&](const std::string&, auto& number) { visit(number); });
+    for (auto& gene : statistics.genes) {
+        visit(gene.mean);
+        visit(gene.deviation);
+        visit(gene.min);
+        visit(gene.max);
+    }
+}
+
+std::size_t bytes_of_statistics(std::size_t gene_count) {
     std::size_t bytes = 0;
-    simulation::for_each_number(GenerationStatistics{}, [&](const std::string&, auto) { bytes += 8; });
+    const GenerationStatistics statistics{.genes = std::vector<simulation::GeneStatistics>(gene_count)};
+    for_each_statistic(statistics, [&](const auto&) { bytes += 8; });
     return bytes;
 }
 
 /// The size in bytes of the numbers of placed entities, and of the genes and ticks of placed organisms.
-std::size_t bytes_of(std::span<const PlacedCounts> placed) {
+std::size_t bytes_of(std::span<const PlacedCounts> placed, std::span<const IslandShape> shapes) {
     std::size_t bytes = 0;
-    for (const PlacedCounts& counts : placed) {
-        bytes += sizeof counts + counts.organisms * sizeof(IslandState::Placed);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        bytes += sizeof placed[i] + placed[i].organisms * (shapes[i].genes * sizeof(float) + sizeof(std::uint32_t));
     }
     return bytes;
 }
@@ -132,7 +145,7 @@ std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
             bytes += shape.organisms * std::size_t{20} + shape.crates * std::size_t{16} +
                      (std::size_t{shape.food} + shape.poison) * 12;
         }
-        bytes += over ? bytes_of_statistics() : 0;
+        bytes += over ? bytes_of_statistics(shape.genes) : 0;
     }
     return bytes;
 }
@@ -255,7 +268,7 @@ std::string pack(const simulation::WorldState& state) {
         given_counts.push_back(static_cast<std::uint32_t>(given.size()));
     }
     Packer packer;
-    packer.expect(bytes_of(shapes, over) + bytes_of(placed) + bytes_of(given_counts));
+    packer.expect(bytes_of(shapes, over) + bytes_of(placed, shapes) + bytes_of(given_counts));
     packer.value(static_cast<std::uint8_t>((over ? over_flag : 0) | (placed.empty() ? 0 : placed_flag) |
                                            (given_counts.empty() ? 0 : given_flag)));
     for (const PlacedCounts& counts : placed) {
@@ -263,7 +276,9 @@ std::string pack(const simulation::WorldState& state) {
     }
     for (const IslandState& island : state.islands) {
         for (const IslandState::Placed& organism : island.placed) {
-            packer.value(organism.genes);
+            for (const float gene : organism.genes) {
+                packer.value(gene);
+            }
             packer.value(organism.tick);
         }
     }
@@ -276,7 +291,7 @@ std::string pack(const simulation::WorldState& state) {
         for_each_column(island, [&](const auto& range, auto&& part) { packer.column(range, part); });
     }
     for (const GenerationStatistics& statistics : state.ended) {
-        simulation::for_each_number(statistics, [&]<class T>(const std::string&, const T& number) {
+        for_each_statistic(statistics, [&]<class T>(const T& number) {
             if constexpr (std::is_floating_point_v<T>) {
                 packer.value(double{number});
             } else {
@@ -305,7 +320,8 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
         most_given.push_back(shape.organisms);
     }
     if (bytes < bytes_of(shapes, false) ||
-        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed) + bytes_of(most_given)) {
+        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed, shapes) +
+                    bytes_of(most_given)) {
         return refusal("its size differs from that of a state of this world");
     }
     std::string columns(bytes, '\0');
@@ -337,7 +353,7 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
     const std::vector<IslandShape> whole = with_placed(shapes, placed);
     const bool has_given = (static_cast<std::uint8_t>(bytes.front()) & given_flag) != 0;
     std::vector<std::uint32_t> given_counts(has_given ? shapes.size() : 0);
-    const std::size_t placed_bytes = bytes_of(placed);
+    const std::size_t placed_bytes = bytes_of(placed, shapes);
     if (bytes.size() < 1 + placed_bytes + given_counts.size() * sizeof(std::uint32_t)) {
         return refusal("its size differs from that of a state of this world");
     }
@@ -359,7 +375,10 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
         state.islands[i].placed_poison = placed[i].poison;
         state.islands[i].placed.resize(placed[i].organisms);
         for (IslandState::Placed& organism : state.islands[i].placed) {
-            columns.value(organism.genes);
+            organism.genes.resize(shapes[i].genes);
+            for (float& gene : organism.genes) {
+                columns.value(gene);
+            }
             columns.value(organism.tick);
         }
     }
@@ -382,8 +401,9 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
             }
         });
     }
-    for (GenerationStatistics& statistics : state.ended) {
-        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& number) {
+    for (std::size_t i = 0; i < state.ended.size(); ++i) {
+        state.ended[i].genes.resize(shapes[i].genes);
+        for_each_statistic(state.ended[i], [&]<class T>(T& number) {
             if constexpr (std::is_floating_point_v<T>) {
                 columns.value(number);
             } else {

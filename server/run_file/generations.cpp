@@ -18,19 +18,58 @@ std::vector<std::int64_t> value_of(std::uint64_t generation) {
     return {static_cast<std::int64_t>(generation)};
 }
 
+std::string more_genes_text(std::uint64_t generation) {
+    return "a row of the further genes of generation " + std::to_string(generation);
+}
+
+/// Returns the row for the genes that are not body genes.
+MoreGenesTable::Row more_genes_row(std::uint64_t generation, std::uint64_t island,
+                                   const std::vector<simulation::GeneStatistics>& statistics,
+                                   const std::optional<evolution::SelectionAccount>& account) {
+    MoreGenesTable::Row row{.generation = generation, .island = island, .statistics = {}, .account = {}};
+    for (std::size_t gene = evolution::body_gene_count; gene < statistics.size(); ++gene) {
+        const simulation::GeneStatistics& of = statistics[gene];
+        row.statistics.insert(row.statistics.end(), {of.mean, of.deviation, of.min, of.max});
+    }
+    for (std::size_t gene = evolution::body_gene_count; account && gene < account->size(); ++gene) {
+        const evolution::GeneAccount& of = (*account)[gene];
+        row.account.insert(row.account.end(), {of.selection, of.transmission, of.migration, of.change});
+    }
+    return row;
+}
+
+/// Adds the genes of a row to those of the body. Returns false if the row does not fit.
+bool add_account(const MoreGenesTable::Row& row, std::optional<evolution::SelectionAccount>& account) {
+    for (std::size_t i = 0; account && i + 3 < row.account.size(); i += 4) {
+        account->push_back({row.account[i], row.account[i + 1], row.account[i + 2], row.account[i + 3]});
+    }
+    return row.account.size() % 4 == 0 && account.has_value() == !row.account.empty();
+}
+bool add_statistics(const MoreGenesTable::Row& row, std::vector<simulation::GeneStatistics>& genes) {
+    for (std::size_t i = 0; i + 3 < row.statistics.size(); i += 4) {
+        genes.push_back({row.statistics[i], row.statistics[i + 1], row.statistics[i + 2], row.statistics[i + 3]});
+    }
+    return row.statistics.size() % 4 == 0;
+}
+
 constexpr const char* of_generation = "generation = ? ORDER BY island";
 constexpr const char* from_generation_to = "generation >= ? AND generation < ? ORDER BY generation, island";
 
 } // namespace
 
 struct Generations::Writers {
-    explicit Writers(Database& database)
+    Writers(Database& database, bool has_more_genes)
         : generation{database}
         , population{database}
         , founders{database}
         , account{database}
         , outcome{database}
-        , statistics{database} {}
+        , statistics{database} {
+        if (has_more_genes) {
+            more_genes.emplace(database);
+        }
+    }
+
 
     TableWriter<GenerationTable> generation;
     TableWriter<PopulationTable> population;
@@ -38,6 +77,7 @@ struct Generations::Writers {
     TableWriter<SelectionAccountTable> account;
     TableWriter<OutcomeTable> outcome;
     TableWriter<StatisticsTable> statistics;
+    std::optional<TableWriter<MoreGenesTable>> more_genes; // if the file has this table
 };
 
 Generations::Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
@@ -48,7 +88,7 @@ Generations::~Generations() = default;
 
 Generations::Writers& Generations::writers() {
     if (!writers_) {
-        writers_ = std::make_unique<Writers>(database_.database);
+        writers_ = std::make_unique<Writers>(database_.database, has_more_genes());
     }
     return *writers_;
 }
@@ -75,6 +115,10 @@ Result<std::optional<simulation::Opening>> Generations::opening_of(std::uint64_t
     return std::optional{simulation::Opening{.moment = row.moment, .parameters = *set, .progress = row.progress}};
 }
 
+bool Generations::has_more_genes() const {
+    return evolution::gene_count(identity_.parameters) > evolution::body_gene_count;
+}
+
 Result<std::vector<evolution::NextGeneration>> Generations::read_populations(const simulation::Opening& opening) {
     std::vector<evolution::NextGeneration> islands;
     TableReader<PopulationTable> rows{database_.database, of_generation, value_of(opening.moment.generation)};
@@ -83,9 +127,10 @@ Result<std::vector<evolution::NextGeneration>> Generations::read_populations(con
                                  " on island " + std::to_string(islands.size()));
     };
     PopulationTable::Row row{};
+    const auto genes = static_cast<Eigen::Index>(evolution::gene_count(opening.parameters.active));
     while (rows.next(row)) {
         const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
-        if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
+        if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count || row.born.genes.rows() != genes ||
             // Organisms of the first generation have no parents.
             (!row.born.parents.empty() && row.born.parents.size() != organisms)) {
             return bad();
@@ -142,7 +187,32 @@ Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation,
     if (database_.failed() || islands.size() != island_count) {
         return database_.damaged(accounts_text(generation));
     }
+    if (has_more_genes()) {
+        const auto more = more_genes_of(generation, island_count);
+        if (!more) {
+            return more.error();
+        }
+        for (std::size_t island = 0; island < island_count; ++island) {
+            if (!add_account((*more)[island], islands[island])) {
+                return database_.damaged(more_genes_text(generation));
+            }
+        }
+    }
     return islands;
+}
+
+Result<std::vector<MoreGenesTable::Row>> Generations::more_genes_of(std::uint64_t generation,
+                                                                    std::size_t island_count) {
+    std::vector<MoreGenesTable::Row> islands(island_count);
+    TableReader<MoreGenesTable> rows{database_.database, of_generation, value_of(generation)};
+    MoreGenesTable::Row row;
+    while (rows.next(row)) {
+        if (!rows.sound() || row.island >= island_count) {
+            return database_.damaged(more_genes_text(generation));
+        }
+        islands[row.island] = std::move(row);
+    }
+    return database_.unless_failed(std::move(islands));
 }
 
 Result<std::optional<GenerationBegun>> Generations::beginning_of(std::uint64_t generation) {
@@ -229,6 +299,17 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
     for (std::size_t i = 0; i < statistics.size(); ++i) {
         statistics[i].account = (*accounts)[i];
     }
+    if (has_more_genes()) {
+        const auto more = more_genes_of(generation, statistics.size());
+        if (!more) {
+            return more.error();
+        }
+        for (std::size_t i = 0; i < statistics.size(); ++i) {
+            if (!add_statistics((*more)[i], statistics[i].genes)) {
+                return database_.damaged(more_genes_text(generation));
+            }
+        }
+    }
     return statistics;
 }
 
@@ -260,6 +341,10 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
     TableReader<StatisticsTable> numbers{database_.database, from_generation_to, range, table};
     // Reads the selection accounts of the same generations, and of one more if the last generation has not ended.
     TableReader<SelectionAccountTable> accounts{database_.database, from_generation_to, range};
+    std::optional<TableReader<MoreGenesTable>> more_genes;
+    if (has_more_genes()) {
+        more_genes.emplace(database_.database, from_generation_to, range);
+    }
     std::uint64_t expected = first;
     std::vector<simulation::GenerationStatistics> rows; // rows of the generation `expected`
     simulation::GenerationStatistics statistics;
@@ -278,11 +363,27 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
         }
         statistics.account = account.account;
         rows.push_back(statistics);
+        if (more_genes) {
+            MoreGenesTable::Row row;
+            if (!more_genes->next(row) || !more_genes->sound() || row.generation != expected ||
+                row.island != statistics.island || !add_statistics(row, rows.back().genes) ||
+                !add_account(row, rows.back().account)) {
+                return database_.damaged(more_genes_text(expected));
+            }
+        }
     }
     if (!rows.empty()) {
         history.emplace_back(std::move(rows));
     }
     return database_.unless_failed();
+}
+
+void Generations::write_more_genes(std::uint64_t generation, std::uint64_t island,
+                                   const std::vector<simulation::GeneStatistics>& statistics,
+                                   const std::optional<evolution::SelectionAccount>& account) {
+    if (writers().more_genes) {
+        writers().more_genes->write(more_genes_row(generation, island, statistics, account));
+    }
 }
 
 void Generations::write(const Inherited& inherited) {
@@ -291,6 +392,7 @@ void Generations::write(const Inherited& inherited) {
         for (const simulation::GenerationStatistics& island : generation) {
             statistics.write(island);
             writers().account.write(SelectionAccountTable::Row{island.generation, island.island, island.account});
+            write_more_genes(island.generation, island.island, island.genes, island.account);
         }
     }
 }
@@ -308,6 +410,7 @@ void Generations::write(const GenerationBegun& begun) {
         writers().founders.write(
             FoundersTable::View{generation, island, begun.founders.empty() ? unknown : begun.founders[island]});
         writers().account.write(SelectionAccountTable::Row{generation, island, born.account});
+        write_more_genes(generation, island, {}, born.account);
     }
     // The previous generation was retained only while it was the newest.
     const std::uint64_t before = generation - 1;
@@ -325,6 +428,7 @@ void Generations::write(const GenerationEnded& ended) {
     }
     for (const simulation::GenerationStatistics& statistics : ended.statistics) {
         writers().statistics.write(statistics);
+        write_more_genes(ended.generation, statistics.island, statistics.genes, statistics.account);
     }
 }
 

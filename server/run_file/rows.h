@@ -36,7 +36,7 @@ struct FirstPopulationTable {
     static void columns(R& row, C&& column) {
         column("island", row.island);
         column("organism_count", row.organism_count);
-        column("chromosomes", Blob{row.chromosomes});
+        column("chromosomes", GeneBlob{row.chromosomes, row.organism_count});
     }
 };
 
@@ -125,7 +125,7 @@ struct PopulationTable {
         column("elite_count", row.born.elite_count);
         column("survivor_count", row.born.survivor_count);
         column("clamped_count", row.born.clamped_count);
-        column("chromosomes", Blob{row.born.genes});
+        column("chromosomes", GeneBlob{row.born.genes, row.organism_count});
         column("parents", Blob{row.born.parents});
     }
 };
@@ -192,6 +192,26 @@ struct StatisticsTable {
     template <class R, class C>
     static void columns(R& row, C&& column) {
         simulation::for_each_number(row, column);
+        simulation::for_each_gene_number(row, evolution::body_gene_names, column);
+    }
+};
+
+/// The numbers that have no columns in the statistics and in the selection accounts: those of the genes that are not body
+/// genes, in chromosome order. A file of chromosomes with body genes alone lacks this table.
+struct MoreGenesTable {
+    static constexpr const char* name = "more_genes";
+    static constexpr std::size_t key_columns = 2;
+    struct Row {
+        std::uint64_t generation = 0, island = 0;
+        std::vector<double> statistics; // mean, deviation, min, max of each gene; empty: the generation has not ended
+        std::vector<double> account;    // selection, transmission, migration, change of each gene; empty: unknown
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("statistics", Blob{row.statistics});
+        column("account", Blob{row.account});
     }
 };
 

@@ -68,7 +68,7 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
     }
     file->identity_ = {identity, options.keep_every};
     file->begin();
-    create_schema(file->database_);
+    create_schema(file->database_, evolution::gene_count(identity.parameters) > evolution::body_gene_count);
     write_identity(file->database_, file->identity_);
     return file;
 }

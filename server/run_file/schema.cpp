@@ -39,13 +39,15 @@ void create_all_tables(Database& database) {
                   CheckpointRowTable, CheckpointPartTable, FoundersTable, SelectionAccountTable>(database);
 }
 
-/// Files that were created in a format before 4 may lack this table.
-constexpr std::string_view optional_table = FirstPopulationTable::name;
+/// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body genes
+/// alone lack the second.
+constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name};
 
 const Schema& expected_schema() {
     static const Schema expected = [] {
         Database database{":memory:", Database::Mode::Write};
         create_all_tables(database);
+        create_tables<MoreGenesTable>(database);
         Schema schema;
         for (Statement rows{database, all_of_schema}; rows.row();) {
             schema.insert(read_schema_row(rows));
@@ -79,7 +81,7 @@ Result<void> check_tables(RunDatabase& database) {
     }
     const Schema& expected = expected_schema();
     for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // reports a missing table before its indices
-        if (!found.contains(*row) && row->table != optional_table) {
+        if (!found.contains(*row) && std::ranges::find(optional_tables, row->table) == std::end(optional_tables)) {
             return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks " + described(*row));
         }
     }
@@ -88,10 +90,13 @@ Result<void> check_tables(RunDatabase& database) {
 
 } // namespace
 
-void create_schema(RunDatabase& database) {
+void create_schema(RunDatabase& database, bool more_genes) {
     database.run("PRAGMA application_id = " + std::to_string(application_id));
     database.run("PRAGMA user_version = " + std::to_string(format_version));
     create_all_tables(database.database);
+    if (more_genes) {
+        create_tables<MoreGenesTable>(database.database);
+    }
 }
 
 bool is_empty(RunDatabase& database) {

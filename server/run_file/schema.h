@@ -11,7 +11,9 @@ constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the
 constexpr std::int64_t format_version = 4;
 
 /// Marks a new database as a run file and creates its tables.
-void create_schema(RunDatabase& database);
+///
+/// more_genes  whether the chromosomes have genes beyond those of the body.
+void create_schema(RunDatabase& database, bool more_genes);
 
 /// Refuses the database unless it is a run file of this format, contains the tables of this format, and contains no
 /// other table or index and no trigger or view. Reads only SQLite's own tables, because a view or trigger in an

@@ -28,8 +28,7 @@
 
 namespace evod::run_file {
 
-/// A member that is stored as a BLOB, lowest byte first. It may be a string, a span, a vector of numbers or a matrix of
-/// genes.
+/// A member that is stored as a BLOB, lowest byte first. It may be a string, a span or a vector of numbers.
 template <class Container>
 struct Blob {
     Container& value;
@@ -37,13 +36,23 @@ struct Blob {
 template <class Container>
 Blob(Container&) -> Blob<Container>;
 
+/// A member that is stored as a BLOB: the genes of `organism_count` organisms, whose number of genes follows from the
+/// size of the BLOB.
+template <class Matrix>
+struct GeneBlob {
+    Matrix& value;
+    const std::uint64_t& organism_count;
+};
+template <class Matrix>
+GeneBlob(Matrix&, const std::uint64_t&) -> GeneBlob<Matrix>;
+
 /// One INTEGER column for the two pause flags of a run: 0 running, 1 paused, 2 paused until a lease ends.
 template <class Flag>
 struct PauseColumn {
     Flag &paused, &leased;
 };
 
-/// The columns of a selection account; all are NULL if there is no account.
+/// The columns of a selection account, which are those of the body genes; all are NULL if there is no account.
 template <class Account>
 struct AccountColumns {
     Account& account;
@@ -69,7 +78,7 @@ class DescribeColumns {
     }
     template <class Account>
     void operator()(const std::string&, const AccountColumns<Account>&) {
-        evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) {
+        evolution::for_each_number(std::nullopt, evolution::body_gene_names, [&](const std::string& name, auto) {
             columns.push_back({name, "REAL"});
         });
     }
@@ -88,6 +97,10 @@ class DescribeColumns {
     }
     template <class T>
     static std::string type_of(Blob<T>*) {
+        return "BLOB NOT NULL";
+    }
+    template <class T>
+    static std::string type_of(GeneBlob<T>*) {
         return "BLOB NOT NULL";
     }
     static std::string type_of(std::string*) { return "TEXT NOT NULL"; }
@@ -143,12 +156,16 @@ class PutColumns {
         writer_.bytes(bytes_of(blob.value));
     }
     template <class T>
+    void operator()(const std::string&, const GeneBlob<T>& blob) {
+        writer_.bytes(std::as_bytes(std::span{blob.value.data(), static_cast<std::size_t>(blob.value.size())}));
+    }
+    template <class T>
     void operator()(const std::string&, const PauseColumn<T>& pause) {
         writer_.integer(std::int64_t{pause.paused} + pause.leased);
     }
     template <class T>
     void operator()(const std::string&, const AccountColumns<T>& columns) {
-        evolution::for_each_number(columns.account,
+        evolution::for_each_number(columns.account, evolution::body_gene_names,
                                    [&](const std::string&, std::optional<double> value) { writer_.real(value); });
     }
     void operator()(const std::string&, const CoveredChecksums& covered) {
@@ -163,9 +180,6 @@ class PutColumns {
     template <class T>
     static std::span<const std::byte> bytes_of(const std::vector<T>& values) {
         return std::as_bytes(std::span{values});
-    }
-    static std::span<const std::byte> bytes_of(const evolution::GeneMatrix& genes) {
-        return std::as_bytes(std::span{genes.data(), static_cast<std::size_t>(genes.size())});
     }
 
     RowWriter& writer_;
@@ -197,6 +211,10 @@ class GetColumns {
         well_formed &= read_into(blob.value, reader_.bytes());
     }
     template <class T>
+    void operator()(const std::string&, const GeneBlob<T>& blob) {
+        well_formed &= read_genes(blob.value, blob.organism_count, reader_.bytes());
+    }
+    template <class T>
     void operator()(const std::string&, const PauseColumn<T>& pause) {
         const std::int64_t value = reader_.integer();
         pause.paused = value != 0;
@@ -204,7 +222,7 @@ class GetColumns {
     }
     template <class T>
     void operator()(const std::string&, const AccountColumns<T>& columns) {
-        columns.account = evolution::account_from([&] { return reader_.optional_real(); });
+        columns.account = evolution::account_from(evolution::body_gene_count, [&] { return reader_.optional_real(); });
     }
     void operator()(const std::string&, CoveredChecksums& covered) {
         covered.values.clear();
@@ -231,13 +249,16 @@ class GetColumns {
         }
         return bytes.size() % sizeof(T) == 0;
     }
-    static bool read_into(evolution::GeneMatrix& to, const std::string& bytes) {
-        constexpr std::size_t organism_bytes = evolution::gene_count * sizeof(float);
-        to.resize(evolution::gene_count, static_cast<Eigen::Index>(bytes.size() / organism_bytes));
-        if (to.size() > 0) {
-            std::memcpy(to.data(), bytes.data(), static_cast<std::size_t>(to.size()) * sizeof(float));
+    static bool read_genes(evolution::GeneMatrix& to, std::uint64_t organism_count, const std::string& bytes) {
+        const std::size_t numbers = bytes.size() / sizeof(float);
+        if (organism_count == 0 || bytes.size() % sizeof(float) != 0 || numbers % organism_count != 0 ||
+            numbers / organism_count < evolution::body_gene_count) {
+            to.resize(evolution::body_gene_count, 0);
+            return bytes.empty();
         }
-        return bytes.size() % organism_bytes == 0;
+        to.resize(static_cast<Eigen::Index>(numbers / organism_count), static_cast<Eigen::Index>(organism_count));
+        std::memcpy(to.data(), bytes.data(), bytes.size());
+        return true;
     }
 
     RowReader& reader_;

@@ -100,7 +100,7 @@ struct PlaceEntities {
     };
     struct Organism {
         double x_px, y_px; // any numbers
-        evolution::Chromosome genes;
+        std::vector<float> genes; // in chromosome order
     };
     std::string world;
     std::uint32_t island = 0;

@@ -211,7 +211,7 @@ Result<void> check(const World& world, const PlaceEntities& command) {
         return *refused;
     }
     const parameters::Parameters& parameters = world.parameters().active;
-    const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
+    const evolution::GeneLayout layout = evolution::gene_layout(parameters);
     Violations violations;
     PlaceCheck places{island, command.organisms.size()};
     for (std::size_t i = 0; i < command.items.size(); ++i) {
@@ -222,11 +222,11 @@ Result<void> check(const World& world, const PlaceEntities& command) {
         const PlaceEntities::Organism& organism = command.organisms[i];
         const std::string name = entry("place.organisms", i);
         const std::size_t faults = violations.size();
-        add_gene_faults(organism.genes, bounds, name, violations);
+        add_gene_faults(organism.genes, layout, name, violations);
         if (violations.size() > faults) {
             continue; // without valid genes, the radius is unknown
         }
-        const float radius_px = body_shape(organism.genes(evolution::BodySize), parameters).radius_px;
+        const float radius_px = body_shape(organism.genes[evolution::BodySize], parameters).radius_px;
         if (const auto place = places.place_of(name, organism.x_px, organism.y_px, radius_px, violations)) {
             places.add(i, *place, radius_px, violations);
         }
@@ -305,8 +305,8 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
     for (std::size_t i = 0; i < organisms.size(); ++i) {
         const NewOrganism& organism = organisms[i];
         const auto id = static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(i);
-        const BodyShape shape = body_shape(organism.genes(evolution::BodySize), parameters);
-        born_.genes.col(id) = organism.genes;
+        const BodyShape shape = body_shape(organism.genes[evolution::BodySize], parameters);
+        std::ranges::copy(organism.genes, evolution::column(born_.genes, id).begin());
         if (!born_.parents.empty()) {
             born_.parents.push_back(no_parents);
         }
@@ -315,7 +315,7 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         bodies_.put(
             bodies + i,
             {.id = id, .x = organism.place.x, .y = organism.place.y, .radius = shape.radius_px, .mass = shape.mass_kg});
-        living_.put(bodies + i, organism.genes, parameters);
+        living_.put(bodies + i, evolution::body_genes(born_.genes, id), parameters);
         born_hash_ += hash_of_birth(id);
     }
     alive_count_ += static_cast<std::uint32_t>(organisms.size());

@@ -10,6 +10,18 @@ std::string counted(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+/// Returns the names of the parameters that contain a gene's bounds.
+std::string bound_parameters(const evolution::GeneLayout& layout, unsigned gene) {
+    switch (layout.groups[gene]) {
+    case evolution::GeneGroup::Brain:
+        return "brain_weight_limit";
+    case evolution::GeneGroup::Free:
+        return "free_gene_min, free_gene_max";
+    default:
+        return layout.names[gene] + "_min, " + layout.names[gene] + "_max";
+    }
+}
+
 } // namespace
 
 bool same(const FirstPopulation& a, const FirstPopulation& b) {
@@ -17,7 +29,7 @@ bool same(const FirstPopulation& a, const FirstPopulation& b) {
         return !a && !b;
     }
     return std::ranges::equal(*a, *b, [](const evolution::GeneMatrix& one, const evolution::GeneMatrix& other) {
-        return one.cols() == other.cols() && (one == other).all();
+        return one.rows() == other.rows() && one.cols() == other.cols() && (one == other).all();
     });
 }
 
@@ -31,7 +43,7 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
         faults.push_back({field, counted(parameters.island_count, "island") + " (island_count)",
                           counted(population->size(), "island")});
     }
-    const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
+    const evolution::GeneLayout layout = evolution::gene_layout(parameters);
     for (std::size_t island = 0; island < population->size(); ++island) {
         const evolution::GeneMatrix& genes = (*population)[island];
         const std::string name = field + "[" + std::to_string(island) + "]";
@@ -39,25 +51,30 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
             faults.push_back({name, counted(parameters.population_size, "organism") + " (population_size)",
                               counted(static_cast<std::size_t>(genes.cols()), "organism")});
         }
-        for (Eigen::Index organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism) {
-            add_gene_faults(genes.col(organism), bounds, name + ".organism[" + std::to_string(organism) + "]", faults);
+        for (std::uint32_t organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism) {
+            add_gene_faults(evolution::column(genes, organism), layout,
+                            name + ".organism[" + std::to_string(organism) + "]", faults);
         }
     }
     return faults;
 }
 
-void add_gene_faults(const evolution::Chromosome& genes, const evolution::GeneBounds& bounds,
-                     const std::string& organism, std::vector<base::Violation>& faults) {
-    for (Eigen::Index gene = 0; gene < genes.rows() && faults.size() < faults_max; ++gene) {
-        const float value = genes[gene];
-        if (value >= bounds.min[gene] && value <= bounds.max[gene]) { // a NaN is in no range
+void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout, const std::string& organism,
+                     std::vector<base::Violation>& faults) {
+    if (genes.size() != layout.names.size()) {
+        faults.push_back(
+            {organism + ".genes", counted(layout.names.size(), "number"), counted(genes.size(), "number")});
+        return;
+    }
+    for (unsigned gene = 0; gene < genes.size() && faults.size() < faults_max; ++gene) {
+        const float value = genes[gene], min = layout.bounds.min[gene], max = layout.bounds.max[gene];
+        if (value >= min && value <= max) { // a NaN is in no range
             continue;
         }
-        const std::string named{evolution::gene_names[static_cast<std::size_t>(gene)]};
-        faults.push_back({organism + "." + named,
-                          parameters::to_text(parameters::ParameterValue{double{bounds.min[gene]}}) + " to " +
-                              parameters::to_text(parameters::ParameterValue{double{bounds.max[gene]}}) + " (" + named +
-                              "_min, " + named + "_max)",
+        faults.push_back({organism + "." + layout.names[gene],
+                          parameters::to_text(parameters::ParameterValue{double{min}}) + " to " +
+                              parameters::to_text(parameters::ParameterValue{double{max}}) + " (" +
+                              bound_parameters(layout, gene) + ")",
                           parameters::to_text(parameters::ParameterValue{double{value}})});
     }
 }

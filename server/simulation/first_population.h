@@ -18,8 +18,8 @@ using FirstPopulation = std::shared_ptr<const std::vector<evolution::GeneMatrix>
 /// Returns whether two first populations have equal genes; 0 and −0 are equal.
 bool same(const FirstPopulation& a, const FirstPopulation& b);
 
-/// Returns why a world with these parameters cannot begin with this population: a wrong number of islands or organisms,
-/// or genes out of bounds.
+/// Returns why a world with these parameters cannot begin with this population: a wrong number of islands, organisms
+/// or genes, or genes out of bounds.
 ///
 /// field    name of the population as the sender spells it: "create_world.population". The name of a gene is then
 ///          "create_world.population[0].organism[17].body_size".
@@ -29,8 +29,8 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
 constexpr std::size_t faults_max = 20;
 
 /// Adds a violation for every gene outside its bounds, until there are faults_max; the field of a gene is then
-/// "`organism`.body_size".
-void add_gene_faults(const evolution::Chromosome& genes, const evolution::GeneBounds& bounds,
-                     const std::string& organism, std::vector<base::Violation>& faults);
+/// "`organism`.body_size". A wrong number of genes is one violation of the field "`organism`.genes".
+void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout, const std::string& organism,
+                     std::vector<base::Violation>& faults);
 
 } // namespace evod::simulation

@@ -55,7 +55,7 @@ BehaviourRules behaviour_rules(const parameters::Parameters& p) {
 void Island::begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                               evolution::NextGeneration bred, base::Executor& executor) {
     EVOD_ASSERT(generation >= 1);
-    EVOD_ASSERT(bred.genes.rows() == evolution::gene_count);
+    EVOD_ASSERT(bred.genes.rows() == evolution::gene_count(parameters));
     EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
     born_ = std::move(bred);
     placed_.clear();
@@ -91,12 +91,12 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
 }
 
 base::StateHash Island::hash_of_birth(std::uint32_t id) const {
-    const float* genes = born_.genes.data() + std::size_t{id} * evolution::gene_count;
-    base::StateHash hash = base::EntityHash{ChromosomeKind, id}
-                               .add(genes[0], genes[1])
-                               .add(genes[2], genes[3])
-                               .add(genes[4], genes[5])
-                               .finish();
+    const evolution::ConstGenes genes = evolution::column(born_.genes, id);
+    base::EntityHash entity{ChromosomeKind, id};
+    for (std::size_t gene = 0; gene < genes.size(); gene += 2) {
+        entity.add(genes[gene], gene + 1 < genes.size() ? genes[gene + 1] : 0.0f);
+    }
+    base::StateHash hash = entity.finish();
     if (id >= bred_count()) {
         hash += base::EntityHash{PlacedKind, id}.add(std::uint64_t{placed_tick(id)}).finish();
     }
@@ -141,7 +141,7 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
                              .y = places[id].y,
                              .radius = radius[id],
                              .mass = shape_of(id).mass_kg});
-            living_.put(id, born_.genes.col(static_cast<Eigen::Index>(id)), parameters);
+            living_.put(id, evolution::body_genes(born_.genes, static_cast<std::uint32_t>(id)), parameters);
         }
     });
     alive_count_ = static_cast<std::uint32_t>(organisms);
@@ -342,7 +342,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
             continue;
         }
         const float cap = parameters.health_cap_per_size > 0
-                              ? health_cap(born_.genes.col(static_cast<Eigen::Index>(touch.id)), parameters)
+                              ? health_cap(evolution::body_genes(born_.genes, touch.id), parameters)
                               : std::numeric_limits<float>::infinity();
         change_health(block, touch.body,
                       [&](float health) { return std::min(health + static_cast<float>(parameters.food_health), cap); });
@@ -464,7 +464,7 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     const auto function = parameters.fitness == parameters::FitnessFunction::GeneSum ? gene_sum : rastrigin;
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
         for (std::size_t id = range.begin; id < range.end; ++id) {
-            fitness[id] = function(born_.genes.col(static_cast<Eigen::Index>(id)));
+            fitness[id] = function(evolution::body_genes(born_.genes, static_cast<std::uint32_t>(id)));
         }
     });
     return fitness;

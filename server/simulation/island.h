@@ -58,7 +58,7 @@ class Island {
     /// the walls, and clear of boxes, organisms and the other places.
     struct NewOrganism {
         Place place;
-        evolution::Chromosome genes;
+        std::vector<float> genes;
         std::uint32_t tick; // it is placed after this tick of the generation
     };
     std::uint32_t place(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters);

@@ -21,7 +21,7 @@ void for_each_column(Living& living, F&& visit) {
 }
 
 /// Returns the health lost per tick: the rate times 1 + the costs of the genes, never below 0.
-float loss_per_tick(const evolution::Chromosome& genes, const parameters::Parameters& p) {
+float loss_per_tick(const evolution::BodyGenes& genes, const parameters::Parameters& p) {
     const auto share = [&](evolution::Gene gene) { return static_cast<double>(genes(gene)) / 100; };
     const auto square = [](double x) { return x * x; };
     const double factor = 1 + p.normal_speed_cost * (share(evolution::NormalSpeed) - 1) +
@@ -45,7 +45,7 @@ void Living::resize(std::size_t size) {
     });
 }
 
-void Living::put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& p) {
+void Living::put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& p) {
     EVOD_ASSERT(body < health.size());
     health[body] = genes(evolution::BaseHealth);
     loss_per_tick[body] = simulation::loss_per_tick(genes, p);
@@ -59,7 +59,7 @@ void Living::reorder(const physics::Reordering& reordering) {
     for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
 }
 
-float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& p) {
+float health_cap(const evolution::BodyGenes& genes, const parameters::Parameters& p) {
     return p.health_cap_per_size > 0 ? static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize)
                                      : std::numeric_limits<float>::infinity();
 }

@@ -25,13 +25,13 @@ struct Living {
     void clear();
     /// resize() and put() work like those of physics::Circles.
     void resize(std::size_t size);
-    void put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& parameters);
+    void put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& parameters);
     /// Works like physics::Circles::reorder().
     void reorder(const physics::Reordering& reordering);
 };
 
 /// Returns the limit above which a meal cannot raise health; infinity if there is no limit.
-float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& parameters);
+float health_cap(const evolution::BodyGenes& genes, const parameters::Parameters& parameters);
 
 /// The radius and mass of an organism's body, which its gene body_size determines.
 struct BodyShape {

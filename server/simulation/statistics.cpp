@@ -3,6 +3,7 @@
 #include "server/simulation/island.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -12,23 +13,28 @@ namespace {
 
 constexpr std::size_t organisms_per_block = 8192;
 
+constexpr std::size_t block_genes = evolution::body_gene_count;
+
 /// Sums of the fitness and of each gene: first of the values, then of the squared differences from the mean.
 struct Sums {
     double fitness = 0;
-    std::array<double, evolution::gene_count> genes{};
+    std::vector<double> genes;
+
+    explicit Sums(std::size_t gene_count = 0) : genes(gene_count) {}
 
     Sums& operator+=(const Sums& other) {
         fitness += other.fitness;
-        for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+        for (std::size_t gene = 0; gene < genes.size(); ++gene) {
             genes[gene] += other.genes[gene];
         }
         return *this;
     }
     Sums over(std::size_t count) const {
         const auto n = static_cast<double>(count);
-        Sums means{.fitness = fitness / n, .genes = {}};
-        for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-            means.genes[gene] = genes[gene] / n;
+        Sums means{*this};
+        means.fitness /= n;
+        for (double& gene : means.genes) {
+            gene /= n;
         }
         return means;
     }
@@ -37,7 +43,7 @@ struct Sums {
 struct Extremes {
     std::uint32_t best_organism;
     double worst;
-    std::array<float, evolution::gene_count> gene_min, gene_max;
+    std::vector<float> gene_min, gene_max;
 };
 
 /// A population, whose organisms are processed block by block.
@@ -45,6 +51,9 @@ struct Population {
     std::span<const double> fitness;
     const evolution::GeneMatrix& genes;
     base::Executor& executor;
+
+    std::size_t gene_count() const { return static_cast<std::size_t>(genes.rows()); }
+    const float* chromosome(std::size_t organism) const { return genes.data() + organism * gene_count(); }
 
     /// Returns the results of of_block(range) for all blocks, in order.
     template <class Result, class OfBlock>
@@ -59,16 +68,22 @@ struct Population {
     template <unsigned power>
     Sums sums(const Sums& centre) const {
         const auto raised = [](double difference) { return power == 1 ? difference : difference * difference; };
-        Sums total;
+        Sums total{gene_count()};
         const auto blocks = each_block<Sums>([&](base::Range block) {
-            Sums sum;
+            Sums sum{gene_count()};
             for (std::size_t i = block.begin; i < block.end; ++i) {
                 sum.fitness += raised(fitness[i] - centre.fitness);
-                const float* chromosome = genes.data() + i * evolution::gene_count;
-                for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-                    sum.genes[gene] += raised(static_cast<double>(chromosome[gene]) - centre.genes[gene]);
-                }
             }
+            evolution::for_each_block_of_genes(static_cast<unsigned>(gene_count()), [&](unsigned first) {
+                std::array<double, block_genes> of_genes{};
+                for (std::size_t i = block.begin; i < block.end; ++i) {
+                    const float* its = chromosome(i) + first;
+                    for (std::size_t gene = 0; gene < block_genes; ++gene) {
+                        of_genes[gene] += raised(static_cast<double>(its[gene]) - centre.genes[first + gene]);
+                    }
+                }
+                std::ranges::copy(of_genes, sum.genes.begin() + first);
+            });
             return sum;
         });
         for (const Sums& sum : blocks) {
@@ -79,20 +94,27 @@ struct Population {
 
     Extremes extremes() const {
         const auto blocks = each_block<Extremes>([&](base::Range block) {
-            const float* first = genes.data() + block.begin * evolution::gene_count;
-            Extremes e{static_cast<std::uint32_t>(block.begin), fitness[block.begin], {}, {}};
-            std::copy_n(first, evolution::gene_count, e.gene_min.begin());
-            e.gene_max = e.gene_min;
-            for (std::size_t i = block.begin; i < block.end; ++i, first += evolution::gene_count) {
+            const float* first = chromosome(block.begin);
+            Extremes e{static_cast<std::uint32_t>(block.begin),
+                       fitness[block.begin],
+                       {first, first + gene_count()},
+                       {first, first + gene_count()}};
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 if (fitness[i] > fitness[e.best_organism]) {
                     e.best_organism = static_cast<std::uint32_t>(i);
                 }
                 e.worst = std::min(e.worst, fitness[i]);
-                for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-                    e.gene_min[gene] = std::min(e.gene_min[gene], first[gene]);
-                    e.gene_max[gene] = std::max(e.gene_max[gene], first[gene]);
-                }
             }
+            evolution::for_each_block_of_genes(static_cast<unsigned>(gene_count()), [&](unsigned first_gene) {
+                float *const min = e.gene_min.data() + first_gene, *const max = e.gene_max.data() + first_gene;
+                for (std::size_t i = block.begin; i < block.end; ++i) {
+                    const float* its = chromosome(i) + first_gene;
+                    for (std::size_t gene = 0; gene < block_genes; ++gene) {
+                        min[gene] = std::min(min[gene], its[gene]);
+                        max[gene] = std::max(max[gene], its[gene]);
+                    }
+                }
+            });
             return e;
         });
         Extremes all = blocks.front();
@@ -101,7 +123,7 @@ struct Population {
                 all.best_organism = e.best_organism; // among equals, the first is kept
             }
             all.worst = std::min(all.worst, e.worst);
-            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+            for (std::size_t gene = 0; gene < gene_count(); ++gene) {
                 all.gene_min[gene] = std::min(all.gene_min[gene], e.gene_min[gene]);
                 all.gene_max[gene] = std::max(all.gene_max[gene], e.gene_max[gene]);
             }
@@ -129,7 +151,7 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.organism_count = static_cast<std::uint32_t>(fitness.size());
 
     const Population population{fitness, island.born().genes, executor};
-    const Sums mean = population.sums<1>({}).over(fitness.size());
+    const Sums mean = population.sums<1>(Sums{population.gene_count()}).over(fitness.size());
     const Sums variance = population.sums<2>(mean).over(fitness.size());
     const Extremes extremes = population.extremes();
     s.best_organism = extremes.best_organism;
@@ -140,13 +162,16 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.fitness_deviation = std::sqrt(variance.fitness);
 
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+    const std::size_t gene_count = population.gene_count();
+    s.genes.resize(gene_count);
+    for (std::size_t gene = 0; gene < gene_count; ++gene) {
         s.genes[gene] = {.mean = mean.genes[gene],
                          .deviation = std::sqrt(variance.genes[gene]),
                          .min = static_cast<double>(extremes.gene_min[gene]),
                          .max = static_cast<double>(extremes.gene_max[gene])};
-        const auto width = static_cast<double>(bounds.max(gene) - bounds.min(gene));
-        s.diversity += width > 0 ? s.genes[gene].deviation / width / evolution::gene_count : 0;
+        const auto width =
+            static_cast<double>(bounds.max(static_cast<Eigen::Index>(gene)) - bounds.min(static_cast<Eigen::Index>(gene)));
+        s.diversity += width > 0 ? s.genes[gene].deviation / width / static_cast<double>(gene_count) : 0;
     }
 
     const LiveStatistics live = island.live_statistics();

@@ -7,11 +7,11 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/price.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace evod::parameters {
 struct Parameters;
@@ -29,7 +29,8 @@ struct GenerationStatistics {
     std::uint64_t end_tick = 0; // ticks since the run began
     std::uint32_t organism_count = 0;
     double fitness_best = 0, fitness_mean = 0, fitness_median = 0, fitness_worst = 0, fitness_deviation = 0;
-    std::array<GeneStatistics, evolution::gene_count> genes;
+    // One element per gene, in chromosome order. A new object has those of the body genes.
+    std::vector<GeneStatistics> genes = std::vector<GeneStatistics>(evolution::body_gene_count);
     double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); 0 for a gene with equal bounds
     std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
     std::uint64_t food_eaten = 0, poison_eaten = 0;
@@ -44,8 +45,8 @@ struct GenerationStatistics {
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number except those of `account`, in the order of the columns in files. In files,
-/// the columns of `account` follow.
+/// Calls visit(name, value) for every number except those of `genes` and `account`, in the order of the columns in
+/// files. In files, the columns of for_each_gene_number() and those of `account` follow.
 ///
 /// Statistics  GenerationStatistics, or const GenerationStatistics.
 template <class Statistics, class Visit>
@@ -70,8 +71,15 @@ void for_each_number(Statistics&& s, Visit&& visit) {
     visit("too_fast_count", s.too_fast_count);
     visit("speed_limit_count", s.speed_limit_count);
     visit("best_organism", s.best_organism);
-    for (std::size_t gene = 0; gene < evolution::gene_count; ++gene) {
-        const std::string name{evolution::gene_names[gene]};
+}
+
+/// Calls visit(name, value) for every number of the first genes of s.genes.
+///
+/// gene_names  the names of these genes, in chromosome order.
+template <class Statistics, class Names, class Visit>
+void for_each_gene_number(Statistics&& s, const Names& gene_names, Visit&& visit) {
+    for (std::size_t gene = 0; gene < gene_names.size(); ++gene) {
+        const std::string name{gene_names[gene]};
         visit(name + "_mean", s.genes[gene].mean);
         visit(name + "_deviation", s.genes[gene].deviation);
         visit(name + "_min", s.genes[gene].min);

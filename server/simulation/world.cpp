@@ -480,7 +480,7 @@ void World::close_generation(const std::vector<GenerationStatistics>& statistics
     const double best = std::ranges::max(statistics, {}, &GenerationStatistics::fitness_best).fitness_best;
     progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_bodies() && alive_count() == 0});
     history_.push_back(statistics);
-    if (history_.size() > history_generations_kept_of(islands_.size())) {
+    if (history_.size() > history_generations_kept_here()) {
         history_.pop_front();
     }
 }

@@ -72,10 +72,17 @@ constexpr std::uint32_t no_founder = ~0U;
 class World {
   public:
     /// The maximum number of generations, and of rows, whose statistics are kept in memory. A generation has one row
-    /// per island, so with many islands fewer generations are kept. The oldest are dropped first.
+    /// per island, whose size grows with the number of genes, so with many islands or genes fewer generations are kept.
+    /// The oldest are dropped first.
     static constexpr std::size_t history_generations_kept = 10'000, history_rows_kept = 131'072;
-    static constexpr std::size_t history_generations_kept_of(std::size_t island_count) {
-        return std::min(history_generations_kept, std::max<std::size_t>(history_rows_kept / island_count, 1));
+    static constexpr std::size_t history_generations_kept_of(std::size_t island_count,
+                                                             std::size_t gene_count = evolution::body_gene_count) {
+        const std::size_t rows = history_rows_kept * evolution::body_gene_count / gene_count;
+        return std::min(history_generations_kept, std::max<std::size_t>(rows / island_count, 1));
+    }
+    /// The maximum number of generations whose statistics this world keeps.
+    std::size_t history_generations_kept_here() const {
+        return history_generations_kept_of(islands_.size(), evolution::gene_count(parameters_.active));
     }
     /// The maximum number of previous generations whose statistics a fork keeps.
     static constexpr std::size_t history_generations_inherited = 1'000;

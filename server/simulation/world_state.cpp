@@ -20,7 +20,8 @@ constexpr float gene_reachable = 10'000;
 } // namespace
 
 IslandShape Island::shape() const {
-    return {.organisms = bred_count(),
+    return {.genes = static_cast<std::uint32_t>(born_.genes.rows()),
+            .organisms = bred_count(),
             .has_bodies = has_bodies(),
             .crates = has_bodies() ? crate_count_ : 0,
             .food = has_bodies() ? food_.first_count() : 0,
@@ -35,8 +36,8 @@ IslandState Island::state(base::Executor& executor) const {
         return state;
     }
     for (std::uint32_t id = bred_count(); id < fate_.cause.size(); ++id) {
-        state.placed.push_back({.genes = {}, .tick = placed_tick(id)});
-        std::ranges::copy(evolution::column(born_.genes, id), state.placed.back().genes.begin());
+        const evolution::ConstGenes genes = evolution::column(born_.genes, id);
+        state.placed.push_back({.genes = {genes.begin(), genes.end()}, .tick = placed_tick(id)});
     }
     state.placed_food = food_.size() - food_.first_count();
     state.placed_poison = poison_.size() - poison_.first_count();
@@ -80,8 +81,10 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         return wrong("number of organisms");
     }
     for (const IslandState::Placed& placed : state.placed) {
-        const auto is_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
-        if (placed.tick > tick || !std::ranges::all_of(placed.genes, is_gene) ||
+        const auto is_body_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
+        if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
+            !std::ranges::all_of(std::span{placed.genes}.first<evolution::body_gene_count>(), is_body_gene) ||
+            !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
             placed.genes[evolution::BodySize] <= 0) {
             return wrong("a placed organism");
         }
@@ -183,7 +186,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
     }
     std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
     for (const IslandState::Placed& organism : state.placed) {
-        placed.push_back({{}, evolution::Chromosome{organism.genes.data()}, organism.tick});
+        placed.push_back({{}, organism.genes, organism.tick});
     }
     append(placed, parameters);
     fate_ = state.fate;

@@ -42,7 +42,8 @@ struct IslandCounts {
 /// The number of entities of each kind on an island at the beginning of a generation. It determines the shape of the
 /// island's state, together with the numbers of placed entities.
 struct IslandShape {
-    std::uint32_t organisms = 0; // number of organisms that were born
+    std::uint32_t genes = evolution::body_gene_count; // number of genes of each organism
+    std::uint32_t organisms = 0;                      // number of organisms that were born
     bool has_bodies = true;      // if false, the other parts are empty
     std::uint32_t crates = 0, food = 0, poison = 0;
 
@@ -63,7 +64,7 @@ struct IslandState {
     };
     /// An organism that was placed in this generation.
     struct Placed {
-        std::array<float, evolution::gene_count> genes;
+        std::vector<float> genes;
         std::uint32_t tick; // it was placed after this tick of the generation
         friend bool operator==(const Placed&, const Placed&) = default;
     };

@@ -49,7 +49,7 @@ void change_entities(simulation::Laboratory& laboratory, std::uint64_t tick) {
     for (std::uint32_t i = 0; i < 5; ++i) {
         simulation::PlaceEntities organism{.world = name, .island = place.island};
         organism.organisms.push_back({px(tick * 37 + i * 1013), px(tick * 91 + i * 211),
-                                      evolution::Chromosome::Constant(90.0f + static_cast<float>(i))});
+                                      std::vector<float>(evolution::body_gene_count, 90.0f + static_cast<float>(i))});
         (void)laboratory.apply(organism); // refused if there is no room
         const auto id = static_cast<std::uint32_t>((tick * 29 + i * 7) % island.fate().cause.size());
         if (island.body_of(id)) {

@@ -17,7 +17,7 @@ namespace evod::viewer {
 namespace {
 
 MouseTool::Model model_of(const Frozen& organism) {
-    return {organism.name, organism.islands[0]};
+    return {organism.name, organism.population.islands[0]};
 }
 
 } // namespace
@@ -51,7 +51,7 @@ void FreezerPanel::build_freeze(Context& context) {
             const WholePopulation::Genes& genes = **read;
             const std::string name =
                 name_.empty() ? genes.world + "-g" + std::to_string(genes.generation) : std::exchange(name_, "");
-            const auto saved = context.freezer->save(name, genes.islands);
+            const auto saved = context.freezer->save(name, genes.population);
             problem_ = saved ? "" : saved.error().what;
             if (saved) {
                 chosen_ = *saved;

@@ -205,7 +205,7 @@ void NewWorldDialog::send(Panel::Context& context) {
         answers_->problem = "first population: the file " + population_ + " no longer exists";
         return;
     }
-    wanted_.population = file != nullptr ? file->islands : std::vector<std::vector<float>>{};
+    wanted_.population = file != nullptr ? file->population : codec::Population{};
     auto request = create_request(wanted_);
     answers_->problem = request ? "" : request.error().what;
     if (!request) {

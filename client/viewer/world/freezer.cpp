@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds interval{1};
 
-/// Reads a file of the freezer into its islands, or sets its problem.
+/// Reads the population in a file of the freezer, or sets its problem.
 void read_file(const fs::path& path, Frozen& frozen) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) { // reading a pipe would block
@@ -38,11 +38,11 @@ void read_file(const fs::path& path, Frozen& frozen) {
         frozen.problem = std::string{"Cannot be read: "} + std::strerror(errno);
         return;
     }
-    auto islands = codec::read_population(in);
-    if (islands) {
-        frozen.islands = *std::move(islands);
+    auto population = codec::read_population(in);
+    if (population) {
+        frozen.population = *std::move(population);
     } else {
-        frozen.problem = islands.error().what;
+        frozen.problem = population.error().what;
     }
 }
 
@@ -50,8 +50,8 @@ void read_file(const fs::path& path, Frozen& frozen) {
 
 std::size_t Frozen::organism_count() const {
     std::size_t count = 0;
-    for (const std::vector<float>& genes : islands) {
-        count += genes.size() / codec::population_genes;
+    for (std::size_t island = 0; island < population.islands.size(); ++island) {
+        count += population.organism_count(island);
     }
     return count;
 }
@@ -59,7 +59,7 @@ std::size_t Frozen::organism_count() const {
 std::string Frozen::content_text() const {
     const std::size_t count = organism_count();
     return with_separators(count) + (count == 1 ? " organism" : " organisms") +
-           (islands.size() > 1 ? " on " + with_separators(islands.size()) + " islands" : "");
+           (population.islands.size() > 1 ? " on " + with_separators(population.islands.size()) + " islands" : "");
 }
 
 void Freezer::update(Clock::time_point now) {
@@ -89,7 +89,7 @@ void Freezer::read() {
         if (known != seen_.end() && known->second == state) {
             files.push_back(std::move(*std::ranges::find(files_, name, &Frozen::name)));
         } else {
-            read_file(path_of(name), files.emplace_back(Frozen{.name = name, .islands = {}, .problem = {}}));
+            read_file(path_of(name), files.emplace_back(Frozen{.name = name, .population = {}, .problem = {}}));
         }
     }
     files_ = std::move(files);
@@ -101,7 +101,7 @@ const Frozen* Freezer::find(std::string_view name) const {
     return found == files_.end() ? nullptr : &*found;
 }
 
-core::Result<std::string> Freezer::save(const std::string& name, const std::vector<std::vector<float>>& islands) {
+core::Result<std::string> Freezer::save(const std::string& name, const codec::Population& population) {
     const auto failed = [](std::string what) { return core::Error{core::Error::Kind::Usage, std::move(what)}; };
     if (std::string problem = name_problem("name", name); !problem.empty()) {
         return failed(std::move(problem));
@@ -123,7 +123,7 @@ core::Result<std::string> Freezer::save(const std::string& name, const std::vect
     const fs::path path = path_of(free), part = path.string() + "." + std::to_string(getpid());
     {
         std::ofstream out{part, std::ios::binary};
-        out << codec::population_text(islands);
+        out << codec::population_text(population);
         if (!out.flush()) {
             const std::string why = std::strerror(errno);
             fs::remove(part, error);

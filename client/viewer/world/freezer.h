@@ -8,6 +8,7 @@
 #pragma once
 
 #include "client/core/client_types.h"
+#include "proto/codec/population_csv.h"
 
 #include <chrono>
 #include <cstdint>
@@ -20,9 +21,9 @@ namespace evod::viewer {
 
 /// A file of the freezer.
 struct Frozen {
-    std::string name;                        // of the file, without ".csv"
-    std::vector<std::vector<float>> islands; // genes: one row per island, organism by organism; empty: unusable
-    std::string problem;                     // why the file is unusable, as a sentence; empty: it is usable
+    std::string name;             // of the file, without ".csv"
+    codec::Population population; // without islands if the file is unusable
+    std::string problem;          // why the file is unusable, as a sentence; empty: it is usable
 
     std::size_t organism_count() const;
     bool is_organism() const { return organism_count() == 1; }
@@ -51,7 +52,7 @@ class Freezer {
     const std::string& problem() const { return problem_; }
 
     /// Stores genes in a new file, and returns its name: `name`, or a name with a number if it exists (unused_name()).
-    core::Result<std::string> save(const std::string& name, const std::vector<std::vector<float>>& islands);
+    core::Result<std::string> save(const std::string& name, const codec::Population& population);
     /// Deletes a file. Returns why this failed, as a sentence; empty on success.
     std::string remove(const std::string& name);
 

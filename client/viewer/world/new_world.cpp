@@ -105,23 +105,23 @@ core::Result<evod::v1::Request> create_request(const NewWorldForm& wanted) {
         command.set_seed(*seed);
     }
     command.set_experiment_json(wanted.experiment_json);
-    for (const std::vector<float>& genes : wanted.population) {
-        if (genes.size() != wanted.population[0].size()) {
-            const auto count = [](const std::vector<float>& of) {
-                return std::to_string(of.size() / codec::population_genes);
-            };
-            return refused("population: got islands of " + count(wanted.population[0]) + " and " + count(genes) +
+    const codec::Population& population = wanted.population;
+    for (std::size_t island = 0; island < population.islands.size(); ++island) {
+        const std::size_t first = population.organism_count(0), count = population.organism_count(island);
+        if (count != first) {
+            return refused("population: got islands of " + std::to_string(first) + " and " + std::to_string(count) +
                            " organisms, allowed the same number on each island");
         }
+        const std::vector<float>& genes = population.islands[island];
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
-    if (!wanted.population.empty()) {
-        assign_count(command, "population_size", wanted.population[0].size() / codec::population_genes);
-        assign_count(command, "island_count", wanted.population.size());
+    if (!population.islands.empty()) {
+        assign_count(command, "population_size", population.organism_count(0));
+        assign_count(command, "island_count", population.islands.size());
     }
     constexpr std::size_t rest_bytes_max = 1 << 10; // of the frame around the command
     if (request.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {
-        return refused(wanted.population.empty()
+        return refused(wanted.population.islands.empty()
                            ? "parameters: got " + std::to_string(wanted.experiment_json.size()) +
                                  " bytes, allowed 1,000,000"
                            : "population: too large for a request, which allows about 43,000 organisms; start such a "

@@ -7,6 +7,8 @@
 #include "client/core/client_types.h"
 #include "evod/v1/commands.pb.h"
 
+#include "proto/codec/population_csv.h"
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -32,7 +34,7 @@ struct NewWorldForm {
     std::string seed{}; // empty: the server chooses one
     std::string experiment_json{};
     /// The genes of the first generation, one row per island, organism by organism; empty: drawn from the seed.
-    std::vector<std::vector<float>> population{};
+    codec::Population population{};
 };
 
 /// Returns the request, or an error of kind Usage that begins with the name of the field. With a population, the

@@ -29,8 +29,9 @@ void WholePopulation::request(ViewedWorld& world, Handler handler) {
     state_ = std::make_shared<State>();
     state_->island_count = world.feed.island_count();
     state_->genes.world = world.feed.name();
+    state_->genes.population.gene_names = world.feed.gene_names();
     state_->handler = std::move(handler);
-    state_->page = Population{codec::population_genes};
+    state_->page = Population{state_->genes.population.gene_names.size()};
     send(world, state_);
 }
 
@@ -38,7 +39,7 @@ void WholePopulation::send(ViewedWorld& world, const std::shared_ptr<State>& sta
     evod::v1::Request request;
     auto& query = *request.mutable_get_population();
     query.set_world(state->genes.world);
-    query.set_island(static_cast<std::uint32_t>(state->genes.islands.size()));
+    query.set_island(static_cast<std::uint32_t>(state->genes.population.islands.size()));
     query.set_first_organism(state->page.next());
     world.server.send(std::move(request),
                       [&world, weak = std::weak_ptr{state}](const core::Result<evod::v1::Response>& response) {
@@ -55,14 +56,14 @@ void WholePopulation::send(ViewedWorld& world, const std::shared_ptr<State>& sta
 }
 
 void WholePopulation::take(ViewedWorld& world, const std::shared_ptr<State>& state, const evod::v1::Population& page) {
-    const bool first = state->genes.islands.empty() && state->page.next() == 0;
+    const bool first = state->genes.population.islands.empty() && state->page.next() == 0;
     if (!first && (page.generation() != state->genes.generation || state->page.is_outdated_by(page))) {
         if (++state->attempt > attempts_max) {
             state->handler(failed("The generations are too short to read a whole one: pause the world first"));
             return;
         }
-        state->genes.islands.clear();
-        state->page = Population{codec::population_genes};
+        state->genes.population.islands.clear();
+        state->page = Population{state->genes.population.gene_names.size()};
         return send(world, state);
     }
     state->genes.generation = page.generation();
@@ -71,10 +72,10 @@ void WholePopulation::take(ViewedWorld& world, const std::shared_ptr<State>& sta
         return;
     }
     if (state->page.complete()) {
-        state->genes.islands.push_back(rows_of(state->page));
-        state->page = Population{codec::population_genes};
+        state->genes.population.islands.push_back(rows_of(state->page));
+        state->page = Population{state->genes.population.gene_names.size()};
     }
-    if (state->genes.islands.size() < state->island_count) {
+    if (state->genes.population.islands.size() < state->island_count) {
         send(world, state);
     } else {
         state->handler(std::move(state->genes));

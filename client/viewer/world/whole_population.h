@@ -9,6 +9,7 @@
 
 #include "client/viewer/world/population.h"
 #include "client/viewer/world/viewed_world.h"
+#include "proto/codec/population_csv.h"
 
 #include <cstdint>
 #include <functional>
@@ -25,7 +26,7 @@ class WholePopulation {
     struct Genes {
         std::string world;
         std::uint64_t generation = 0;
-        std::vector<std::vector<float>> islands; // one row per island, organism by organism
+        codec::Population population;
     };
     /// A function that receives the genes, or why they could not be read.
     using Handler = std::function<void(const core::Result<Genes>&)>;

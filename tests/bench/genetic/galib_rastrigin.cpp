@@ -21,8 +21,8 @@ std::uint64_t evaluation_count = 0;
 float fitness(GAGenome& genome) {
     ++evaluation_count;
     const auto& x = static_cast<GARealGenome&>(genome);
-    evolution::Chromosome genes;
-    for (int gene = 0; gene < static_cast<int>(evolution::gene_count); ++gene) {
+    evolution::BodyGenes genes;
+    for (int gene = 0; gene < static_cast<int>(evolution::body_gene_count); ++gene) {
         genes(gene) = 150 + 25 * x.gene(static_cast<unsigned>(gene));
     }
     return static_cast<float>(simulation::rastrigin(genes));
@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
 
     const Stopwatch stopwatch;
     GARandomSeed(seed);
-    GARealGenome genome{evolution::gene_count, GARealAlleleSet{-5.12f, 5.12f}, fitness};
+    GARealGenome genome{evolution::body_gene_count, GARealAlleleSet{-5.12f, 5.12f}, fitness};
     genome.initializer(GARealUniformInitializer);
     genome.crossover(GARealUniformCrossover);
     genome.mutator(GARealGaussianMutator); // standard deviation 1

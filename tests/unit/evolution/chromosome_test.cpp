@@ -24,14 +24,14 @@ TEST(GeneBounds, FollowTheParametersInChromosomeOrder) {
 TEST(InitialPopulation, GenesAreUniformInTheirRange) {
     // Law: uniform over [80, 120]; chi-square over 40 cells, 39 degrees of freedom, for each gene.
     const GeneMatrix genes = initial_population(20'000, {}, base::Seed{111}, 0);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         std::vector<std::uint64_t> counts(40);
         for (Eigen::Index i = 0; i < genes.cols(); ++i) {
             ASSERT_GE(genes(gene, i), 80);
             ASSERT_LE(genes(gene, i), 120);
             ++counts[std::min<std::size_t>(39, static_cast<std::size_t>(genes(gene, i) - 80))];
         }
-        EXPECT_GT(support::p_value_of_equal_cells(counts), alpha) << gene_names[gene];
+        EXPECT_GT(support::p_value_of_equal_cells(counts), alpha) << body_gene_names[gene];
     }
 }
 
@@ -54,12 +54,32 @@ TEST(InitialPopulation, StaysWithinTheBounds) {
     EXPECT_TRUE((genes.row(FoodRadius) >= 110).all());
 }
 
+TEST(InitialPopulation, FreeGenesAreUniformInTheirBounds) {
+    // Law: uniform over [−2, 3]; chi-square over 50 cells, 49 degrees of freedom, for each gene.
+    Parameters parameters;
+    parameters.free_genes = 7;
+    parameters.free_gene_min = -2;
+    parameters.free_gene_max = 3;
+    const GeneMatrix genes = initial_population(20'000, parameters, base::Seed{115}, 0);
+    ASSERT_EQ(genes.rows(), 13);
+    EXPECT_TRUE((genes.topRows(6).leftCols(1) == initial_population(1, {}, base::Seed{115}, 0)).all());
+    for (unsigned gene = 6; gene < 13; ++gene) {
+        std::vector<std::uint64_t> counts(50);
+        for (Eigen::Index i = 0; i < genes.cols(); ++i) {
+            ASSERT_GE(genes(gene, i), -2);
+            ASSERT_LE(genes(gene, i), 3);
+            ++counts[std::min<std::size_t>(49, static_cast<std::size_t>((genes(gene, i) + 2) * 10))];
+        }
+        EXPECT_GT(support::p_value_of_equal_cells(counts), alpha) << gene;
+    }
+}
+
 TEST(Clamp, CountsEveryGeneThatItMoves) {
     const GeneBounds bounds = gene_bounds({});
-    std::array<float, gene_count> genes = {19, 250, 200, 201, 20, 1e30f};
-    EXPECT_EQ(clamp(genes, bounds), 3u);
-    EXPECT_EQ(genes, (std::array<float, gene_count>{20, 250, 200, 200, 20, 200}));
-    EXPECT_EQ(clamp(genes, bounds), 0u);
+    std::array<float, body_gene_count> genes = {19, 250, 200, 201, 20, 1e30f};
+    EXPECT_EQ(clamp(Genes{genes}, bounds), 3u);
+    EXPECT_EQ(genes, (std::array<float, body_gene_count>{20, 250, 200, 200, 20, 200}));
+    EXPECT_EQ(clamp(Genes{genes}, bounds), 0u);
 }
 
 } // namespace

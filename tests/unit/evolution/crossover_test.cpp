@@ -21,13 +21,13 @@ Parameters with(CrossoverMethod method, std::uint32_t cuts = 2, double chance = 
 }
 
 std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t draws, std::uint64_t seed) {
-    const Crossover crossover{parameters};
+    const Crossover<body_gene_count> crossover{parameters, body_gene_count};
     std::vector<std::uint64_t> counts(64);
     for (std::uint32_t i = 0; i < draws; ++i) {
         base::RandomStream random = stream_of(seed, i);
-        Mixture mixture;
+        Mixture<body_gene_count> mixture{body_gene_count};
         crossover.draw(mixture, random);
-        ++counts.at(mixture.from_second);
+        ++counts.at(mixture.from_second.words()[0]);
     }
     return counts;
 }
@@ -36,12 +36,12 @@ std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t dra
 std::vector<double> law_of_cuts(int cuts) {
     std::vector<double> law(64);
     double reached = 0;
-    for (GeneMask mask = 0; mask < 64; mask += 2) {
+    for (unsigned mask = 0; mask < 64; mask += 2) {
         if (std::popcount((mask ^ mask << 1) & 62) == cuts) {
             ++reached;
         }
     }
-    for (GeneMask mask = 0; mask < 64; mask += 2) {
+    for (unsigned mask = 0; mask < 64; mask += 2) {
         if (std::popcount((mask ^ mask << 1) & 62) == cuts) {
             law[mask] = 1 / reached;
         }
@@ -57,7 +57,7 @@ TEST(Crossover, UniformDrawsEachOfThe64MasksEquallyOften) {
 TEST(Crossover, SinglePointDrawsEachCutEquallyOften) {
     // Law: 1/5 for each of 000001 … 011111 read from the last gene. Chi-square, 4 degrees of freedom.
     std::vector<double> law(64);
-    for (const GeneMask mask : {0b111110, 0b111100, 0b111000, 0b110000, 0b100000}) {
+    for (const unsigned mask : {0b111110, 0b111100, 0b111000, 0b110000, 0b100000}) {
         law[mask] = 0.2;
     }
     EXPECT_GT(p_value_of_law(masks(with(CrossoverMethod::SinglePoint), 200'000, 182), law), alpha);
@@ -89,23 +89,90 @@ TEST(Crossover, HappensWithItsChance) {
 }
 
 TEST(Crossover, TheParentChangesAtEveryCut) {
-    EXPECT_EQ(mask_of_cuts(0b000100), 0b111100u);
-    EXPECT_EQ(mask_of_cuts(0b100010), 0b011110u);
-    EXPECT_EQ(mask_of_cuts(0b111110), 0b101010u);
-    EXPECT_EQ(mask_of_cuts(0), 0u);
+    const auto mask_of = [](std::uint32_t cuts, std::uint64_t index) {
+        return Crossover<>{with(CrossoverMethod::MultiPoint, cuts), body_gene_count}.mask_of_cuts(index).words()[0];
+    };
+    EXPECT_EQ(mask_of(1, 1), 0b111100u);
+    EXPECT_EQ(mask_of(2, 0), 0b000010u);
+    EXPECT_EQ(mask_of(2, 6), 0b011110u);
+    EXPECT_EQ(mask_of(5, 0), 0b101010u);
+}
+
+TEST(Crossover, EverySetOfCutsHasOneIndex) {
+    for (const unsigned genes : {6u, 7u, 64u}) {
+        for (std::uint32_t cuts = 1; cuts <= 2; ++cuts) {
+            const Crossover<> crossover{with(CrossoverMethod::MultiPoint, cuts), genes};
+            const std::uint64_t sets = cuts == 1 ? genes - 1 : std::uint64_t{genes - 1} * (genes - 2) / 2;
+            std::set<std::vector<std::uint32_t>> seen;
+            for (std::uint64_t index = 0; index < sets; ++index) {
+                const GeneMask<> mask = crossover.mask_of_cuts(index);
+                unsigned changes = 0;
+                ASSERT_FALSE(mask.contains(0));
+                for (unsigned gene = 1; gene < genes; ++gene) {
+                    changes += mask.contains(gene) != mask.contains(gene - 1);
+                }
+                ASSERT_EQ(changes, cuts);
+                seen.emplace(mask.words().begin(), mask.words().end());
+            }
+            EXPECT_EQ(seen.size(), sets) << genes;
+        }
+    }
+}
+
+TEST(Crossover, AnyNumberOfGenesIsCutEquallyOften) {
+    // Law: each of the genes − 1 cuts equally likely. Chi-square.
+    for (const unsigned genes : {7u, 64u, 328u}) {
+        const Crossover<> crossover{with(CrossoverMethod::SinglePoint), genes};
+        std::vector<std::uint64_t> counts(genes - 1);
+        for (std::uint32_t i = 0; i < 100'000; ++i) {
+            base::RandomStream random = stream_of(189, i);
+            Mixture<> mixture{genes};
+            ASSERT_TRUE(crossover.draw(mixture, random));
+            ++counts.at(genes - 1 - mixture.from_second.count());
+        }
+        EXPECT_GT(support::p_value_of_equal_cells(counts), alpha) << genes;
+    }
+}
+
+TEST(Crossover, UniformGivesEachOfAnyNumberOfGenesEquallyOften) {
+    // Law: each gene from the second parent with probability 1/2, so the number of genes has the mean n/2 and the
+    // variance n/4. The mean of 20,000 draws within 5 standard errors; two-sided 6e-7.
+    for (const unsigned genes : {7u, 64u, 328u}) {
+        const Crossover<> crossover{with(CrossoverMethod::Uniform), genes};
+        std::vector<std::uint64_t> of_gene(genes);
+        double sum = 0;
+        for (std::uint32_t i = 0; i < 20'000; ++i) {
+            base::RandomStream random = stream_of(190, i);
+            Mixture<> mixture{genes};
+            crossover.draw(mixture, random);
+            sum += mixture.from_second.count();
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                of_gene[gene] += mixture.from_second.contains(gene);
+            }
+        }
+        EXPECT_NEAR(sum / 20'000, genes / 2.0, 5 * std::sqrt(genes / 4.0 / 20'000)) << genes;
+        EXPECT_GT(support::p_value_of_equal_cells(of_gene), alpha) << genes;
+    }
 }
 
 RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
-    std::array<float, gene_count> first, second, child, sibling;
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        first[gene] = static_cast<float>(*rc::gen::inRange(0, 1000));
-        second[gene] = static_cast<float>(*rc::gen::inRange(0, 1000));
+    const unsigned genes = *rc::gen::element(6u, 7u, 64u, 328u);
+    std::vector<float> first(genes), second(genes), child(genes), sibling(genes);
+    for (unsigned gene = 0; gene < genes; ++gene) {
+        first[gene] = static_cast<float>(gene);
+        second[gene] = static_cast<float>(gene) + 1000;
     }
-    const GeneMask mask = *rc::gen::inRange(0u, 64u);
-    cross(first, second, mask, child);
-    cross(first, second, ~mask, sibling);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
-        const bool from_second = (mask >> gene & 1) != 0;
+    Mixture<> mixture{genes};
+    base::RandomStream random = stream_of(*rc::gen::inRange<std::uint64_t>(0, 1000));
+    const auto method =
+        *rc::gen::element(CrossoverMethod::Uniform, CrossoverMethod::SinglePoint, CrossoverMethod::MultiPoint);
+    Crossover<>{with(method), genes}.draw(mixture, random);
+    GeneMask<> mask = mixture.from_second;
+    cross(ConstGenes{first}, ConstGenes{second}, mask, Genes{child});
+    mask.complement();
+    cross(ConstGenes{first}, ConstGenes{second}, mask, Genes{sibling});
+    for (unsigned gene = 0; gene < genes; ++gene) {
+        const bool from_second = mixture.from_second.contains(gene);
         RC_ASSERT(child[gene] == (from_second ? second : first)[gene]);
         RC_ASSERT(sibling[gene] == (from_second ? first : second)[gene]);
     }
@@ -114,11 +181,11 @@ RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
 TEST(Crossover, BlendDrawsAUniformWeight) {
     // Law: with probability 0.8 uniform in (0, 1), otherwise no crossover. Chi-square over 100 cells and the pairs without
     // crossover, 100 degrees of freedom.
-    const Crossover crossover{with(CrossoverMethod::Blend, 2, 0.8)};
+    const Crossover<> crossover{with(CrossoverMethod::Blend, 2, 0.8), body_gene_count};
     std::vector<std::uint64_t> counts(101);
     for (std::uint32_t i = 0; i < 500'000; ++i) {
         base::RandomStream random = stream_of(188, i);
-        Mixture mixture;
+        Mixture<> mixture{body_gene_count};
         if (!crossover.draw(mixture, random)) {
             ++counts[100];
             continue;
@@ -126,8 +193,8 @@ TEST(Crossover, BlendDrawsAUniformWeight) {
         const double share = mixture.second_share;
         ASSERT_GT(share, 0);
         ASSERT_LT(share, 0.5);
-        ASSERT_TRUE(mixture.from_second == 0 || mixture.from_second == all_genes);
-        ++counts[static_cast<std::size_t>((mixture.from_second == 0 ? share : 1 - share) * 100)];
+        ASSERT_TRUE(mixture.from_second.count() == 0 || mixture.from_second.count() == body_gene_count);
+        ++counts[static_cast<std::size_t>((mixture.from_second.count() == 0 ? share : 1 - share) * 100)];
     }
     std::vector<double> law(101, 0.008);
     law[100] = 0.2;
@@ -135,19 +202,19 @@ TEST(Crossover, BlendDrawsAUniformWeight) {
 }
 
 RC_GTEST_PROP(Crossover, BlendedSiblingsHaveTheMeanOfTheirParents, ()) {
-    std::array<float, gene_count> first, second, child, sibling;
+    std::array<float, body_gene_count> first, second, child, sibling;
     const auto draw = [] {
         const auto size = static_cast<float>(*rc::gen::inRange(0, 1 << 24));
         return std::ldexp(*rc::gen::arbitrary<bool>() ? size : -size, *rc::gen::inRange(-30, -8));
     };
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         first[gene] = draw();
         second[gene] = draw();
     }
     const double share = (*rc::gen::inRange(0u, 0x7fff'ffffu) + 0.5) * 0x1p-32;
-    blend(first, second, share, child);
-    blend(second, first, share, sibling);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    blend(ConstGenes{first}, ConstGenes{second}, share, Genes{child});
+    blend(ConstGenes{second}, ConstGenes{first}, share, Genes{sibling});
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         const double a = double{first[gene]}, b = double{second[gene]};
         const double one = double{child[gene]}, other = double{sibling[gene]};
         const double largest = std::max(std::abs(a), std::abs(b));
@@ -159,9 +226,9 @@ RC_GTEST_PROP(Crossover, BlendedSiblingsHaveTheMeanOfTheirParents, ()) {
 }
 
 TEST(Crossover, BlendingEqualParentsCopiesThem) {
-    const std::array<float, gene_count> parent = {20, 33.3f, 1e-3f, 99.99f, 0, 250};
-    std::array<float, gene_count> child{};
-    blend(parent, parent, 0.3, child);
+    const std::array<float, body_gene_count> parent = {20, 33.3f, 1e-3f, 99.99f, 0, 250};
+    std::array<float, body_gene_count> child{};
+    blend(ConstGenes{parent}, ConstGenes{parent}, 0.3, Genes{child});
     EXPECT_EQ(child, parent);
 }
 

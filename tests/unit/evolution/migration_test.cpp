@@ -205,7 +205,8 @@ TEST(Migration, DrawsTheOriginsThatGetRemainingPlaces) {
 }
 
 TEST(Migration, EmigrantsAreCopiedBeforeAnyArrives) {
-    GeneMatrix first = GeneMatrix::Constant(gene_count, 1, 1), second = GeneMatrix::Constant(gene_count, 1, 2);
+    GeneMatrix first = GeneMatrix::Constant(body_gene_count, 1, 1),
+               second = GeneMatrix::Constant(body_gene_count, 1, 2);
     std::vector<double> first_fitness = {10}, second_fitness = {20};
     const IslandPopulation islands[] = {{&first, first_fitness}, {&second, second_fitness}};
     migrate(std::vector<Migrant>{{1, 0, 0, 0}, {0, 1, 0, 0}}, islands);

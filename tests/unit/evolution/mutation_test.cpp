@@ -13,7 +13,7 @@
 namespace evod::evolution {
 namespace {
 
-using Values = std::array<float, gene_count>;
+using Values = std::array<float, body_gene_count>;
 
 /// No mutation at all, and distant bounds.
 Parameters still() {
@@ -34,7 +34,7 @@ constexpr Values middle = {512, 512, 512, 512, 512, 512};
 template <class Visit>
 void mutants(const Parameters& parameters, const Values& start, std::uint32_t count, std::uint64_t seed,
              const Visit& visit) {
-    const ValueMutation mutation{parameters};
+    const ValueMutation<body_gene_count> mutation{parameters};
     for (std::uint32_t i = 0; i < count; ++i) {
         Values genes = start;
         base::RandomStream random = stream_of(seed, i);
@@ -48,11 +48,11 @@ TEST(Creep, StepsAreUniformWithinTheStepSize) {
     Parameters parameters = still();
     parameters.mutation_chance = 1;
     parameters.mutation_step = 15;
-    std::array<std::vector<std::uint64_t>, gene_count> cells;
+    std::array<std::vector<std::uint64_t>, body_gene_count> cells;
     cells.fill(std::vector<std::uint64_t>(60));
     double sum = 0, squares = 0;
     mutants(parameters, middle, 100'000, 201, [&](const Values& genes, unsigned) {
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             const double step = double{genes[gene]} - 512;
             ASSERT_LE(std::abs(step), 15);
             ++cells[gene].at(std::min<std::size_t>(59, static_cast<std::size_t>((step + 15) * 2)));
@@ -144,7 +144,7 @@ TEST(Creep, EachGeneMutatesWithItsChanceIndependently) {
     std::vector<std::uint64_t> counts(64);
     mutants(parameters, middle, 3'000'000, 203, [&](const Values& genes, unsigned) {
         unsigned mutated = 0;
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             mutated |= unsigned{genes[gene] != 512} << gene;
         }
         ++counts[mutated];
@@ -164,11 +164,11 @@ TEST(Reset, IsUniformWithinTheBoundsOfEachGene) {
     parameters.mutation_chance = 0;
     parameters.reset_chance = 0.5;
     const GeneBounds bounds = gene_bounds(parameters);
-    std::array<std::vector<std::uint64_t>, gene_count> cells;
+    std::array<std::vector<std::uint64_t>, body_gene_count> cells;
     cells.fill(std::vector<std::uint64_t>(41));
     constexpr float start = 100.0001f; // a draw hits it with probability 1e-7
     mutants(parameters, {start, start, start, start, start, start}, 200'000, 204, [&](const Values& genes, unsigned) {
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             ASSERT_GE(genes[gene], bounds.min[gene]);
             ASSERT_LE(genes[gene], bounds.max[gene]);
             const float share = (genes[gene] - bounds.min[gene]) / (bounds.max[gene] - bounds.min[gene]);
@@ -195,7 +195,7 @@ TEST(Scale, MultipliesOneGeneByAUniformFactor) {
     mutants(parameters, start, 600'000, 210, [&](const Values& genes, unsigned clamped) {
         ASSERT_EQ(clamped, 0u);
         std::size_t cell = 300;
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             if (genes[gene] == start[gene]) {
                 continue;
             }
@@ -218,7 +218,7 @@ TEST(Scale, FollowsCreepAndPrecedesTheBounds) {
     parameters.scale_chance = 1;
     parameters.scale_range = 1;
     const GeneBounds bounds = gene_bounds(parameters);
-    const ValueMutation mutation{parameters};
+    const ValueMutation<> mutation{parameters};
     std::uint32_t clamped = 0;
     for (std::uint32_t i = 0; i < 2000; ++i) {
         Values genes = {100, 100, 100, 100, 100, 100}, same = genes;
@@ -227,13 +227,13 @@ TEST(Scale, FollowsCreepAndPrecedesTheBounds) {
         const unsigned counted = mutation.apply(genes, random, changes);
         ASSERT_EQ(mutation.apply(same, again), counted);
         ASSERT_EQ(same, genes);
-        ASSERT_EQ(changes.size(), gene_count + 1 + counted);
-        const GeneChange& scaled = changes[gene_count];
+        ASSERT_EQ(changes.size(), body_gene_count + 1 + counted);
+        const GeneChange& scaled = changes[body_gene_count];
         ASSERT_EQ(scaled.kind, ChangeKind::Scale);
         ASSERT_EQ(scaled.before, changes[scaled.gene].after) << "of the creep mutation";
         ASSERT_GE(genes[scaled.gene], bounds.min[scaled.gene]);
         ASSERT_LE(genes[scaled.gene], bounds.max[scaled.gene]);
-        for (std::size_t k = gene_count + 1; k < changes.size(); ++k) {
+        for (std::size_t k = body_gene_count + 1; k < changes.size(); ++k) {
             ASSERT_EQ(changes[k].kind, ChangeKind::Clamp);
             ASSERT_EQ(changes[k].gene, scaled.gene) << "creep alone cannot leave the bounds";
         }
@@ -252,14 +252,14 @@ TEST(BitFlip, EveryBitFlipsWithItsChanceIndependently) {
     parameters.bit_flip_bits = 3;
     const GeneBounds bounds = gene_bounds(parameters);
     Values start;
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         start[gene] = BinaryView{bounds.min[gene], bounds.max[gene], 3}.to_value(5);
     }
-    std::array<std::vector<std::uint64_t>, gene_count> flips;
+    std::array<std::vector<std::uint64_t>, body_gene_count> flips;
     flips.fill(std::vector<std::uint64_t>(8));
     mutants(parameters, start, 200'000, 205, [&](const Values& genes, unsigned clamped) {
         ASSERT_EQ(clamped, 0u);
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             ++flips[gene].at(BinaryView{bounds.min[gene], bounds.max[gene], 3}.to_code(genes[gene]) ^ 5u);
         }
     });
@@ -280,7 +280,7 @@ TEST(BitFlip, LeavesGenesWithoutFlippedBitsUnchanged) {
     constexpr Values start = {101.3f, 99.7f, 88.1f, 111.9f, 104.2f, 93.4f};
     std::uint64_t untouched = 0;
     mutants(parameters, start, 1000, 206, [&](const Values& genes, unsigned) {
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             untouched += genes[gene] == start[gene];
         }
     });
@@ -318,7 +318,7 @@ TEST(Bounds, EveryGeneOutsideIsClampedAndCounted) {
     std::uint64_t at_a_bound = 0, counted = 0;
     mutants(parameters, {100, 100, 100, 100, 100, 100}, 10'000, 207, [&](const Values& genes, unsigned clamped) {
         counted += clamped;
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             ASSERT_GE(genes[gene], bounds.min[gene]);
             ASSERT_LE(genes[gene], bounds.max[gene]);
             at_a_bound += genes[gene] == bounds.min[gene] || genes[gene] == bounds.max[gene];

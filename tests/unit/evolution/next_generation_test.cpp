@@ -177,7 +177,7 @@ TEST(NextGeneration, SurvivorsMutateByTheSameLawAsChildren) {
     const NextGeneration next = breed(population, parameters, 100'000);
     std::vector<std::uint64_t> counts(2);
     for (std::uint32_t i = 0; i < next.survivor_count; ++i) {
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             ++counts[next.genes(gene, i) != population.genes(gene, next.parents[i].first)];
         }
     }
@@ -300,7 +300,7 @@ TEST(NextGeneration, ChildrenAreComplementaryMixturesOfTheirParents) {
     const NextGeneration next = breed(population, without_mutation(), 60);
     for (std::uint32_t i = next.survivor_count; i + 1 < 60; i += 2) {
         ASSERT_EQ(pair_of(next.parents[i]), pair_of(next.parents[i + 1]));
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             const float a = population.genes(gene, next.parents[i].first);
             const float b = population.genes(gene, next.parents[i].second);
             const float child = next.genes(gene, i), sibling = next.genes(gene, i + 1);
@@ -318,7 +318,7 @@ TEST(NextGeneration, BlendedSiblingsKeepTheMeanOfTheirParents) {
         const auto [first, second] = next.parents[i];
         ASSERT_EQ(next.parents[i + 1], (Parents{second, first}));
         double share = -1; // the weight of the second parent, the same in every gene
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             const double a = double{population.genes(gene, first)}, b = double{population.genes(gene, second)};
             const double child = double{next.genes(gene, i)}, sibling = double{next.genes(gene, i + 1)};
             ASSERT_LE(std::abs(child + sibling - (a + b)), 0x1p-23 * std::max(a, b));
@@ -341,7 +341,7 @@ TEST(NextGeneration, BlendKeepsTwoThirdsOfTheVariance) {
     parameters.selection = SelectionMethod::Random;
     const Population population = population_of(200'000, 245);
     const NextGeneration next = breed(population, parameters, 200'000);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         const auto variance = [&](const GeneMatrix& genes) {
             const auto row = genes.row(gene).cast<double>();
             return (row - row.mean()).square().mean();
@@ -445,7 +445,7 @@ TEST(NextGeneration, HasItsGoldenHash) {
         const NextGeneration next = breed(population, parameters, 1001);
         for (std::uint32_t i = 0; i < 1001; ++i) {
             base::EntityHash entity{0, later ? id_of_later++ : id++};
-            for (unsigned gene = 0; gene < gene_count; gene += 2) {
+            for (unsigned gene = 0; gene < body_gene_count; gene += 2) {
                 entity.add(next.genes(gene, i), next.genes(gene + 1, i));
             }
             (later ? hash_of_later : hash) += entity.add(next.parents[i].first, next.parents[i].second).finish();

@@ -12,7 +12,7 @@
 namespace evod::evolution {
 namespace {
 
-using Order = std::array<float, gene_count>;
+using Order = std::array<float, body_gene_count>;
 constexpr Order in_order = {0, 1, 2, 3, 4, 5};
 
 Parameters with(OrderMutationMethod method, double chance = 1) {
@@ -28,7 +28,7 @@ std::map<Order, std::uint64_t> outcomes(const Parameters& parameters, std::uint3
     for (std::uint32_t i = 0; i < draws; ++i) {
         Order genes = in_order;
         base::RandomStream random = stream_of(seed, i);
-        mutation.apply(genes, random);
+        mutation.apply(Genes{genes}, random);
         ++counts[genes];
     }
     return counts;
@@ -55,8 +55,8 @@ Order swapped(Order order, unsigned a, unsigned b) {
 
 template <class Visit>
 void for_each_pair(const Visit& visit) { // 15 of them
-    for (unsigned a = 0; a < gene_count; ++a) {
-        for (unsigned b = a + 1; b < gene_count; ++b) {
+    for (unsigned a = 0; a < body_gene_count; ++a) {
+        for (unsigned b = a + 1; b < body_gene_count; ++b) {
             visit(a, b);
         }
     }
@@ -130,7 +130,7 @@ RC_GTEST_PROP(OrderMutation, NeverMakesANewValue, ()) {
     const auto method =
         *rc::gen::element(OrderMutationMethod::Swap, OrderMutationMethod::Scramble, OrderMutationMethod::Inversion);
     base::RandomStream random = stream_of(*rc::gen::arbitrary<std::uint64_t>());
-    OrderMutation{with(method)}.apply(rearranged, random);
+    OrderMutation{with(method)}.apply(Genes{rearranged}, random);
     std::sort(genes.begin(), genes.end());
     std::sort(rearranged.begin(), rearranged.end());
     RC_ASSERT(genes == rearranged);

@@ -79,8 +79,8 @@ double mean(const GeneMatrix& genes, unsigned gene) {
 SelectionAccount by_definition(const Bred& bred) {
     using Real = long double;
     const auto n = static_cast<std::size_t>(bred.before.cols());
-    SelectionAccount account;
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    SelectionAccount account(body_gene_count);
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         const auto z = [&](std::uint32_t i) { return static_cast<Real>(bred.bred_from(gene, i)); };
         std::vector<Real> shares(n), moved(n); // of each organism; moved: Σ share · (descendant − organism)
         for (std::size_t child = 0; child < bred.next.parents.size(); ++child) {
@@ -114,9 +114,10 @@ SelectionAccount by_definition(const Bred& bred) {
 }
 
 void expect_closed(const SelectionAccount& account) {
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         const GeneAccount& of = account[gene];
-        EXPECT_NEAR(of.selection + of.transmission + of.migration, of.change, 1e-9 * largest(of)) << gene_names[gene];
+        EXPECT_NEAR(of.selection + of.transmission + of.migration, of.change, 1e-9 * largest(of))
+            << body_gene_names[gene];
     }
 }
 
@@ -125,7 +126,7 @@ TEST(Price, EqualsAnExampleComputedByHand) {
     // the migrant itself, the second is organism 1 after a mutation by +6, and the others are children.
     base::InlineExecutor executor;
     const auto population = [](std::initializer_list<float> values) {
-        GeneMatrix genes(gene_count, static_cast<Eigen::Index>(values.size()));
+        GeneMatrix genes(body_gene_count, static_cast<Eigen::Index>(values.size()));
         for (Eigen::Index i = 0; const float value : values) {
             genes.col(i++) = value;
         }
@@ -174,7 +175,7 @@ TEST(Price, EqualsTheWrittenEquationForEveryChoice) {
                                 SCOPED_TRACE(seed);
                                 expect_closed(bred.account);
                                 const SelectionAccount defined = by_definition(bred);
-                                for (unsigned gene = 0; gene < gene_count; ++gene) {
+                                for (unsigned gene = 0; gene < body_gene_count; ++gene) {
                                     const GeneAccount &one = bred.account[gene], &other = defined[gene];
                                     const double allowed = 1e-9 * std::max(largest(other), 1e-3);
                                     EXPECT_NEAR(one.selection, other.selection, allowed);
@@ -200,7 +201,7 @@ RC_GTEST_PROP(Price, AddsUpForAnyGenes, ()) {
     const auto count = [](std::uint32_t end) { return *rc::gen::inRange(1u, end); };
     const std::uint32_t present = count(60), wanted = count(90);
     const auto genes_of = [&](std::uint32_t organisms) {
-        GeneMatrix genes(gene_count, static_cast<Eigen::Index>(organisms));
+        GeneMatrix genes(body_gene_count, static_cast<Eigen::Index>(organisms));
         for (Eigen::Index i = 0; i < genes.size(); ++i) { // everywhere within the possible bounds, including the lowest
             genes.data()[i] = std::ldexp(static_cast<float>(*rc::gen::inRange(0, 10'001)), -*rc::gen::inRange(0, 30));
         }
@@ -281,7 +282,7 @@ TEST(Price, MigrantsAloneChangeAnIdleIsland) {
     of.parameters.selection = SelectionMethod::Truncation;
     of.parameters.survivors = 1;
     const Bred bred = breed(of);
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         EXPECT_EQ(bred.account[gene].selection, 0);
         EXPECT_EQ(bred.account[gene].transmission, 0);
         EXPECT_NEAR(bred.account[gene].migration, mean(bred.bred_from, gene) - mean(bred.before, gene), 1e-12);
@@ -294,20 +295,20 @@ TEST(Price, RandomSelectionHasZeroSelectionOnAverage) {
     // The mean of many terms, divided by its standard error, is normal: by chance alone |t| is above 5.5 with a
     // probability of 4e-8 for each gene, less than `alpha` for all of them.
     constexpr std::uint32_t seeds = 400;
-    std::array<double, gene_count> sums{}, squares{};
+    std::array<double, body_gene_count> sums{}, squares{};
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Case of{.parameters = {}, .seed = seed};
         of.parameters.selection = SelectionMethod::Random;
         const SelectionAccount account = breed(of).account;
-        for (unsigned gene = 0; gene < gene_count; ++gene) {
+        for (unsigned gene = 0; gene < body_gene_count; ++gene) {
             sums[gene] += account[gene].selection;
             squares[gene] += account[gene].selection * account[gene].selection;
         }
     }
-    for (unsigned gene = 0; gene < gene_count; ++gene) {
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
         const double mean = sums[gene] / seeds, variance = squares[gene] / seeds - mean * mean;
         EXPECT_GT(variance, 0.01);
-        EXPECT_LT(std::abs(mean) / std::sqrt(variance / seeds), 5.5) << gene_names[gene];
+        EXPECT_LT(std::abs(mean) / std::sqrt(variance / seeds), 5.5) << body_gene_names[gene];
     }
 }
 
@@ -326,7 +327,7 @@ TEST(Price, NumbersAreWrittenAndReadInOneOrder) {
     const SelectionAccount account = breed({.parameters = {}, .migration = true}).account;
     std::vector<std::string> names;
     std::vector<std::optional<double>> numbers;
-    for_each_number(account, [&](const std::string& name, std::optional<double> number) {
+    for_each_number(account, body_gene_names, [&](const std::string& name, std::optional<double> number) {
         names.push_back(name);
         numbers.push_back(number);
     });
@@ -335,12 +336,13 @@ TEST(Price, NumbersAreWrittenAndReadInOneOrder) {
     EXPECT_EQ(names[23], "poison_radius_change");
     const auto read = [&] {
         auto next = numbers.begin();
-        return account_from([&] { return *next++; });
+        return account_from(body_gene_count, [&] { return *next++; });
     };
     EXPECT_EQ(read(), account);
     numbers[5].reset();
     EXPECT_EQ(read(), std::nullopt);
-    for_each_number(std::nullopt, [](const std::string&, std::optional<double> number) { EXPECT_FALSE(number); });
+    for_each_number(std::nullopt, body_gene_names,
+                    [](const std::string&, std::optional<double> number) { EXPECT_FALSE(number); });
 }
 
 } // namespace

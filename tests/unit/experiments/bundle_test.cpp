@@ -90,7 +90,7 @@ TEST_F(BundleTest, ChecksumsCoverAllOtherFiles) {
 }
 
 TEST_F(BundleTest, AGivenPopulationIsPartOfIt) {
-    const evolution::GeneMatrix genes = evolution::GeneMatrix::Constant(evolution::gene_count, 12, 100);
+    const evolution::GeneMatrix genes = evolution::GeneMatrix::Constant(evolution::body_gene_count, 12, 100);
     record(1, std::make_shared<const std::vector<evolution::GeneMatrix>>(2, genes));
     ASSERT_TRUE(write("bundle"));
     EXPECT_TRUE(names().contains("population.csv"));

@@ -40,7 +40,7 @@ TEST_F(PopulationFile, HasAColumnPerOrganism) {
     ASSERT_TRUE(loaded) << to_text(loaded.error());
     ASSERT_EQ((*loaded)->size(), 1u);
     const evolution::GeneMatrix& genes = (*loaded)->front();
-    ASSERT_EQ(genes.rows(), evolution::gene_count);
+    ASSERT_EQ(genes.rows(), evolution::body_gene_count);
     ASSERT_EQ(genes.cols(), 2);
     EXPECT_EQ(genes(0, 0), 100);
     EXPECT_EQ(genes(5, 0), 105);

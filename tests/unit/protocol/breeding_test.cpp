@@ -13,7 +13,10 @@ namespace evod::protocol {
 namespace {
 
 TEST(BreedingMessage, IsConvertedCompletely) {
-    const evolution::Chromosome genes = evolution::Chromosome::Constant(100);
+    constexpr unsigned gene_count = 40;
+    const std::vector<float> genes(gene_count, 100);
+    evolution::GeneMask<> all{gene_count};
+    all.flip_from(0);
     evolution::BreedingRecord record;
     record.places = {.elite = 1, .survivors = 3, .children = 5};
     record.contender_count = 7;
@@ -25,7 +28,7 @@ TEST(BreedingMessage, IsConvertedCompletely) {
                                       .parents = {1, 2},
                                       .first_genes = genes,
                                       .second_genes = genes,
-                                      .from_second = 3,
+                                      .from_second = all,
                                       .second_share = 0.25,
                                       .crossed = true,
                                       .order = {{1, 0, 2, 3, 4, 5}},
@@ -47,6 +50,8 @@ TEST(BreedingMessage, IsConvertedCompletely) {
     std::vector<double> contender;
     collect_numbers(message.contenders(0), contender);
     EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
+    EXPECT_EQ(message.descendants(0).from_second(), ~0u);
+    EXPECT_THAT(message.descendants(0).more_from_second(), testing::ElementsAre(0xffu));
     EXPECT_EQ(message.descendant_count(), 8u);
     EXPECT_EQ(message.descendants(0).kind(), v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(message.descendants(1).kind(), v1::DESCENDANT_KIND_SURVIVOR);

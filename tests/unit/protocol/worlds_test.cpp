@@ -34,7 +34,7 @@ TEST(WorldMessage, GenerationStatisticsAreConvertedInOrder) {
     s.generation = count(), s.island = count(), s.end_tick = count(), s.organism_count = count();
     s.fitness_best = number(), s.fitness_mean = number(), s.fitness_median = number(), s.fitness_worst = number();
     s.fitness_deviation = number();
-    s.account.emplace();
+    s.account.emplace(s.genes.size());
     for (std::size_t gene = 0; gene < s.genes.size(); ++gene) {
         s.genes[gene] = {number(), number(), number(), number()};
         (*s.account)[gene] = {number(), number(), number(), number()};

@@ -67,7 +67,7 @@ TEST_P(BreedingTest, ReportsDescendantsAndParameters) {
             ASSERT_EQ(bred->record.descendants.size(), born.parents.size());
             for (const auto& descendant : bred->record.descendants) {
                 EXPECT_EQ(descendant.parents, born.parents[descendant.id]);
-                EXPECT_TRUE((descendant.genes == born.genes.col(descendant.id)).all());
+                EXPECT_TRUE(std::ranges::equal(descendant.genes, evolution::column(born.genes, descendant.id)));
             }
             // After every second generation, the best of the other island replace the worst of this one.
             std::vector<evolution::Migrant> migrants;

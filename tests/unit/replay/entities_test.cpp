@@ -38,7 +38,7 @@ void change_entities(RecordedRun& run, std::mt19937& random, bool remove) {
         item.set_y_px(static_cast<double>(50 + random() % 300));
     }
     simulation::PlaceEntities organism{.world = "w", .island = index};
-    organism.organisms.push_back({0, 0, evolution::Chromosome::Constant(110)});
+    organism.organisms.push_back({0, 0, std::vector<float>(evolution::body_gene_count, 110)});
     for (int attempt = 0; attempt < 100; ++attempt) {
         auto& [x_px, y_px, genes] = organism.organisms[0];
         x_px = static_cast<double>(50 + random() % 500);

@@ -81,7 +81,7 @@ TEST_F(SelectionAccountTest, TheyAddUpToTheChangeOfTheStatistics) {
         for (std::size_t island = 0; island < 2; ++island) {
             ASSERT_TRUE(statistics[island].account) << generation;
             bool has_migrants = false;
-            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+            for (unsigned gene = 0; gene < evolution::body_gene_count; ++gene) {
                 const evolution::GeneAccount& account = (*statistics[island].account)[gene];
                 const double change = statistics[island].genes[gene].mean - before[island].genes[gene].mean;
                 EXPECT_NEAR(account.change, change, 1e-11);

@@ -39,7 +39,7 @@ class OneOrganism : public testing::Test {
         food = item_at_most_one(true, base::Purpose::FoodPlacement);
         poison = item_at_most_one(true, base::Purpose::PoisonPlacement);
         none = item_at_most_one(false, base::Purpose::FoodPlacement);
-        evolution::Chromosome genes;
+        evolution::BodyGenes genes;
         genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and always flees
         bodies.add({.id = 0, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
         living.resize(1);
@@ -212,7 +212,7 @@ TEST_F(OneOrganism, ReplacesADirectionWithoutLengthByARandomOne) {
 
 TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
     for (std::uint32_t id = 1; id < 40; ++id) {
-        evolution::Chromosome genes;
+        evolution::BodyGenes genes;
         genes << 50, 100, 100, 100, 0, 0;
         bodies.add({.id = id, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
         living.resize(id + 1);
@@ -273,7 +273,7 @@ TEST(Foreseeing, EqualsWhatACrowdThenDoesBitForBit) {
     const auto place = [&] { return Place{to_units(random.uniform(20, 1580)), to_units(random.uniform(20, 1180))}; };
     for (int i = 0; i < 700; ++i) {
         const Place at = place();
-        evolution::Chromosome genes;
+        evolution::BodyGenes genes;
         for (auto& gene : genes) {
             gene = static_cast<float>(random.uniform(60, 120));
         }

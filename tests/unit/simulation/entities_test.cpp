@@ -17,8 +17,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-evolution::Chromosome genes_of(float base_health = 100, float body_size = 100) {
-    evolution::Chromosome genes;
+evolution::BodyGenes genes_of(float base_health = 100, float body_size = 100) {
+    evolution::BodyGenes genes;
     genes << 100, 100, body_size, base_health, 100, 100;
     return genes;
 }
@@ -66,8 +66,11 @@ class EntitiesTest : public testing::Test {
         const double x = physics::to_px(island().bodies().x[body]);
         return {physics::to_units(x > 400 ? x - from_it_px : x + from_it_px), island().bodies().y[body]};
     }
-    static PlaceEntities::Organism organism_at(Place place, const evolution::Chromosome& genes) {
-        return {physics::to_px(place.x), physics::to_px(place.y), genes};
+    static PlaceEntities::Organism organism_at(Place place, const evolution::BodyGenes& genes) {
+        return organism_at_px(physics::to_px(place.x), physics::to_px(place.y), genes);
+    }
+    static PlaceEntities::Organism organism_at_px(double x_px, double y_px, const evolution::BodyGenes& genes) {
+        return {x_px, y_px, {genes.begin(), genes.end()}};
     }
 
     parameters::Parameters parameters;
@@ -115,11 +118,11 @@ TEST_F(EntitiesTest, AnOrganismLivesFromThePlacingOn) {
     parameters.health_loss_per_s = 60; // 1 per tick
     create();
     advance(10);
-    const auto placed = place({}, {organism_at(clear_place(), genes_of(5)), {10, 590, genes_of(300, 90)}});
+    const auto placed = place({}, {organism_at(clear_place(), genes_of(5)), organism_at_px(10, 590, genes_of(300, 90))});
     ASSERT_FALSE(placed); // base_health_max is 200
     EXPECT_THAT(fields_of(placed.error()),
                 ElementsAre("place.organisms[0].base_health", "place.organisms[1].base_health"));
-    const auto done = place({}, {organism_at(clear_place(), genes_of(20)), {12, 588, genes_of(200, 90)}});
+    const auto done = place({}, {organism_at(clear_place(), genes_of(20)), organism_at_px(12, 588, genes_of(200, 90))});
     ASSERT_TRUE(done) << to_text(done.error());
     EXPECT_THAT(done->placed->organisms, ElementsAre(1u, 2u));
     EXPECT_EQ(world().alive_count(), 3u);
@@ -207,7 +210,7 @@ TEST_F(EntitiesTest, EveryWrongFieldIsNamedAndNothingPlaced) {
     const auto body = *island().body_of(0);
     const Place first{island().bodies().x[body], island().bodies().y[body]};
     const double nan = std::nan("");
-    evolution::Chromosome wild = genes_of();
+    evolution::BodyGenes wild = genes_of();
     wild(evolution::Impulse) = std::nanf("");
     wild(evolution::FoodRadius) = 1e9f;
     const base::StateHash before = world().hash();
@@ -217,7 +220,7 @@ TEST_F(EntitiesTest, EveryWrongFieldIsNamedAndNothingPlaced) {
          {ItemKind::Poison, physics::to_px(crate.x), physics::to_px(crate.y)},
          {ItemKind::Poison, physics::to_px(obstacle.x), physics::to_px(obstacle.y)},
          {ItemKind::Food, 4, 596}},
-        {organism_at(first, genes_of()), {300, 9.9, genes_of()}, {300, 300, wild}, organism_at(crate, genes_of())});
+        {organism_at(first, genes_of()), organism_at_px(300, 9.9, genes_of()), organism_at_px(300, 300, wild), organism_at(crate, genes_of())});
     ASSERT_FALSE(refused);
     EXPECT_THAT(fields_of(refused.error()),
                 ElementsAre("place.items[0].y_px", "place.items[1].x_px", "place.items[1].y_px", "place.items[2]",
@@ -286,7 +289,7 @@ TEST_F(EntitiesTest, ADeadIslandLivesAgain) {
     ASSERT_TRUE(remove_first());
     advance(10);
     EXPECT_EQ(island().alive_count(), 0u);
-    ASSERT_TRUE(place({}, {{400, 300, genes_of()}}));
+    ASSERT_TRUE(place({}, {organism_at_px(400, 300, genes_of())}));
     const WorldState state = world().state(executor);
     World restored = world().at_its_opening(executor);
     const auto done = restored.restore(state, three_threads);
@@ -306,7 +309,8 @@ int change_randomly(Laboratory& laboratory, std::mt19937& random) {
     for (auto left = random() % 20; left > 0; --left) {
         place.items.push_back({random() % 2 == 0 ? ItemKind::Food : ItemKind::Poison, x(), y()});
     }
-    place.organisms.push_back({x(), y(), genes_of(100 + static_cast<float>(random() % 50))});
+    const evolution::BodyGenes genes = genes_of(100 + static_cast<float>(random() % 50));
+    place.organisms.push_back({x(), y(), {genes.begin(), genes.end()}});
     const Island& there = world.islands()[island];
     RemoveEntities remove{.world = "w", .island = island};
     const auto organism = static_cast<std::uint32_t>(random() % there.fate().cause.size());

@@ -20,7 +20,7 @@ Meadow meadow_at(Coordinate shift_x, Coordinate shift_y) {
     const auto x = [&] { return to_units(random.uniform(2000, 3500)) + shift_x; };
     const auto y = [&] { return to_units(random.uniform(2000, 3500)) + shift_y; };
     for (int i = 0; i < 1500; ++i) {
-        evolution::Chromosome genes;
+        evolution::BodyGenes genes;
         const auto gene = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
         genes << gene(20, 250), gene(20, 250), gene(40, 200), 100, gene(20, 200), gene(20, 200);
         const Coordinate at_x = x();

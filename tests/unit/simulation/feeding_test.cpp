@@ -178,7 +178,7 @@ TEST_P(AMeadow, PerceivesAndFeedsLikeATestOfAllItems) {
     meadow.rules.force_per_unit = c.force;
     base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
     for (std::uint32_t id = 0; id < c.organisms; ++id) {
-        evolution::Chromosome genes;
+        evolution::BodyGenes genes;
         const auto gene = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
         genes << gene(20, 250), gene(20, 250), gene(10, 200), 100, gene(0, c.sight), gene(0, c.sight);
         const physics::Coordinate x = to_units(random.uniform(20, std::min(c.width, c.crowd_side) - 20));

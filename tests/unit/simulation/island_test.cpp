@@ -13,9 +13,9 @@
 namespace evod::simulation {
 namespace {
 
-evolution::Chromosome genes_of(float normal_speed, float impulse, float body_size, float base_health, float food_radius,
+evolution::BodyGenes genes_of(float normal_speed, float impulse, float body_size, float base_health, float food_radius,
                                float poison_radius) {
-    evolution::Chromosome genes;
+    evolution::BodyGenes genes;
     genes << normal_speed, impulse, body_size, base_health, food_radius, poison_radius;
     return genes;
 }
@@ -27,9 +27,9 @@ class SmallIsland : public testing::Test {
         parameters.island_width_px = parameters.island_height_px = 200;
         parameters.food_count = parameters.poison_count = 0;
     }
-    void begin(const std::vector<evolution::Chromosome>& chromosomes) {
+    void begin(const std::vector<evolution::BodyGenes>& chromosomes) {
         evolution::NextGeneration born;
-        born.genes = evolution::GeneMatrix(evolution::gene_count, static_cast<Eigen::Index>(chromosomes.size()));
+        born.genes = evolution::GeneMatrix(evolution::body_gene_count, static_cast<Eigen::Index>(chromosomes.size()));
         for (std::size_t i = 0; i < chromosomes.size(); ++i) {
             born.genes.col(static_cast<Eigen::Index>(i)) = chromosomes[i];
         }
@@ -132,7 +132,7 @@ TEST(LossPerTick, IsTheRateTimesTheCostsOfGenes) {
     p.base_health_cost = 0.5;
     p.food_radius_cost = 0.1;
     p.poison_radius_cost = 0.3;
-    const auto loss = [&](const evolution::Chromosome& genes) {
+    const auto loss = [&](const evolution::BodyGenes& genes) {
         Living living;
         living.resize(1);
         living.put(0, genes, p);
@@ -172,8 +172,8 @@ TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
 }
 
 /// Chromosomes of a crowded island on which organisms of both kinds of items eat and some die.
-std::vector<evolution::Chromosome> hungry() {
-    std::vector<evolution::Chromosome> chromosomes;
+std::vector<evolution::BodyGenes> hungry() {
+    std::vector<evolution::BodyGenes> chromosomes;
     for (int i = 0; i < 30; ++i) {
         chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
     }
@@ -295,7 +295,7 @@ TEST_F(SmallIsland, HashCoversEverything) {
 }
 
 TEST_F(SmallIsland, FindsTheBodyOfEachId) {
-    std::vector<evolution::Chromosome> chromosomes;
+    std::vector<evolution::BodyGenes> chromosomes;
     for (int i = 0; i < 8; ++i) {
         chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
     }
@@ -331,7 +331,7 @@ TEST(GeneSum, IsTheSumOfTheGenes) {
 
 TEST(Rastrigin, FollowsItsFormulaWithItsMaximumAt150) {
     EXPECT_NEAR(rastrigin(genes_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);
-    const evolution::Chromosome genes = genes_of(100, 103, 151, 20, 249.5f, 175);
+    const evolution::BodyGenes genes = genes_of(100, 103, 151, 20, 249.5f, 175);
     double sum = 60;
     for (unsigned i = 0; i < 6; ++i) {
         const double x = (static_cast<double>(genes(i)) - 150) / 25;

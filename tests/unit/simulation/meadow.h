@@ -35,7 +35,7 @@ struct Meadow {
     std::uint32_t tick = 0;
 
     /// At rest; the id is the number of organisms added before.
-    void add_organism(physics::Coordinate x, physics::Coordinate y, const evolution::Chromosome& genes) {
+    void add_organism(physics::Coordinate x, physics::Coordinate y, const evolution::BodyGenes& genes) {
         const BodyShape shape = body_shape(genes(evolution::BodySize), parameters::Parameters{});
         const auto id = static_cast<std::uint32_t>(bodies.size());
         bodies.add({.id = id, .x = x, .y = y, .radius = shape.radius_px, .mass = shape.mass_kg});

@@ -229,7 +229,7 @@ TEST_F(WorldTest, AccountsForTheChangeOfGeneMeans) {
                 continue;
             }
             const GenerationStatistics& before = world.history()[generation - 2][island];
-            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+            for (unsigned gene = 0; gene < evolution::body_gene_count; ++gene) {
                 const evolution::GeneAccount& account = (*now.account)[gene];
                 EXPECT_NEAR(account.change, now.genes[gene].mean - before.genes[gene].mean, 1e-10);
                 EXPECT_NEAR(account.selection + account.transmission + account.migration, account.change,
@@ -292,7 +292,7 @@ TEST_F(WorldTest, FindsFoundersAcrossIslands) {
     parameters.mutation_chance = 0;
     parameters.survivors = 1;
     World world = make();
-    std::vector<evolution::Chromosome> first;
+    std::vector<evolution::BodyGenes> first;
     for (const Island& island : world.islands()) {
         for (std::uint32_t id = 0; id < 12; ++id) {
             EXPECT_EQ(world.founders(island)[id], first.size());
@@ -343,7 +343,7 @@ TEST_F(WorldTest, WithoutCrossoverGenesEqualTheFounders) {
                              evolution::PopulationModel::SteadyState}) {
         parameters.population_model = model;
         World world = make();
-        std::vector<evolution::Chromosome> first;
+        std::vector<evolution::BodyGenes> first;
         for (const Island& island : world.islands()) {
             for (std::uint32_t id = 0; id < 50; ++id) {
                 first.emplace_back(island.born().genes.col(id));
@@ -603,7 +603,7 @@ TEST_F(WorldTest, StatisticsEqualSumsOverOrganisms) {
 
             double diversity = 0;
             const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
-            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+            for (unsigned gene = 0; gene < evolution::body_gene_count; ++gene) {
                 double sum = 0, squares = 0, least = 1e9, greatest = 0;
                 for (std::uint32_t id = 0; id < 25; ++id) {
                     const double value = static_cast<double>(evolution::column(island.born().genes, id)[gene]);

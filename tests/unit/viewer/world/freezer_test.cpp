@@ -2,6 +2,7 @@
 
 #include "proto/codec/population_csv.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/unit/viewer/world/population_of.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -37,11 +38,11 @@ struct FreezerTest : testing::Test {
 TEST_F(FreezerTest, StoresAndFindsOrganismsAndPopulations) {
     EXPECT_THAT(names(), ElementsAre()) << "the folder does not exist yet";
     EXPECT_EQ(freezer.problem(), "");
-    EXPECT_EQ(freezer.save("fast", {organism}).value(), "fast");
-    EXPECT_EQ(freezer.save("all", {organism, organism}).value(), "all");
+    EXPECT_EQ(freezer.save("fast", population_of({organism})).value(), "fast");
+    EXPECT_EQ(freezer.save("all", population_of({organism, organism})).value(), "all");
     EXPECT_THAT(names(), ElementsAre("all", "fast"));
     ASSERT_NE(freezer.find("fast"), nullptr);
-    EXPECT_THAT(freezer.find("fast")->islands, ElementsAre(organism));
+    EXPECT_THAT(freezer.find("fast")->population.islands, ElementsAre(organism));
     EXPECT_TRUE(freezer.find("fast")->is_organism());
     EXPECT_EQ(freezer.find("fast")->content_text(), "1 organism");
     EXPECT_EQ(freezer.find("all")->content_text(), "2 organisms on 2 islands");
@@ -49,14 +50,14 @@ TEST_F(FreezerTest, StoresAndFindsOrganismsAndPopulations) {
 }
 
 TEST_F(FreezerTest, OverwritesNoFile) {
-    EXPECT_EQ(freezer.save("fast", {organism}).value(), "fast");
-    EXPECT_EQ(freezer.save("fast", {{6, 5, 4, 3, 2, 1}}).value(), "fast-2");
-    EXPECT_THAT(freezer.find("fast")->islands, ElementsAre(organism));
+    EXPECT_EQ(freezer.save("fast", population_of({organism})).value(), "fast");
+    EXPECT_EQ(freezer.save("fast", population_of({{6, 5, 4, 3, 2, 1}})).value(), "fast-2");
+    EXPECT_THAT(freezer.find("fast")->population.islands, ElementsAre(organism));
 }
 
 TEST_F(FreezerTest, RefusesUnsafeNames) {
     for (const char* name : {"", "../fast", "a/b", ".hidden", "a b"}) {
-        const auto saved = freezer.save(name, {organism});
+        const auto saved = freezer.save(name, population_of({organism}));
         ASSERT_FALSE(saved) << name;
         EXPECT_THAT(saved.error().what, HasSubstr("name: got \"" + std::string{name} + "\", allowed"));
     }
@@ -78,8 +79,8 @@ TEST_F(FreezerTest, ListsDamagedFilesWithTheirReason) {
 TEST_F(FreezerTest, NoticesChangesByOtherPrograms) {
     write("a.csv", "damaged");
     EXPECT_THAT(names(), ElementsAre("a"));
-    write("a.csv", codec::population_text({organism}));
-    write("b.csv", codec::population_text({organism}));
+    write("a.csv", codec::population_text(population_of({organism})));
+    write("b.csv", codec::population_text(population_of({organism})));
     EXPECT_THAT(names(), ElementsAre("a", "b"));
     EXPECT_EQ(freezer.find("a")->problem, "");
     std::filesystem::remove(freezer.folder() / "a.csv");
@@ -91,10 +92,10 @@ TEST_F(FreezerTest, NoticesChangesByOtherPrograms) {
 TEST_F(FreezerTest, ReportsAFolderThatCannotBeUsed) {
     std::ofstream{folder.path() + "/file"} << "x";
     Freezer in_a_file{folder.path() + "/file/freezer"};
-    EXPECT_THAT(in_a_file.save("fast", {organism}).error().what, HasSubstr("file/freezer: "));
+    EXPECT_THAT(in_a_file.save("fast", population_of({organism})).error().what, HasSubstr("file/freezer: "));
     in_a_file.update(now);
     EXPECT_THAT(in_a_file.problem(), HasSubstr("file/freezer: "));
-    EXPECT_THAT(Freezer{}.save("fast", {organism}).error().what, HasSubstr("--freezer FOLDER"));
+    EXPECT_THAT(Freezer{}.save("fast", population_of({organism})).error().what, HasSubstr("--freezer FOLDER"));
 }
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "client/viewer/world/new_world.h"
 
+#include "tests/unit/viewer/world/population_of.h"
+
 #include <gmock/gmock.h>
 
 namespace evod::viewer {
@@ -74,7 +76,7 @@ TEST(NewWorld, ARequestContainsWhatTheUserChose) {
 
 TEST(NewWorld, APopulationSetsTheSizeOfTheWorld) {
     const std::vector<float> two(12, 100);
-    const auto request = create_request({.name = "w", .population = {two, two, two}});
+    const auto request = create_request({.name = "w", .population = population_of({two, two, two})});
     ASSERT_TRUE(request);
     const auto& command = request->create_world();
     EXPECT_EQ(command.population_size(), 3);
@@ -89,9 +91,9 @@ TEST(NewWorld, APopulationSetsTheSizeOfTheWorld) {
 TEST(NewWorld, RefusalsNameTheField) {
     EXPECT_THAT(refusal_of({.name = "a b"}), StartsWith("name: got \"a b\""));
     EXPECT_THAT(refusal_of({.name = "w", .seed = "-1"}), StartsWith("seed: got \"-1\", allowed"));
-    EXPECT_EQ(refusal_of({.name = "w", .population = {std::vector<float>(12), std::vector<float>(6)}}),
+    EXPECT_EQ(refusal_of({.name = "w", .population = population_of({std::vector<float>(12), std::vector<float>(6)})}),
               "population: got islands of 2 and 1 organisms, allowed the same number on each island");
-    EXPECT_THAT(refusal_of({.name = "w", .population = {std::vector<float>(300'000)}}),
+    EXPECT_THAT(refusal_of({.name = "w", .population = population_of({std::vector<float>(300'000)})}),
                 StartsWith("population: too large for a request"));
     EXPECT_THAT(refusal_of({.name = "w", .experiment_json = std::string(2'000'000, ' ')}),
                 HasSubstr("parameters: got 2000000 bytes"));

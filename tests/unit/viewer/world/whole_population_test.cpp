@@ -52,8 +52,8 @@ TEST_F(WholePopulationTest, ReadsAllPagesOfAllIslands) {
     const WholePopulation::Genes& genes = **read;
     EXPECT_EQ(genes.world, "default");
     EXPECT_EQ(genes.generation, 4u);
-    ASSERT_THAT(genes.islands, SizeIs(3));
-    EXPECT_THAT(genes.islands[2],
+    ASSERT_THAT(genes.population.islands, SizeIs(3));
+    EXPECT_THAT(genes.population.islands[2],
                 ElementsAre(0, 100, 200, 300, 400, 500, 1, 101, 201, 301, 401, 501, 2, 102, 202, 302, 402, 502));
 }
 
@@ -68,7 +68,7 @@ TEST_F(WholePopulationTest, BeginsAgainWithANewGeneration) {
     until(world, [&] { return read.has_value(); });
     ASSERT_TRUE(*read);
     EXPECT_EQ((*read)->generation, 6u);
-    EXPECT_THAT((*read)->islands, SizeIs(3));
+    EXPECT_THAT((*read)->population.islands, SizeIs(3));
 }
 
 TEST_F(WholePopulationTest, BeginsAgainAfterAnOrganismWasPlaced) {
@@ -81,7 +81,7 @@ TEST_F(WholePopulationTest, BeginsAgainAfterAnOrganismWasPlaced) {
     }
     until(world, [&] { return read.has_value(); });
     ASSERT_TRUE(*read);
-    EXPECT_THAT((*read)->islands[0], SizeIs(24));
+    EXPECT_THAT((*read)->population.islands[0], SizeIs(24));
 }
 
 TEST_F(WholePopulationTest, GivesUpOnAWorldThatIsTooFast) {

@@ -1,0 +1,65 @@
+#include "server/evolution/gene_layout.h"
+
+#include "server/base/assert.h"
+#include "server/evolution/brain_layout.h"
+
+namespace evod::evolution {
+
+unsigned gene_count(const Parameters& parameters) {
+    return genes_of(GeneGroup::All, parameters).count;
+}
+
+GeneRange genes_of(GeneGroup group, const Parameters& parameters) {
+    const unsigned brain = brain_genes(parameters).count;
+    switch (group) {
+    case GeneGroup::All:
+        break;
+    case GeneGroup::Body:
+        return {0, body_gene_count};
+    case GeneGroup::Brain:
+        return {body_gene_count, brain};
+    case GeneGroup::Free:
+        return {body_gene_count + brain, parameters.free_genes};
+    }
+    return {0, body_gene_count + brain + parameters.free_genes};
+}
+
+GeneBounds gene_bounds(const Parameters& parameters) {
+    const double min[body_gene_count] = {parameters.normal_speed_min, parameters.impulse_min,
+                                         parameters.body_size_min,    parameters.base_health_min,
+                                         parameters.food_radius_min,  parameters.poison_radius_min};
+    const double max[body_gene_count] = {parameters.normal_speed_max, parameters.impulse_max,
+                                         parameters.body_size_max,    parameters.base_health_max,
+                                         parameters.food_radius_max,  parameters.poison_radius_max};
+    const unsigned count = gene_count(parameters);
+    GeneBounds bounds{Eigen::ArrayXf(count), Eigen::ArrayXf(count)};
+    const auto set = [&](GeneRange genes, double least, double most) {
+        EVOD_ASSERT(least <= most);
+        bounds.min.segment(genes.first, genes.count) = static_cast<float>(least);
+        bounds.max.segment(genes.first, genes.count) = static_cast<float>(most);
+    };
+    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+        set({gene, 1}, min[gene], max[gene]);
+    }
+    const double weight_limit = brain_genes(parameters).limit;
+    set(genes_of(GeneGroup::Brain, parameters), -weight_limit, weight_limit);
+    set(genes_of(GeneGroup::Free, parameters), parameters.free_gene_min, parameters.free_gene_max);
+    return bounds;
+}
+
+GeneLayout gene_layout(const Parameters& parameters) {
+    GeneLayout layout{.names = {body_gene_names.begin(), body_gene_names.end()},
+                      .groups = std::vector<GeneGroup>(body_gene_count, GeneGroup::Body),
+                      .bounds = gene_bounds(parameters)};
+    for (const std::string& weight : brain_gene_names(parameters)) {
+        layout.names.push_back(weight);
+        layout.groups.push_back(GeneGroup::Brain);
+    }
+    for (std::uint32_t i = 0; i < parameters.free_genes; ++i) {
+        layout.names.push_back("free" + std::to_string(i));
+        layout.groups.push_back(GeneGroup::Free);
+    }
+    return layout;
+}
+
+} // namespace evod::evolution
