@@ -1,7 +1,9 @@
 #include "server/base/elementary.h"
 
+#include "server/base/approximations.h"
 #include "server/base/assert.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -142,6 +144,40 @@ Direction direction(unsigned word) {
     default:
         return {s, -c};
     }
+}
+
+namespace {
+
+template <std::size_t count>
+float polynomial(const float (&coefficients)[count], float x) {
+    float sum = coefficients[count - 1];
+    for (std::size_t n = count - 1; n-- > 0;) {
+        sum = sum * x + coefficients[n];
+    }
+    return sum;
+}
+
+} // namespace
+
+Direction direction_of(float radians) {
+    EVOD_ASSERT(std::abs(radians) <= 4);
+    return direction(static_cast<unsigned>(std::lrint(radians * words_per_radian / 2)) * 2u);
+}
+
+float tanh(float x) {
+    const float cut = std::clamp(x, -tanh_range, tanh_range);
+    const float square = cut * cut;
+    return std::clamp(cut * polynomial(tanh_numerator, square) / polynomial(tanh_denominator, square), -1.0f, 1.0f);
+}
+
+float half_turns(float x, float y) {
+    const float across = std::abs(x), up = std::abs(y);
+    const float longer = std::max(across, up);
+    const float slope = std::min(across, up) / (longer == 0 ? 1 : longer);
+    float angle = slope * polynomial(arc_tangent, slope * slope);
+    angle = up > across ? 0.5f - angle : angle;
+    angle = x < 0 ? 1 - angle : angle;
+    return y < 0 ? -angle : angle;
 }
 
 } // namespace evod::base

@@ -1,5 +1,5 @@
-// Elementary functions that return the same bits on every processor: sin, cos, exp, log and pow, computed with + − × ÷
-// and rounding only.
+// Elementary functions that return the same bits on every processor: sin, cos, exp, log, pow, tanh and the angle of a
+// vector, computed with + − × ÷ and rounding only. elementary_lanes.h has some of them for kernels.
 //
 // On processors with fused multiply-add, the C library runs different code, whose last bits differ. Code that affects
 // the state of a world must therefore not call the C library's functions. √ is an exception: every processor rounds it
@@ -34,5 +34,15 @@ struct Direction {
 /// Returns the direction at the angle `word`/2^32 of a full turn, from +x toward +y. It is uniform if `word` is
 /// uniform.
 Direction direction(unsigned word);
+
+/// Returns the direction at an angle of |radians| <= 4, from +x toward +y, to within 5e-7 of the exact one.
+Direction direction_of(float radians);
+
+/// Returns the hyperbolic tangent, −1 … 1. The relative error is below 3e-7. The result for −x is minus that for x.
+float tanh(float x);
+
+/// Returns the angle of the vector (x, y) from +x toward +y in half turns: atan2(y, x) / π, −1 … 1. The relative error
+/// is below 3e-7. The angle of (0, 0) is 0. |x| and |y| must be 0 or normal.
+float half_turns(float x, float y);
 
 } // namespace evod::base

@@ -17,6 +17,8 @@ enum class GeneGroup { All, Body, Brain, Free };
 enum class Topology { None, Ring, FullyConnected, Random };
 enum class Emigrants { Best, Random };
 enum class Replaced { Worst, Random };
+enum class Controller { Rules, Network };
+enum class Locomotion { Newtonian, Kinematic };
 
 } // namespace evod::evolution
 
@@ -31,6 +33,8 @@ EVOD_CHOICE_NAMES(evod::evolution::GeneGroup, "all", "body", "brain", "free")
 EVOD_CHOICE_NAMES(evod::evolution::Topology, "none", "ring", "fully_connected", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Emigrants, "best", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
+EVOD_CHOICE_NAMES(evod::evolution::Controller, "rules", "network")
+EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
 
 // clang-format off
 #define EVOD_EVOLUTION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                           \
@@ -81,6 +85,18 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     COUNT(free_genes, 0, 0, 1000, "genes", Reset, "Genes beyond those of the body, which the simulation does not read; for a fitness function outside evod. Their names are free0, free1, and so on.") \
     REAL(free_gene_min, 0, -1e6, 1e6, "gene units", NextTick, "Lower bound of every free gene. In the first generation, free genes are uniform between their bounds.") \
     REAL(free_gene_max, 1, -1e6, 1e6, "gene units", NextTick, "Upper bound of every free gene.") \
+    CHOICE(controller, Controller, Rules, Reset, "What steers organisms: rules, the fixed rules of behaviour; network, a neural network whose weights are genes.") \
+    FLAG(sense_food, true, Reset, "Whether networks have inputs for the nearest food that is seen: its bearing (the angle from the heading, −1 to 1 for half a turn) and its proximity (1 − distance / food_radius; 0 if none is seen).") \
+    FLAG(sense_poison, true, Reset, "Whether networks have inputs for the nearest poison that is seen, as for sense_food.") \
+    FLAG(sense_bearing_only, false, Reset, "Whether networks have no inputs for the proximity of food and poison.")      \
+    FLAG(sense_speed, false, Reset, "Whether networks have an input for the organism's own speed / max_speed_px_s.")   \
+    FLAG(sense_health, false, Reset, "Whether networks have an input for health / base_health, limited to 0 to 1.")    \
+    FLAG(sense_wall, false, Reset, "Whether networks have an input for the proximity of the wall ahead: 1 − distance / food_radius; 0 beyond food_radius.") \
+    FLAG(brain_bias, true, Reset, "Whether every neuron of a network has a bias weight.")                              \
+    COUNT(brain_hidden, 5, 1, 32, "neurons", Reset, "Neurons in the hidden layer of a network.")                       \
+    REAL(brain_weight_limit, 4, 0.001, 1000, "", NextTick, "Weights of a network stay within ± this value.")           \
+    REAL(brain_weight_initial, 1, 0, 1000, "", Reset, "Weights of the first generation are uniform within ± this value.") \
+    CHOICE(locomotion, Locomotion, Newtonian, Reset, "What the outputs of a network do: newtonian, a force along the heading and a turn rate; bodies have mass and collide; kinematic, a change of speed and a turn rate; bodies have no mass and pass through each other.") \
     COUNT(generation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations; 0 means no limit.") \
     FLAG(stop_at_target_fitness, false, NextTick, "Whether the run ends when an organism reaches target_fitness.")     \
     REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "Fitness at which the run ends if stop_at_target_fitness is on.") \

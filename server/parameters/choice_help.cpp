@@ -56,6 +56,10 @@ constexpr Sentence sentences[] = {
     {"emigrants", "random", "The copied organisms are drawn at random."},
     {"immigrants_replace", "worst", "Migrants replace the least fit organisms."},
     {"immigrants_replace", "random", "Migrants replace organisms drawn at random."},
+    {"controller", "rules", "Organisms flee, seek and wander by fixed rules."},
+    {"controller", "network", "A neural network steers each organism; its weights are genes."},
+    {"locomotion", "newtonian", "The network sets a force along the heading and a turn rate; bodies collide."},
+    {"locomotion", "kinematic", "The network changes the speed and the heading; bodies pass through each other."},
 };
 
 } // namespace

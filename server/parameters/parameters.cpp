@@ -4,6 +4,7 @@
 #include "proto/text/suggestion.h"
 #include "server/base/elementary.h"
 #include "server/base/overloaded.h"
+#include "server/evolution/brain_layout.h"
 #include "server/evolution/gene_layout.h"
 
 #include <algorithm>
@@ -103,7 +104,8 @@ double covered_share(const Parameters& p, const IslandPlan& plan) {
     const double radius = p.body_size_max * p.radius_per_unit_px;
     const double crate = p.crate_size_px, obstacle = p.obstacle_size_px;
     const auto share_of_room = [&](double covered, double half_size) {
-        const double width = plan.width_px - 2 * half_size, height = plan.height_px - 2 * half_size;
+        const double margin = std::max(half_size, p.spawn_margin_px);
+        const double width = plan.width_px - 2 * margin, height = plan.height_px - 2 * margin;
         return width <= 0 || height <= 0 ? 1 : covered / (width * height);
     };
     const auto around_obstacles = [&](double half_size) { return p.obstacle_count * square(obstacle + 2 * half_size); };
@@ -289,8 +291,8 @@ bool has_bodies(const Parameters& parameters) {
 
 namespace {
 
-/// The genes of all organisms together: 4 million organisms with 31 genes each, or 1.9 million with 64.
-constexpr double genes_max = 124e6;
+/// The genes of all organisms together: 4 million organisms with a network of 25 weights, or 1.9 million with 58.
+constexpr std::uint64_t genes_max = 124'000'000;
 
 } // namespace
 
@@ -324,14 +326,33 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         refuse("island_count", "at most 4000000 organisms on all islands together",
                std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
     }
-    if (const double genes = organisms * evolution::gene_count(p); genes > genes_max) {
-        refuse("free_genes", "at most " + number_text(genes_max) + " genes in all organisms together",
-               number_text(organisms) + " organisms with a total of " + number_text(genes) + " genes");
+    require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
+    const bool has_brains = p.controller == evolution::Controller::Network;
+    if (has_brains) {
+        if (evolution::brain_layout(p).inputs.empty()) {
+            refuse("sense_food",
+                   "at least one sense: sense_food, sense_poison, sense_speed, sense_health or sense_wall",
+                   "a network without inputs");
+        }
+        if (p.locomotion == evolution::Locomotion::Kinematic) {
+            const auto require_none = [&](std::string_view field, std::uint32_t count) {
+                if (count > 0) {
+                    refuse(field, "0 if locomotion is kinematic, because bodies then have no contacts",
+                           std::to_string(count));
+                }
+            };
+            require_none("obstacle_count", p.obstacle_count);
+            require_none("crate_count", p.crate_count);
+        }
+    }
+    if (const auto genes = static_cast<std::uint64_t>(organisms) * evolution::gene_count(p); genes > genes_max) {
+        refuse(has_brains ? "brain_hidden" : "free_genes",
+               "at most " + std::to_string(genes_max) + " genes in all organisms together",
+               number_text(organisms) + " organisms with a total of " + std::to_string(genes) + " genes");
     }
     if (evolution::genes_of(p.mutate_group, p).count == 0) {
-        const bool brain = p.mutate_group == evolution::GeneGroup::Brain;
-        refuse("mutate_group", brain ? "all, body or free: organisms have no brain" : "all, body or brain: free_genes is 0",
-               brain ? "brain" : "free");
+        refuse("mutate_group", has_brains ? "all, body or brain: free_genes is 0" : "a group that has genes",
+               std::string{base::ChoiceNames<evolution::GeneGroup>::names[static_cast<std::size_t>(p.mutate_group)]});
     }
 
     if (!has_bodies(p)) {
@@ -363,6 +384,11 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     if (items > 4e7) {
         refuse("island_count", "at most 40000000 items on all islands together",
                std::to_string(p.island_count) + " islands with a total of " + number_text(items));
+    }
+    if (const double side = std::min(plan.width_px, plan.height_px); 2 * p.spawn_margin_px >= side) {
+        refuse("spawn_margin_px", "less than half of the island's shorter side (" + number_text(side / 2) + ")",
+               number_text(p.spawn_margin_px));
+        return violations;
     }
     if (const double share = covered_share(p, plan); share > 0.4) {
         refuse("population_size",

@@ -46,6 +46,7 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     COUNT(poison_count, 40, 0, 20'000'000, "items", NextGeneration, "Poison items on each island.")                    \
     FLAG(scale_with_population, false, NextGeneration, "Whether the area, food and poison of each island grow in proportion to population_size; the parameters for them then give the values for reference_population organisms.") \
     COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population size to which island size, food_count and poison_count apply if scale_with_population is on; in an experiment file, the default is the file's population_size.") \
+    REAL(spawn_margin_px, 0, 0, 250'000, "px", NextGeneration, "Organisms, food, poison, obstacles and crates are placed with their centres at least this far from every wall.") \
     COUNT(obstacle_count, 0, 0, 1000, "obstacles", NextGeneration, "Immovable rectangles on each island.")             \
     REAL(obstacle_size_px, 60, 5, 2000, "px", NextGeneration, "Side of an obstacle.")                                  \
     COUNT(crate_count, 0, 0, 1000, "crates", NextGeneration, "Movable rectangles on each island.")                     \
@@ -67,6 +68,8 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(radius_per_unit_px, 0.1, 0.001, 10, "px", NextGeneration, "Radius per unit of the gene body_size.")           \
     REAL(mass_per_unit_kg, 0.01, 0.0001, 1000, "kg", NextGeneration, "Mass per unit of the gene body_size.")           \
     REAL(force_per_unit, 1, 0, 1000, "kg px/s²", NextTick, "Force per unit of the genes normal_speed and impulse.")    \
+    REAL(turn_rate_max_deg_s, 720, 0, 36'000, "°/s", NextTick, "Turn rate of an organism whose network has 1 at the output turn; −1 turns the other way.") \
+    REAL(acceleration_max_px_s2, 100, 0, 100'000, "px/s²", NextTick, "Change of speed per second of an organism whose network has 1 at the output acceleration (kinematic); its speed stays within 0 to max_speed_px_s.") \
     REAL(normal_speed_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene normal_speed: health loss is multiplied by 1 + the costs of all genes, this one being normal_speed_cost · (normal_speed/100 − 1).")    \
     REAL(impulse_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene impulse, as for normal_speed_cost: impulse_cost · ((impulse/100)² − 1).")           \
     REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene base_health, as for normal_speed_cost: base_health_cost · (base_health/100 − 1).")      \

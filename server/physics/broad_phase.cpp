@@ -169,6 +169,12 @@ void NearPairs::list(const Circles& circles, const Boxes& boxes, base::Executor&
     list_box_pairs(circles, boxes);
 }
 
+void NearPairs::list_none(const Circles& circles) {
+    pairs_of_block_.assign(block_count(circles.size()), {});
+    circle_box_pairs_.clear();
+    box_pairs_.clear();
+}
+
 bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& executor) {
     const std::span<const std::uint32_t> order = strips_.order();
     // More pairs than this mean that circles are crowded. A thinner skin is then faster, down to the distance that

@@ -167,6 +167,9 @@ class NearPairs {
     /// Lists the pairs; uses the result of the last sort().
     void list(const Circles& circles, const Boxes& boxes, base::Executor& executor);
 
+    /// Lists no pairs, instead of list(), where bodies have no contacts.
+    void list_none(const Circles& circles);
+
     /// Returns the pairs of circles that were found in a block of circles.
     std::span<const Pair> circle_pairs(std::size_t block) const {
         EVOD_ASSERT(block < pairs_of_block_.size());

@@ -237,7 +237,8 @@ v1::Population to_proto(const PopulationRows& rows) {
     population.set_first(rows.first);
     population.set_count(static_cast<std::uint32_t>(rows.genes.cols()));
     for (Eigen::Index gene = 0; gene < rows.genes.rows(); ++gene) {
-        const Eigen::ArrayXf values = rows.genes.row(gene);
+        const Eigen::ArrayXf row = rows.genes.row(gene);
+        const std::vector<float> values{row.begin(), row.end()};
         append_column(*population.mutable_genes(), values, [](float value) { return value; });
     }
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.first; });

@@ -247,6 +247,9 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
                                                               stored.organisms, simulated.organisms)) {
         return found;
     }
+    if (auto found = compare_organisms<float>("the heading", of_island, stored.headings, simulated.headings)) {
+        return found;
+    }
     if (auto found = compare_each<IslandState::Crate>("the position and velocity of crate", of_island, stored.crates,
                                                       simulated.crates)) {
         return found;

@@ -55,6 +55,8 @@ void for_each_column(Island& island, Visit&& visit) {
     visit_bodies(island.organisms);
     visit(
         island.organisms, [](auto& organism) -> auto& { return organism.health; });
+    visit(
+        island.headings, [](auto& heading) -> auto& { return heading; });
     visit_bodies(island.crates);
     for (auto* items : {&island.food, &island.poison}) {
         visit(
@@ -142,7 +144,7 @@ std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
         for_each_count(counts, [&](const auto& count) { bytes += sizeof(count); });
         bytes += shape.organisms * std::size_t{13};
         if (shape.has_bodies) {
-            bytes += shape.organisms * std::size_t{20} + shape.crates * std::size_t{16} +
+            bytes += shape.organisms * std::size_t{shape.has_headings ? 24u : 20u} + shape.crates * std::size_t{16} +
                      (std::size_t{shape.food} + shape.poison) * 12;
         }
         bytes += over ? bytes_of_statistics(shape.genes) : 0;
@@ -238,6 +240,7 @@ void resize(IslandState& island, const IslandShape& shape) {
         return;
     }
     island.organisms.resize(shape.organisms);
+    island.headings.resize(shape.has_headings ? shape.organisms : 0);
     island.crates.resize(shape.crates);
     island.food.resize(shape.food);
     island.poison.resize(shape.poison);
@@ -252,6 +255,7 @@ std::string pack(const simulation::WorldState& state) {
     for (const IslandState& island : state.islands) {
         shapes.push_back({.organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
                           .has_bodies = !island.organisms.empty(),
+                          .has_headings = !island.headings.empty(),
                           .crates = static_cast<std::uint32_t>(island.crates.size()),
                           .food = static_cast<std::uint32_t>(island.food.size()),
                           .poison = static_cast<std::uint32_t>(island.poison.size())});

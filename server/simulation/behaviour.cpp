@@ -1,10 +1,20 @@
 #include "server/simulation/behaviour.h"
 
 #include "server/base/assert.h"
+#include "server/base/elementary.h"
+#include "server/base/instructions.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace evod::simulation {
+
+extern const BrainKernels brain_kernels_baseline, brain_kernels_avx2;
+
+const BrainKernels& brain_kernels() {
+    return base::chosen(brain_kernels_baseline, brain_kernels_avx2);
+}
+
 namespace {
 
 ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick) {
@@ -16,8 +26,13 @@ ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key
             .pair_key = key.pair_key()};
 }
 
-/// Copies of the columns of a few organisms, for OrganismKernels::predict(), which does not read the columns that are
-/// nullptr here.
+BrainColumns brain_columns(Living& living) {
+    return {
+        .weights = living.weights.data(), .heading = living.heading.data(), .base_health = living.base_health.data()};
+}
+
+/// Copies of the columns of a few organisms, for OrganismKernels::predict() and BrainKernels::predict(), which do not
+/// read the columns that are nullptr here.
 struct FewOrganisms {
     static constexpr std::size_t room = physics::circles_per_block;
     struct View {
@@ -38,7 +53,7 @@ struct FewOrganisms {
         }
     };
     std::array<std::int32_t, room> x{}, y{};
-    std::array<float, room> velocity_x{}, velocity_y{}, normal_speed{}, impulse{};
+    std::array<float, room> velocity_x{}, velocity_y{}, health{}, normal_speed{}, impulse{};
     std::array<std::uint32_t, room> id{};
     View food, poison;
 
@@ -48,6 +63,7 @@ struct FewOrganisms {
         velocity_x[k] = bodies.velocity_x[body];
         velocity_y[k] = bodies.velocity_y[body];
         id[k] = bodies.id[body];
+        health[k] = living.health[body] - living.loss_per_tick[body];
         normal_speed[k] = living.normal_speed[body];
         impulse[k] = living.impulse[body];
         food.radius[k] = living.food_radius[body];
@@ -62,7 +78,7 @@ struct FewOrganisms {
                 .velocity_y = velocity_y.data(),
                 .body_radius = nullptr,
                 .id = id.data(),
-                .health = nullptr,
+                .health = health.data(),
                 .loss_per_tick = nullptr,
                 .normal_speed = normal_speed.data(),
                 .impulse = impulse.data(),
@@ -105,13 +121,42 @@ void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules
                               forces.y.data());
 }
 
-void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
-                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
-    EVOD_ASSERT(bodies_asked.size() == intentions.size());
-    FewOrganisms few;
-    ChosenForces forces;
-    std::array<std::int32_t, FewOrganisms::room> choices;
+SteeringRules steering_rules(const evolution::BrainLayout& layout, const parameters::Parameters& p,
+                             const physics::Area& area) {
+    const auto float_of = [](double value) { return static_cast<float>(value); };
+    return {.inputs = layout.inputs.data(),
+            .input_count = static_cast<std::uint32_t>(layout.inputs.size()),
+            .hidden_count = layout.hidden_count,
+            .weight_count = layout.weight_count(),
+            .has_bias = layout.has_bias,
+            .is_kinematic = p.locomotion == evolution::Locomotion::Kinematic,
+            .force_per_unit = float_of(p.force_per_unit),
+            .speed_change = float_of(p.acceleration_max_px_s2 * p.tick_s),
+            .turn = float_of(p.turn_rate_max_deg_s / 180 * base::pi * p.tick_s),
+            .max_speed = float_of(p.max_speed_px_s),
+            .width = area.width,
+            .height = area.height};
+}
+
+void live_and_steer(const OrganismColumns& columns, Living& living, const SteeringRules& rules, base::Range block,
+                    ChosenForces& outcome) {
+    EVOD_ASSERT(block.begin % physics::lanes_max == 0);
+    EVOD_ASSERT(block.begin <= block.end);
+    EVOD_ASSERT(block.end - block.begin <= outcome.x.size());
+    EVOD_ASSERT(rules.weight_count == living.weight_count());
+    EVOD_ASSERT(rules.input_count >= 1);
+    EVOD_ASSERT(rules.input_count <= evolution::brain_inputs_max);
+    EVOD_ASSERT(rules.hidden_count <= evolution::brain_hidden_max);
+    brain_kernels().steer(columns, brain_columns(living), block.begin, block.end, rules, outcome.x.data(),
+                          outcome.y.data());
+}
+
+namespace {
+
+/// Copies organisms in groups, with what they see, and calls predict(few, first, count) for each group.
+template <class Predict>
+void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Living& living, const Items& food,
+                  const Items& poison, std::span<const std::uint32_t> bodies_asked, Predict&& predict) {
     for (std::size_t begin = 0; begin < bodies_asked.size(); begin += FewOrganisms::room) {
         const std::size_t count = std::min(bodies_asked.size() - begin, FewOrganisms::room);
         for (std::size_t k = 0; k < count; ++k) {
@@ -121,6 +166,20 @@ void predict_intentions(const physics::Circles& bodies, const Living& living, co
         }
         few.food.search(food, count);
         few.poison.search(poison, count);
+        predict(begin, count);
+    }
+}
+
+} // namespace
+
+void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
+                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
+    EVOD_ASSERT(bodies_asked.size() == intentions.size());
+    FewOrganisms few;
+    ChosenForces forces;
+    std::array<std::int32_t, FewOrganisms::room> choices;
+    for_each_few(few, bodies, living, food, poison, bodies_asked, [&](std::size_t begin, std::size_t count) {
         organism_kernels().predict(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),
                                    forces.y.data(), choices.data());
         for (std::size_t k = 0; k < count; ++k) {
@@ -130,7 +189,41 @@ void predict_intentions(const physics::Circles& bodies, const Living& living, co
                                                          : Place{few.x[k], few.y[k]};
             intentions[begin + k] = {choice, forces.x[k], forces.y[k], x, y};
         }
-    }
+    });
+}
+
+void predict_steering(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+                      const SteeringRules& rules, double tick_s, std::span<const std::uint32_t> bodies_asked,
+                      std::span<Intention> intentions) {
+    EVOD_ASSERT(bodies_asked.size() == intentions.size());
+    EVOD_ASSERT(rules.weight_count == living.weight_count());
+    FewOrganisms few;
+    ChosenForces outcome;
+    Living few_living;
+    few_living.clear(living.weight_count());
+    few_living.resize(std::min(bodies_asked.size(), FewOrganisms::room));
+    std::vector<float> weights(living.weight_count());
+    for_each_few(few, bodies, living, food, poison, bodies_asked, [&](std::size_t begin, std::size_t count) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t body = bodies_asked[begin + k];
+            for (std::size_t w = 0; w < weights.size(); ++w) {
+                weights[w] = living.weights[living.first_weight(body) + w * physics::lanes_max];
+            }
+            few_living.put_brain(k, weights, living.heading[body]);
+            few_living.base_health[k] = living.base_health[body];
+        }
+        brain_kernels().predict(few.columns(), brain_columns(few_living), 0, count, rules, outcome.x.data(),
+                                outcome.y.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t body = bodies_asked[begin + k];
+            const float share = rules.is_kinematic ? 1 / (bodies.inverse_mass[body] * static_cast<float>(tick_s)) : 1;
+            const auto force = [&](float value, float velocity) {
+                return rules.is_kinematic ? (value - velocity) * share : value;
+            };
+            intentions[begin + k] = {Choice::Steer, force(outcome.x[k], few.velocity_x[k]),
+                                     force(outcome.y[k], few.velocity_y[k]), few.x[k], few.y[k]};
+        }
+    });
 }
 
 } // namespace evod::simulation

@@ -6,14 +6,20 @@
 // 2. Otherwise it steers to seen food: a force along (food − position − velocity · lookahead).
 // 3. Otherwise it wanders: a force in a new uniform direction. It also wanders if the direction in 1 or 2 has length 0.
 //
+// In worlds whose controller is network, a neural network steers each organism instead (brain_kernels.h). It first turns
+// the organism. Newtonian: a force then acts along the new heading, backward if negative. Kinematic: the speed along the
+// heading changes instead; it stays within 0 and the maximum speed.
+//
 // Threads      ranges of organisms are processed in parallel; each organism writes its own force.
 // Determinism  all positions are those at the start of the tick; the draws of an organism are keyed by its id and the
 //              tick.
 #pragma once
 
 #include "server/base/random.h"
+#include "server/evolution/brain_layout.h"
 #include "server/parameters/parameters.h"
 #include "server/physics/bodies.h"
+#include "server/simulation/brain_kernels.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
 #include "server/simulation/organism_kernels.h"
@@ -45,11 +51,22 @@ struct ChosenForces {
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces);
 
+/// Returns the rules by which networks of this layout steer. `layout` must outlive the result.
+SteeringRules steering_rules(const evolution::BrainLayout& layout, const parameters::Parameters& parameters,
+                             const physics::Area& area);
+
+/// For each organism of a block, subtracts the health that a tick costs, and lets its network steer. Call
+/// Perception::search() for the block first.
+///
+/// outcome  receives the forces on the organisms; if they are kinematic, their new velocities, px/s.
+void live_and_steer(const OrganismColumns& columns, Living& living, const SteeringRules& rules, base::Range block,
+                    ChosenForces& outcome);
+
 /// What an organism will do in the next tick.
 struct Intention {
     Choice choice = Choice::None;                   // None: the organism is dead or has no body
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; if it wanders, its own position
+    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; otherwise its own position
 };
 
 /// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.
@@ -59,5 +76,11 @@ struct Intention {
 void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                         const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
                         std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
+
+/// As predict_intentions(), for organisms with a network. If they are kinematic, the predicted force is the one that
+/// would change the velocity of the body as the network does.
+void predict_steering(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+                      const SteeringRules& rules, double tick_s, std::span<const std::uint32_t> bodies_asked,
+                      std::span<Intention> intentions);
 
 } // namespace evod::simulation

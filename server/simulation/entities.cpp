@@ -315,7 +315,7 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         bodies_.put(
             bodies + i,
             {.id = id, .x = organism.place.x, .y = organism.place.y, .radius = shape.radius_px, .mass = shape.mass_kg});
-        living_.put(bodies + i, evolution::body_genes(born_.genes, id), parameters);
+        put_living(bodies + i, id, parameters);
         born_hash_ += hash_of_birth(id);
     }
     alive_count_ += static_cast<std::uint32_t>(organisms.size());

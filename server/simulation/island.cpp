@@ -1,6 +1,7 @@
 #include "server/simulation/island.h"
 
 #include "server/base/assert.h"
+#include "server/base/elementary.h"
 #include "server/simulation/fitness.h"
 #include "server/simulation/placement.h"
 
@@ -22,11 +23,16 @@ enum HashKind : std::uint32_t {
     PlacedKind = 7
 };
 
+bool is_kinematic(const parameters::Parameters& p) {
+    return p.controller == evolution::Controller::Network && p.locomotion == evolution::Locomotion::Kinematic;
+}
+
 physics::StepParameters step_parameters(const parameters::Parameters& p) {
     constexpr physics::Integrator integrators[] = {
         physics::Integrator::SymplecticEuler, physics::Integrator::ExplicitEuler, physics::Integrator::BackwardEuler};
-    return {.integration = physics::integration(integrators[static_cast<std::size_t>(p.integrator)], p.tick_s,
-                                                physics::damping_rate(p.damping)),
+    // Kinematic bodies move with their new velocities.
+    const std::size_t integrator = is_kinematic(p) ? 0 : static_cast<std::size_t>(p.integrator);
+    return {.integration = physics::integration(integrators[integrator], p.tick_s, physics::damping_rate(p.damping)),
             .restitution = static_cast<float>(p.restitution),
             .max_speed_px_s = static_cast<float>(p.max_speed_px_s)};
 }
@@ -39,6 +45,7 @@ ItemRules item_rules(const parameters::Parameters& p) {
             .kind = FoodKind,
             .count = 0,
             .radius_px = static_cast<float>(p.item_radius_px),
+            .margin_px = static_cast<float>(p.spawn_margin_px),
             .respawn = p.respawn,
             .respawn_ticks = static_cast<std::uint32_t>(std::clamp(ticks, 1.0, 1e9))};
 }
@@ -66,7 +73,10 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     food_counts_ = parameters.fitness_per_food != 0;
     poison_counts_ = parameters.fitness_per_poison != 0;
     eaten_hash_ = {};
-    living_.clear();
+    brain_ = evolution::brain_layout(parameters);
+    is_kinematic_ = is_kinematic(parameters);
+    heading_key_ = base::RandomKey{seed_, base::Purpose::Heading, index_, generation};
+    living_.clear(brain_.weight_count());
     bodies_.clear();
     boxes_.clear();
     alive_count_ = 0;
@@ -112,7 +122,8 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
                                       .crate_count = parameters.crate_count,
                                       .obstacle_half_size_px = static_cast<float>(parameters.obstacle_size_px / 2),
                                       .crate_half_size_px = static_cast<float>(parameters.crate_size_px / 2),
-                                      .crate_mass_kg = static_cast<float>(parameters.crate_mass_kg)},
+                                      .crate_mass_kg = static_cast<float>(parameters.crate_mass_kg),
+                                      .margin_px = static_cast<float>(parameters.spawn_margin_px)},
                                      seed_, index_, generation, area_);
     obstacles_ = BoxGrid{area_, placed.obstacles};
     boxes_ = std::move(placed.crates);
@@ -130,8 +141,8 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
     for (std::size_t id = 0; id < organisms; ++id) {
         radius[id] = shape_of(id).radius_px;
     }
-    const std::vector<Place> places =
-        place_circles(radius, seed_, index_, generation, area_, BoxGrid{area_, boxes_}, executor);
+    const std::vector<Place> places = place_circles(radius, seed_, index_, generation, area_, BoxGrid{area_, boxes_},
+                                                    executor, static_cast<float>(parameters.spawn_margin_px));
     bodies_.resize(organisms);
     living_.resize(organisms);
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
@@ -141,7 +152,7 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
                              .y = places[id].y,
                              .radius = radius[id],
                              .mass = shape_of(id).mass_kg});
-            living_.put(id, evolution::body_genes(born_.genes, static_cast<std::uint32_t>(id)), parameters);
+            put_living(id, static_cast<std::uint32_t>(id), parameters);
         }
     });
     alive_count_ = static_cast<std::uint32_t>(organisms);
@@ -157,6 +168,18 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
     rules.kind = PoisonKind;
     poison_.begin_generation(rules, seed_, index_, generation, area_, obstacles_, executor);
     perception_.begin(bodies_, living_, food_, poison_);
+}
+
+void Island::put_living(std::size_t body, std::uint32_t id, const parameters::Parameters& parameters) {
+    living_.put(body, evolution::body_genes(born_.genes, id), parameters);
+    if (living_.has_brains()) {
+        base::RandomStream random{heading_key_, id};
+        living_.put_brain(body, weights_of(id), static_cast<float>(random.uniform(-base::pi, base::pi)));
+    }
+}
+
+std::span<const float> Island::weights_of(std::uint32_t id) const {
+    return evolution::column(born_.genes, id).subspan(evolution::body_gene_count, living_.weight_count());
 }
 
 void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
@@ -175,15 +198,22 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
         });
 
     const BehaviourRules rules = behaviour_rules(parameters);
+    const SteeringRules steering = steering_rules(brain_, parameters, area_);
     const std::size_t block_count = physics::block_count(bodies_.size());
     const std::size_t grain = physics::blocks_per_piece(bodies_.size());
     stepper_.begin(bodies_, boxes_, area_, step_parameters_);
     executor.parallel_for(block_count, grain, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
-            act(rules, tick, block);
+            if (living_.has_brains()) {
+                act(steering, block);
+            } else {
+                act(rules, tick, block);
+            }
         }
     });
-    stepper_.collide(bodies_, boxes_, executor);
+    if (!is_kinematic_) {
+        stepper_.collide(bodies_, boxes_, executor);
+    }
 
     food_feeding_.begin(block_count);
     poison_feeding_.begin(block_count);
@@ -233,7 +263,11 @@ void Island::renew_near_pairs(base::Executor& executor) {
     if ((renewals_++ % renewals_between == 0 && bodies_.size() > worth_ordering) || many_are_void) {
         reorder(executor);
     }
-    near.list(bodies_, boxes_, executor);
+    if (is_kinematic_) {
+        near.list_none(bodies_);
+    } else {
+        near.list(bodies_, boxes_, executor);
+    }
 }
 
 void Island::reorder(base::Executor& executor) {
@@ -246,6 +280,9 @@ void Island::reorder(base::Executor& executor) {
     executor.parallel_for(bodies_.size(), 2 * organisms_per_block, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             body_of_[bodies_.id[i]] = static_cast<std::uint32_t>(i);
+            if (living_.has_brains()) {
+                living_.put_weights(i, weights_of(bodies_.id[i]));
+            }
         }
     });
 }
@@ -256,6 +293,20 @@ void Island::act(const BehaviourRules& rules, std::uint32_t tick, std::size_t bl
     ChosenForces forces;
     live_and_choose(columns(), rules, behaviour_key_, tick, range, forces);
     stepper_.accelerate(bodies_, block, {forces.x.data(), forces.y.data()});
+}
+
+void Island::act(const SteeringRules& rules, std::size_t block) {
+    const base::Range range = physics::circles_of_block(bodies_.size(), block);
+    perception_.search(bodies_, living_, food_, poison_, range);
+    ChosenForces outcome;
+    live_and_steer(columns(), living_, rules, range, outcome);
+    if (is_kinematic_) {
+        const std::size_t count = range.end - range.begin;
+        std::copy_n(outcome.x.begin(), count, bodies_.velocity_x.begin() + static_cast<std::ptrdiff_t>(range.begin));
+        std::copy_n(outcome.y.begin(), count, bodies_.velocity_y.begin() + static_cast<std::ptrdiff_t>(range.begin));
+    } else {
+        stepper_.accelerate(bodies_, block, {outcome.x.data(), outcome.y.data()});
+    }
 }
 
 void Island::move(std::size_t block) {
@@ -272,6 +323,11 @@ void Island::move(std::size_t block) {
     FoundIndices dying{dying_indices};
     const HashWords hash = organism_kernels().hash(organisms, organism_hash_kind, range.begin, range.end, dying);
     blocks_[block].hash = {hash.low, hash.high};
+    if (living_.has_brains()) {
+        const HashWords headings =
+            brain_kernels().hash(organisms, living_.heading.data(), heading_hash_kind, range.begin, range.end);
+        blocks_[block].hash += base::StateHash{headings.low, headings.high};
+    }
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
 }
 
@@ -479,8 +535,13 @@ std::vector<Intention> Island::intentions(const parameters::Parameters& paramete
         }
     }
     std::vector<Intention> of_living(asked_bodies.size());
-    predict_intentions(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick,
-                       asked_bodies, of_living);
+    if (living_.has_brains()) {
+        predict_steering(bodies_, living_, food_, poison_, steering_rules(brain_, parameters, area_), parameters.tick_s,
+                         asked_bodies, of_living);
+    } else {
+        predict_intentions(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick,
+                           asked_bodies, of_living);
+    }
     std::vector<Intention> intentions(ids.end - ids.begin);
     for (std::size_t k = 0; k < asked_bodies.size(); ++k) {
         intentions[bodies_.id[asked_bodies[k]] - ids.begin] = of_living[k];

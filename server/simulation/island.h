@@ -1,8 +1,8 @@
 // Island: one walled rectangle with its organisms, food and poison, and everything that happens there in a tick.
 //
-// One tick, in this order: due items reappear → every living organism loses health → perception and choice, from the
-// positions at the start of the tick → forces, damping, collisions, positions (physics/step.h) → feeding at the new
-// positions → deaths → hash.
+// One tick, in this order: due items reappear → every living organism loses health → perception and choice (rules, or a
+// network, which also turns the organism), from the positions at the start of the tick → forces, damping, collisions,
+// positions (physics/step.h) → feeding at the new positions → deaths → hash.
 //
 // Organisms are stored strip by strip, in the order of their positions, so that neighbours share cache lines. They are
 // sorted again from time to time as they move. Until the next sorting, a dead organism leaves a void body: an immovable
@@ -148,7 +148,12 @@ class Island {
     Items& items(ItemKind kind) { return kind == ItemKind::Food ? food_ : poison_; }
     void renew_near_pairs(base::Executor& executor);
     void reorder(base::Executor& executor);
+    /// Creates the living organism of a chromosome, with its network if it has one.
+    void put_living(std::size_t body, std::uint32_t id, const parameters::Parameters& parameters);
+    /// The weights of a network: the genes behind those of the body.
+    std::span<const float> weights_of(std::uint32_t id) const;
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
+    void act(const SteeringRules& rules, std::size_t block);
     void move(std::size_t block);
     /// Lets organisms eat, and removes the organisms that die. Returns the hash of the living organisms.
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -183,6 +188,9 @@ class Island {
     base::Seed seed_;
     std::uint32_t index_;
     base::RandomKey behaviour_key_{base::Seed{}, base::Purpose::Behaviour, 0, 0};
+    base::RandomKey heading_key_{base::Seed{}, base::Purpose::Heading, 0, 0};
+    evolution::BrainLayout brain_;
+    bool is_kinematic_ = false; // velocities are set directly, and bodies have no contacts
     physics::Area area_;
     physics::StepParameters step_parameters_;
     physics::Stepper stepper_;

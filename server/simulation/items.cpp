@@ -40,7 +40,7 @@ void Items::begin_generation(const ItemRules& rules, base::Seed seed, std::uint3
     const base::RandomKey key{seed, rules.placement, island, generation};
     begin(rules, {seed, rules.respawn_purpose, island, generation}, area, executor, [&](std::uint32_t item) {
         base::RandomStream random{key, item};
-        return random_place(random, area, rules.radius_px, obstacles);
+        return random_place(random, area, rules.radius_px, obstacles, rules.margin_px);
     });
 }
 
@@ -319,7 +319,7 @@ void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executo
             base::StateHash& hash = hash_of_piece_[k / grain];
             hash -= hash_of(item);
             base::RandomStream random{respawn_key_, item, tick};
-            const Place place = random_place(random, area_, rules_.radius_px, obstacles);
+            const Place place = random_place(random, area_, rules_.radius_px, obstacles, rules_.margin_px);
             all_[item] = {place.x, place.y, 0};
             hash += hash_of(item);
             arrivals_[k] = {item, cell_of(item)};

@@ -29,6 +29,7 @@ struct ItemRules {
     std::uint32_t kind;                       // kind of entity in the state hash
     std::uint32_t count;
     float radius_px;
+    float margin_px = 0;         // centres are at least this far from walls, also if the radius is less
     bool respawn;                // false: no item reappears
     std::uint32_t respawn_ticks; // >= 1; an item eaten in tick t reappears at the beginning of tick t + respawn_ticks
 };

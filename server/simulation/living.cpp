@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace evod::simulation {
@@ -18,6 +19,10 @@ void for_each_column(Living& living, F&& visit) {
     visit(living.impulse, 0.0f);
     visit(living.food_radius, 0.0f);
     visit(living.poison_radius, 0.0f);
+    if (living.has_brains()) {
+        visit(living.heading, 0.0f);
+        visit(living.base_health, 0.0f);
+    }
 }
 
 /// Returns the health lost per tick: the rate times 1 + the costs of the genes, never below 0.
@@ -34,8 +39,10 @@ float loss_per_tick(const evolution::BodyGenes& genes, const parameters::Paramet
 
 } // namespace
 
-void Living::clear() {
+void Living::clear(std::uint32_t weight_count) {
     for_each_column(*this, [](auto& column, float) { column.clear(); });
+    weights.clear();
+    weight_count_ = weight_count;
 }
 
 void Living::resize(std::size_t size) {
@@ -43,6 +50,7 @@ void Living::resize(std::size_t size) {
         column.resize(size, filling);
         column.resize(physics::padded(size), filling);
     });
+    weights.resize(physics::padded(size) * weight_count_);
 }
 
 void Living::put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& p) {
@@ -53,10 +61,29 @@ void Living::put(std::size_t body, const evolution::BodyGenes& genes, const para
     impulse[body] = genes(evolution::Impulse);
     food_radius[body] = genes(evolution::FoodRadius);
     poison_radius[body] = genes(evolution::PoisonRadius);
+    if (has_brains()) {
+        base_health[body] = genes(evolution::BaseHealth);
+    }
+}
+
+void Living::put_brain(std::size_t body, std::span<const float> new_weights, float new_heading) {
+    EVOD_ASSERT(std::abs(new_heading) <= heading_max);
+    heading[body] = new_heading;
+    put_weights(body, new_weights);
+}
+
+void Living::put_weights(std::size_t body, std::span<const float> new_weights) {
+    EVOD_ASSERT(new_weights.size() == weight_count_);
+    float* place = weights.data() + first_weight(body);
+    for (const float weight : new_weights) {
+        *place = weight;
+        place += physics::lanes_max;
+    }
 }
 
 void Living::reorder(const physics::Reordering& reordering) {
     for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
+    weights.resize(physics::padded(reordering.size()) * weight_count_);
 }
 
 float health_cap(const evolution::BodyGenes& genes, const parameters::Parameters& p) {
@@ -71,13 +98,23 @@ BodyShape body_shape(float body_size_gene, const parameters::Parameters& p) {
 }
 
 base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body) {
-    return base::hash_of({.kind = organism_hash_kind,
-                          .id = bodies.id[body],
-                          .a = static_cast<std::uint32_t>(bodies.x[body]),
-                          .b = static_cast<std::uint32_t>(bodies.y[body]),
-                          .c = std::bit_cast<std::uint32_t>(bodies.velocity_x[body]),
-                          .d = std::bit_cast<std::uint32_t>(bodies.velocity_y[body]),
-                          .e = std::bit_cast<std::uint32_t>(living.health[body])});
+    base::StateHash hash = base::hash_of({.kind = organism_hash_kind,
+                                          .id = bodies.id[body],
+                                          .a = static_cast<std::uint32_t>(bodies.x[body]),
+                                          .b = static_cast<std::uint32_t>(bodies.y[body]),
+                                          .c = std::bit_cast<std::uint32_t>(bodies.velocity_x[body]),
+                                          .d = std::bit_cast<std::uint32_t>(bodies.velocity_y[body]),
+                                          .e = std::bit_cast<std::uint32_t>(living.health[body])});
+    if (living.has_brains()) {
+        hash += base::hash_of({.kind = heading_hash_kind,
+                               .id = bodies.id[body],
+                               .a = std::bit_cast<std::uint32_t>(living.heading[body]),
+                               .b = 0,
+                               .c = 0,
+                               .d = 0,
+                               .e = 0});
+    }
+    return hash;
 }
 
 void Fate::begin_generation(std::size_t organisms) {

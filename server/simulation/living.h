@@ -8,11 +8,15 @@
 #include "server/physics/bodies.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace evod::simulation {
 
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned, Removed };
+
+/// A heading is at most this far from 0, radians: π, and a little for rounding.
+constexpr float heading_max = 3.1416f;
 
 /// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
 /// of physics::Circles, including placeholders of dead organisms (void bodies).
@@ -21,13 +25,30 @@ struct Living {
     base::Column<float> loss_per_tick;              // health that a tick of life costs
     base::Column<float> normal_speed, impulse;      // gene units
     base::Column<float> food_radius, poison_radius; // px; how far the organism perceives
+    // Only for organisms with a network; otherwise empty.
+    base::Column<float> heading;     // radians, −π … π
+    base::Column<float> base_health; // gene units
+    base::Column<float> weights;     // in the order of BrainColumns::weights
 
-    void clear();
+    /// Removes all organisms. weight_count  the number of weights of each network; 0: the organisms have none.
+    void clear(std::uint32_t weight_count = 0);
+    std::uint32_t weight_count() const { return weight_count_; }
+    bool has_brains() const { return weight_count_ > 0; }
     /// resize() and put() work like those of physics::Circles.
     void resize(std::size_t size);
     void put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& parameters);
-    /// Works like physics::Circles::reorder().
+    void put_brain(std::size_t body, std::span<const float> new_weights, float new_heading);
+    void put_weights(std::size_t body, std::span<const float> new_weights);
+    /// Returns the index in `weights` of the first weight of an organism; the next one is physics::lanes_max further.
+    std::size_t first_weight(std::size_t body) const {
+        constexpr std::size_t group = physics::lanes_max;
+        return body / group * group * weight_count_ + body % group;
+    }
+    /// Works like physics::Circles::reorder(), but leaves the weights to put_weights().
     void reorder(const physics::Reordering& reordering);
+
+  private:
+    std::uint32_t weight_count_ = 0;
 };
 
 /// Returns the limit above which a meal cannot raise health; infinity if there is no limit.
@@ -41,7 +62,9 @@ BodyShape body_shape(float body_size_gene, const parameters::Parameters& paramet
 
 /// The kind of organisms in the state hash.
 constexpr std::uint32_t organism_hash_kind = 1;
-/// Returns an organism's part of the state hash. organism_kernels().hash computes the parts of many organisms at once.
+constexpr std::uint32_t heading_hash_kind = 8;
+/// Returns an organism's part of the state hash. organism_kernels().hash and brain_kernels().hash compute the parts of
+/// many organisms at once.
 base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body);
 
 /// What happened to each organism that was born, by id.

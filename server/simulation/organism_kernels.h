@@ -45,7 +45,7 @@ struct FoundIndices {
 };
 
 /// What an organism does in a tick. The protocol uses the same numbers.
-enum class Choice : std::uint8_t { None, Wander, Seek, Flee };
+enum class Choice : std::uint8_t { None, Wander, Seek, Flee, Steer };
 
 struct HashWords {
     std::uint64_t low, high;

@@ -21,7 +21,8 @@ Coordinate uniform_coordinate(base::RandomStream& random, Coordinate margin, Coo
     return margin + static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(size - 2 * margin) + 1));
 }
 
-Place uniform_place(base::RandomStream& random, Coordinate margin, const physics::Area& area) {
+Place uniform_place(base::RandomStream& random, float half_size_px, float margin_px, const physics::Area& area) {
+    const Coordinate margin = physics::to_units(std::max(half_size_px, margin_px));
     const Coordinate x = uniform_coordinate(random, margin, area.width);
     return {x, uniform_coordinate(random, margin, area.height)};
 }
@@ -100,10 +101,10 @@ bool BoxGrid::clear_of_box(Place place, float half_size_px) const {
     });
 }
 
-Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes) {
-    const Coordinate margin = physics::to_units(radius_px);
+Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes,
+                   float margin_px) {
     for (int attempt = 0; attempt < tries_max; ++attempt) {
-        const Place place = uniform_place(random, margin, area);
+        const Place place = uniform_place(random, radius_px, margin_px, area);
         if (boxes.clear_of_circle(place, radius_px)) {
             return place;
         }
@@ -118,7 +119,7 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
     const base::RandomKey obstacle_key{seed, base::Purpose::ObstaclePlacement, island, 0};
     for (std::uint32_t i = 0; i < rules.obstacle_count; ++i) {
         base::RandomStream random{obstacle_key, i};
-        const Place place = uniform_place(random, physics::to_units(rules.obstacle_half_size_px), area);
+        const Place place = uniform_place(random, rules.obstacle_half_size_px, rules.margin_px, area);
         placed.obstacles.add(place.x, place.y, rules.obstacle_half_size_px, rules.obstacle_half_size_px, 0);
         grid.add(place, rules.obstacle_half_size_px, rules.obstacle_half_size_px);
     }
@@ -128,7 +129,7 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
         base::RandomStream random{crate_key, i};
         bool done = false;
         for (int attempt = 0; attempt < tries_max && !done; ++attempt) {
-            const Place place = uniform_place(random, physics::to_units(half), area);
+            const Place place = uniform_place(random, half, rules.margin_px, area);
             done = grid.clear_of_box(place, half);
             if (done) {
                 placed.crates.add(place.x, place.y, half, half, 1 / rules.crate_mass_kg);
@@ -142,7 +143,7 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,
-                                 base::Executor& executor) {
+                                 base::Executor& executor, float margin_px) {
     const std::size_t count = radius_px.size();
     const base::RandomKey key{seed, base::Purpose::OrganismPlacement, island, generation};
     PlacedCircles placed{radius_px, area};
@@ -150,7 +151,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
     const std::size_t batch_size = std::max(batch_circles_min, count / batches);
     std::vector<Attempts> attempts(std::min(batch_size, count), Attempts{{key, 0}});
     const auto make_attempt = [&](Attempts& of, std::size_t id) {
-        of.last = uniform_place(of.random, physics::to_units(radius_px[id]), area);
+        of.last = uniform_place(of.random, radius_px[id], margin_px, area);
     };
     const auto succeeds = [&](const Attempts& of, std::size_t id) {
         return placed.clear(of.last, radius_px[id]) && boxes.clear_of_circle(of.last, radius_px[id]);

@@ -38,7 +38,10 @@ class BoxGrid {
 };
 
 /// Draws a uniform random place for a circle, inside the walls and clear of `boxes`.
-Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
+///
+/// margin_px  the least distance between a wall and the centre, if it is greater than the radius; so below too.
+Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes,
+                   float margin_px = 0);
 
 /// The rules of place_boxes(), which places obstacles, then crates that are clear of obstacles and of each other.
 /// Obstacles stay in place from generation to generation of a run; crates are placed again.
@@ -46,6 +49,7 @@ struct BoxRules {
     std::uint32_t obstacle_count, crate_count;
     float obstacle_half_size_px, crate_half_size_px;
     float crate_mass_kg;
+    float margin_px = 0;
 };
 struct PlacedBoxes {
     physics::Boxes obstacles, crates;
@@ -59,6 +63,6 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 /// returns    one place per circle.
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
                                  std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,
-                                 base::Executor& executor);
+                                 base::Executor& executor, float margin_px = 0);
 
 } // namespace evod::simulation

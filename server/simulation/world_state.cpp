@@ -23,6 +23,7 @@ IslandShape Island::shape() const {
     return {.genes = static_cast<std::uint32_t>(born_.genes.rows()),
             .organisms = bred_count(),
             .has_bodies = has_bodies(),
+            .has_headings = has_bodies() && living_.has_brains(),
             .crates = has_bodies() ? crate_count_ : 0,
             .food = has_bodies() ? food_.first_count() : 0,
             .poison = has_bodies() ? poison_.first_count() : 0};
@@ -52,6 +53,7 @@ IslandState Island::state(base::Executor& executor) const {
                 state.poison = poison_.all();
             } else {
                 state.organisms.resize(body_of_.size());
+                state.headings.resize(living_.has_brains() ? body_of_.size() : 0);
             }
         }
     });
@@ -60,6 +62,9 @@ IslandState Island::state(base::Executor& executor) const {
             if (!bodies_.is_void(i)) {
                 state.organisms[bodies_.id[i]] = {bodies_.x[i], bodies_.y[i], bodies_.velocity_x[i],
                                                   bodies_.velocity_y[i], living_.health[i]};
+                if (living_.has_brains()) {
+                    state.headings[bodies_.id[i]] = living_.heading[i];
+                }
             }
         }
     });
@@ -77,7 +82,8 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     const std::size_t organisms = own.organisms + state.placed.size();
     if (fate.cause.size() != organisms || fate.lived_ticks.size() != organisms || fate.food_eaten.size() != organisms ||
         fate.poison_eaten.size() != organisms || state.organisms.size() != (own.has_bodies ? organisms : 0) ||
-        state.placed.size() > placed_max || (!own.has_bodies && !state.placed.empty())) {
+        state.headings.size() != (own.has_headings ? organisms : 0) || state.placed.size() > placed_max ||
+        (!own.has_bodies && !state.placed.empty())) {
         return wrong("number of organisms");
     }
     for (const IslandState::Placed& placed : state.placed) {
@@ -114,6 +120,9 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
             if (!can_move(organism)) {
                 return which("position or speed");
             }
+            if (own.has_headings && !(std::abs(state.headings[id]) <= heading_max)) {
+                return which("heading");
+            }
             const bool has_lived = tick > (id < own.organisms ? 0 : state.placed[id - own.organisms].tick);
             if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && has_lived)) {
                 return which("health");
@@ -124,7 +133,8 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
         const bool removed = fate.cause[id] == CauseOfDeath::Removed;
         if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Removed || (fate.lived_ticks[id] == 0 && !removed) ||
-            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
+            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{} ||
+            (own.has_headings && state.headings[id] != 0)) {
             return which("death");
         }
     }
@@ -161,7 +171,9 @@ bool differ_only_by_commands(const IslandState& begun, const IslandState& state)
         return std::ranges::equal(before, std::span{now}.first(before.size()), is_kept);
     };
     for (std::size_t id = 0; id < begun.organisms.size(); ++id) {
-        if (state.fate.cause[id] != CauseOfDeath::Removed && state.organisms[id] != begun.organisms[id]) {
+        const bool has_turned = !begun.headings.empty() && state.headings[id] != begun.headings[id];
+        if (state.fate.cause[id] != CauseOfDeath::Removed &&
+            (state.organisms[id] != begun.organisms[id] || has_turned)) {
             return false;
         }
     }
@@ -213,6 +225,9 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
         bodies_.velocity_x[id] = organism.velocity_x;
         bodies_.velocity_y[id] = organism.velocity_y;
         living_.health[id] = organism.health;
+        if (living_.has_brains()) {
+            living_.heading[id] = state.headings[id];
+        }
     }
     perception_.begin(bodies_, living_, food_, poison_);
     for (const std::uint32_t id : gone) {

@@ -45,6 +45,7 @@ struct IslandShape {
     std::uint32_t genes = evolution::body_gene_count; // number of genes of each organism
     std::uint32_t organisms = 0;                      // number of organisms that were born
     bool has_bodies = true;      // if false, the other parts are empty
+    bool has_headings = false;   // whether the controller is network
     std::uint32_t crates = 0, food = 0, poison = 0;
 
     friend bool operator==(const IslandShape&, const IslandShape&) = default;
@@ -73,6 +74,7 @@ struct IslandState {
     std::vector<Placed> placed;                       // in order of id
     std::uint32_t placed_food = 0, placed_poison = 0; // numbers of placed items; they come last in food and poison
     base::Column<Organism> organisms;                 // all zeros for dead organisms; empty if there are no bodies
+    base::Column<float> headings;                     // radians, by id; 0 for dead organisms; empty without networks
     std::vector<Crate> crates;
     base::Column<Items::Item> food, poison;
 

@@ -136,6 +136,22 @@ const std::vector<Scenario>& all() {
          base::Seed{54},
          40,
          {}},
+
+        {"newtonian_networks", // every sense; sorted in memory as they move
+         R"({"controller": "network", "sense_speed": true, "sense_health": true, "sense_wall": true, "brain_hidden": 8,
+             "population_size": 1500, "scale_with_population": true, "reference_population": 50, "crate_count": 5,
+             "generation_s": 4})",
+         base::Seed{55},
+         600,
+         {}},
+
+        {"kinematic_networks",
+         R"({"controller": "network", "locomotion": "kinematic", "sense_poison": false, "sense_bearing_only": true,
+             "brain_bias": false, "crossover": "blend", "spawn_margin_px": 100, "generation_s": 4,
+             "mutate_group": "brain"})",
+         base::Seed{56},
+         600,
+         {}},
     };
     return scenarios;
 }

@@ -174,7 +174,6 @@ UNIT_TESTED_ELSEWHERE = {
     ("proto/codec", "result"): "unit/codec/framing_test",
     ("server", "main"): "system/console_test",
     ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
-    ("server/base", "instructions"): "tests/determinism, with every instruction set",
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
     ("server/commands", "parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
@@ -183,7 +182,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/network", "breeding_queries description exports http messages random_ids server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
-    ("server/physics", "bodies motion_kernels"): "unit/physics/step_test and tests/determinism",
+    ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker waiting_record"):
         "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "columns table"): "unit/replay/run_tables_test",

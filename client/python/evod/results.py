@@ -77,6 +77,7 @@ class Choice(_State):
     WANDER = world_pb2.CHOICE_WANDER
     SEEK = world_pb2.CHOICE_SEEK  #: moves towards food
     FLEE = world_pb2.CHOICE_FLEE  #: moves away from poison
+    STEER = world_pb2.CHOICE_STEER  #: its neural network steers it
 
 
 class Detail(_State):
@@ -293,7 +294,7 @@ class OrganismInfo(_Result):
     choice: Choice | None  #: the action in the next tick; None: it does not act
     force_x: float  #: force in the next tick, kg px/s²
     force_y: float
-    target_x_px: float  #: position of the food or poison that it seeks or flees; its own position if it wanders
+    target_x_px: float  #: position of the food or poison that it seeks or flees; its own position otherwise
     target_y_px: float
     placed_tick: int | None  #: the tick of its generation after which it was placed; None: it was bred
 

@@ -172,7 +172,7 @@ void add_forces(const codec::Entities& organisms, std::span<const Shape> discs, 
         arrows.lines.push_back({x, y, x + arrow_px_per_force * population.force_x()[id],
                                 y + arrow_px_per_force * population.force_y()[id]});
         arrows.colours.push_back(colour);
-        if (choice != evod::v1::CHOICE_WANDER) {
+        if (choice == evod::v1::CHOICE_SEEK || choice == evod::v1::CHOICE_FLEE) {
             targets.lines.push_back({x, y, population.target_x_px()[id], population.target_y_px()[id]});
             targets.colours.push_back(colour);
         }

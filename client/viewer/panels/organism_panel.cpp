@@ -121,6 +121,8 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
         return "about to seek food" + place;
     case evod::v1::CHOICE_FLEE:
         return "about to flee from poison" + place;
+    case evod::v1::CHOICE_STEER:
+        return "about to do what its network says";
     default:
         return "";
     }

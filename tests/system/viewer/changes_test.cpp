@@ -9,6 +9,7 @@
 #include "proto/codec/population_csv.h"
 #include "tests/system/viewer/support/panel_host.h"
 #include "tests/system/viewer/support/replay_of_world.h"
+#include "tests/unit/viewer/world/population_of.h"
 
 #include <gmock/gmock.h>
 #include <imgui.h>
@@ -265,8 +266,8 @@ wait connected
 TEST_F(ChangesTest, AnOrganismCanBeDraggedOutOfTheFreezer) {
     RealServer server{{"--seed", "7"}};
     Freezer freezer{folder.file("freezer")};
-    ASSERT_TRUE(freezer.save("fast", {{1, 2, 3, 4, 5, 6}}));
-    ASSERT_TRUE(freezer.save("many", {std::vector<float>(12)}));
+    ASSERT_TRUE(freezer.save("fast", population_of({{1, 2, 3, 4, 5, 6}})));
+    ASSERT_TRUE(freezer.save("many", population_of({std::vector<float>(12)})));
     ViewedWorld world{{.connection = {.server = core::parse_endpoint(server.address()).value()}, .world = "default"}};
     FreezerPanel panel;
     NewWorldDialog dialog;

@@ -58,5 +58,44 @@ TEST(Elementary, DirectionsHaveLengthOneAndTheAngleOfTheirWord) {
     }
 }
 
+TEST(Elementary, HyperbolicTangentHasItsStatedError) {
+    for (double x = 1e-30; x < 1e3; x *= 1.0007) {
+        const float number = static_cast<float>(x);
+        const auto exact = std::tanh(static_cast<long double>(number));
+        const float value = tanh(number);
+        ASSERT_NEAR(static_cast<double>(value / exact), 1, 3e-7) << number;
+        ASSERT_LE(value, 1) << number;
+        ASSERT_EQ(tanh(-number), -value) << number;
+    }
+    EXPECT_EQ(tanh(0), 0);
+    EXPECT_NEAR(tanh(1e30f), 1, 3e-7);
+}
+
+TEST(Elementary, AnglesHaveTheirStatedErrorInEveryDirection) {
+    constexpr long double exact_pi = 3.14159265358979323846264338327950288L;
+    for (int i = 0; i < 200'000; ++i) {
+        const double turns = (i + 0.5) / 200'000, length = 0.01 + i % 977;
+        const auto x = static_cast<float>(length * cos_turns(turns)), y = static_cast<float>(length * sin_turns(turns));
+        const long double exact = std::atan2(static_cast<long double>(y), static_cast<long double>(x)) / exact_pi;
+        ASSERT_NEAR(static_cast<double>(half_turns(x, y) / exact), 1, 3e-7) << x << ", " << y;
+    }
+    EXPECT_EQ(half_turns(0, 0), 0);
+    EXPECT_EQ(half_turns(2, 0), 0);
+    EXPECT_EQ(half_turns(-2, 0), 1);
+    EXPECT_EQ(half_turns(0, 3), 0.5f);
+    EXPECT_EQ(half_turns(0, -3), -0.5f);
+    EXPECT_NEAR(half_turns(-1, 1e-30f), 1, 1e-7);
+    EXPECT_NEAR(half_turns(-1, -1e-30f), -1, 1e-7);
+}
+
+TEST(Elementary, DirectionsOfRadiansHaveTheirStatedError) {
+    for (int i = -40'000; i <= 40'000; ++i) {
+        const float radians = static_cast<float>(i) * 1e-4f;
+        const Direction way = direction_of(radians);
+        ASSERT_NEAR(way.x, std::cos(static_cast<double>(radians)), 5e-7) << radians;
+        ASSERT_NEAR(way.y, std::sin(static_cast<double>(radians)), 5e-7) << radians;
+    }
+}
+
 } // namespace
 } // namespace evod::base

@@ -1,6 +1,7 @@
 // Kernels compute in every lane what the functions for one entity compute. Tested with four lanes; the golden hashes,
 // which hold for four and eight lanes, show that eight give the same.
 #include "server/base/elementary.h"
+#include "server/base/elementary_lanes.h"
 #include "server/base/hash_lanes.h"
 #include "server/base/random.h"
 #include "server/base/random_lanes.h"
@@ -48,6 +49,28 @@ TEST(Lanes, DirectionsNearQuarterTurnsEqualSingleOnes) {
             const Directions way = directions(all_lanes(word));
             EXPECT_EQ(way.x[0], direction(word).x) << word;
             EXPECT_EQ(way.y[3], direction(word).y) << word;
+        }
+    }
+}
+
+TEST(Lanes, ElementaryFunctionsEqualSingleOnes) {
+    RandomStream random{RandomKey{Seed{3}, Purpose::ScenarioTest, 0, 0}, 0};
+    for (int trial = 0; trial < 100'000; ++trial) {
+        // Magnitudes from 2^-19 to 2^12, of both signs; sometimes 0.
+        const auto some_floats = [&] {
+            const Words words = some_words(random);
+            const Floats size = unit_floats(words) * (Floats)(((words & 31u) + 108u) << 23);
+            return (words & 32u) != 0u ? size : (words & 960u) == 0u ? Floats{} : -size;
+        };
+        const Floats x = some_floats(), y = some_floats();
+        const Floats hyperbolic = tanh(x), angle = half_turns(x, y);
+        const Directions way = directions_of(tanh(y) * 4.0f);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            ASSERT_EQ(hyperbolic[lane], base::tanh(x[lane])) << x[lane];
+            ASSERT_EQ(angle[lane], base::half_turns(x[lane], y[lane])) << x[lane] << ", " << y[lane];
+            const Direction expected = direction_of(base::tanh(y[lane]) * 4);
+            ASSERT_EQ(way.x[lane], expected.x);
+            ASSERT_EQ(way.y[lane], expected.y);
         }
     }
 }

@@ -22,7 +22,7 @@ inline std::vector<ParameterValue> other_values(const ParameterDescription& desc
     std::vector<ParameterValue> values;
     if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
         const double now = std::get<double>(description.default_value());
-        for (const double value : {now * 0.9, now * 1.05, real->range.min, real->range.max}) {
+        for (const double value : {now * 0.9, now * 1.05, now + 1, real->range.min, real->range.max}) {
             if (value != now && value >= real->range.min && value <= real->range.max) {
                 values.emplace_back(value);
             }

@@ -18,6 +18,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 bool accepted(std::string_view name, ParameterValue value) {
@@ -256,6 +257,60 @@ TEST(CrossFieldRules, KeepRoomForAnOrganismAmongManySmallCrates) {
                                                            {"crate_count", std::uint32_t{1000}},
                                                            {"crate_size_px", 5.0}});
     EXPECT_FALSE(result.has_value());
+}
+
+/// The violations of a world whose controller is a network, with these changes.
+std::vector<std::string> network_violations(std::vector<Assignment> assignments) {
+    assignments.push_back({"controller", std::string{"network"}});
+    return violations(assign({}, assignments));
+}
+
+TEST(CrossFieldRules, RefuseANetworkWithoutInputs) {
+    constexpr auto fault =
+        "sense_food: got a network without inputs, allowed at least one sense: sense_food, sense_poison, sense_speed, "
+        "sense_health or sense_wall";
+    const std::vector<Assignment> blind{{"sense_food", false}, {"sense_poison", false}};
+    EXPECT_THAT(network_violations(blind), Contains(fault));
+    EXPECT_TRUE(assign({}, blind).has_value()) << "rules need no inputs";
+    for (const char* sense : {"sense_speed", "sense_health", "sense_wall"}) {
+        EXPECT_THAT(network_violations({blind[0], blind[1], {sense, true}}), Not(Contains(fault))) << sense;
+    }
+}
+
+TEST(CrossFieldRules, KeepFirstWeightsWithinTheLimit) {
+    const auto set = [](double limit, double initial) {
+        return violations(
+            assign({}, std::vector<Assignment>{{"brain_weight_limit", limit}, {"brain_weight_initial", initial}}));
+    };
+    EXPECT_THAT(set(2, 2), IsEmpty());
+    EXPECT_THAT(set(2, 3), ElementsAre("brain_weight_limit: got 2, allowed at least brain_weight_initial (3)"));
+}
+
+TEST(CrossFieldRules, LimitTheGenesOfAllOrganisms) {
+    constexpr auto fault = "brain_hidden: got 1e+06 organisms with a total of 232000000 genes, allowed at most "
+                           "124000000 genes in all organisms together";
+    const Assignment scaled{"scale_with_population", true}, million{"population_size", std::uint32_t{1'000'000}};
+    EXPECT_THAT(network_violations({scaled, million, {"brain_hidden", std::uint32_t{32}}}), Contains(fault));
+    EXPECT_THAT(network_violations({scaled, million, {"brain_hidden", std::uint32_t{8}}}),
+                Not(Contains(HasSubstr("genes in all organisms"))));
+}
+
+TEST(CrossFieldRules, KinematicOrganismsHaveNoObstacles) {
+    const Assignment kinematic{"locomotion", std::string{"kinematic"}};
+    EXPECT_THAT(network_violations({kinematic, {"obstacle_count", std::uint32_t{2}}}),
+                Contains("obstacle_count: got 2, allowed 0 if locomotion is kinematic, because bodies then have no "
+                         "contacts"));
+    EXPECT_THAT(network_violations({kinematic, {"crate_count", std::uint32_t{1}}}),
+                Contains("crate_count: got 1, allowed 0 if locomotion is kinematic, because bodies then have no "
+                         "contacts"));
+}
+
+TEST(CrossFieldRules, LeaveRoomInsideTheSpawnMargin) {
+    const auto set = [](double margin) { return violations(assign({}, one("spawn_margin_px", margin))); };
+    EXPECT_THAT(set(100), IsEmpty());
+    EXPECT_THAT(set(360), ElementsAre("spawn_margin_px: got 360, allowed less than half of the island's shorter side "
+                                      "(360)"));
+    EXPECT_THAT(set(300), ElementsAre(HasSubstr("population_size: got 50 organisms, covered share")));
 }
 
 TEST(IslandPlan, ScalesWithThePopulationIfRequested) {

@@ -50,9 +50,10 @@ class RecordedRun {
   public:
     /// folder, thread: outlive it.
     RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
-                simulation::FirstPopulation first_population = {}, const parameters::Schedule& schedule = {})
+                simulation::FirstPopulation first_population = {}, const parameters::Schedule& schedule = {},
+                const parameters::Parameters& initial = small_world())
         : recorder_{folder, thread} {
-        auto parameters = parameters::assign(small_world(), schedule.at(1));
+        auto parameters = parameters::assign(initial, schedule.at(1));
         EXPECT_TRUE(parameters) << to_text(parameters.error());
         EXPECT_TRUE(laboratory_.apply(
             simulation::CreateWorld{"w", *parameters, seed, {1, 2}, std::move(first_population), schedule}));

@@ -103,7 +103,11 @@ TEST_F(CheckpointTest, AWorldContinuesFromACheckpointExactly) {
     for (int round = 0; round < 20; ++round) {
         folder.clear();
         thread = std::make_unique<StorageThread>(RunFile::Options{});
-        RecordedRun run{data, *thread};
+        parameters::Parameters parameters = small_world();
+        if (round % 4 == 3) { // organisms then have headings
+            parameters.controller = evolution::Controller::Network;
+        }
+        RecordedRun run{data, *thread, {7}, {}, {}, parameters};
         run.advance(random() % 200);
         run.command(set_parameter("food_health", 3.0));
         run.advance(1 + random() % 200);

@@ -321,5 +321,48 @@ TEST(PlaceBoxes, ObstaclesStayInPlaceAndCratesDoNot) {
     EXPECT_NE(first.crates.x, next.crates.x);
 }
 
+TEST(SpawnMargin, KeepsTheCentresOfEverythingAwayFromWalls) {
+    const physics::Area area{physics::to_units(400.0), physics::to_units(300.0)};
+    constexpr float margin_px = 90;
+    const auto expect_inside = [&](Coordinate x, Coordinate y) {
+        const Coordinate margin = physics::to_units(margin_px);
+        ASSERT_GE(x, margin);
+        ASSERT_LE(x, area.width - margin);
+        ASSERT_GE(y, margin);
+        ASSERT_LE(y, area.height - margin);
+    };
+    base::RandomStream random{base::RandomKey{base::Seed{5}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    for (int i = 0; i < 2000; ++i) {
+        const Place place = random_place(random, area, 10, BoxGrid{}, margin_px);
+        expect_inside(place.x, place.y);
+    }
+    base::InlineExecutor executor;
+    for (const Place& place :
+         place_circles(std::vector<float>(40, 5), base::Seed{3}, 0, 1, area, {}, executor, margin_px)) {
+        expect_inside(place.x, place.y);
+    }
+    const PlacedBoxes boxes = place_boxes({.obstacle_count = 9,
+                                           .crate_count = 9,
+                                           .obstacle_half_size_px = 5,
+                                           .crate_half_size_px = 4,
+                                           .crate_mass_kg = 1,
+                                           .margin_px = margin_px},
+                                          base::Seed{4}, 0, 1, area);
+    for (std::size_t i = 0; i < 9; ++i) {
+        expect_inside(boxes.obstacles.x[i], boxes.obstacles.y[i]);
+        expect_inside(boxes.crates.x[i], boxes.crates.y[i]);
+    }
+}
+
+TEST(SpawnMargin, NoGreaterThanTheRadiusChangesNothing) {
+    const physics::Area area{physics::to_units(400.0), physics::to_units(300.0)};
+    const auto draw = [&](float margin_px) {
+        base::RandomStream random{base::RandomKey{base::Seed{5}, base::Purpose::ScenarioTest, 0, 1}, 0};
+        return random_place(random, area, 10, BoxGrid{}, margin_px);
+    };
+    EXPECT_EQ(draw(10).x, draw(0).x);
+    EXPECT_NE(draw(11).x, draw(0).x);
+}
+
 } // namespace
 } // namespace evod::simulation

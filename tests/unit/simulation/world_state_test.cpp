@@ -51,6 +51,12 @@ std::vector<parameters::Parameters> varied_worlds() {
               {"fitness_per_poison", -5.0},
               {"respawn_s", 1.0}}),
         with({{"fitness", std::string{"rastrigin"}}, {"island_count", 2u}}),
+        with({{"controller", std::string{"network"}}, {"sense_wall", true}, {"crate_count", 5u}}),
+        with({{"controller", std::string{"network"}},
+              {"locomotion", std::string{"kinematic"}},
+              {"population_size", 1500u},
+              {"island_width_px", 8000.0},
+              {"generation_s", 3.0}}),
     };
 }
 

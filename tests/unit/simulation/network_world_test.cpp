@@ -1,0 +1,102 @@
+// Worlds whose organisms are steered by networks: the state does not depend on threads or instructions, and organisms do
+// what is predicted.
+#include "server/base/inline_executor.h"
+#include "server/base/instructions.h"
+#include "server/simulation/world.h"
+#include "tests/support/thread_executor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+parameters::Parameters network(std::string locomotion, std::uint32_t population) {
+    return parameters::assign({}, std::vector<parameters::Assignment>{{"controller", std::string{"network"}},
+                                                                      {"locomotion", std::move(locomotion)},
+                                                                      {"sense_speed", true},
+                                                                      {"sense_health", true},
+                                                                      {"sense_wall", true},
+                                                                      {"brain_hidden", 8u},
+                                                                      {"scale_with_population", true},
+                                                                      {"population_size", population},
+                                                                      {"generation_s", 1.0}})
+        .value();
+}
+
+class NetworkWorlds : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Locomotion, NetworkWorlds, testing::Values("newtonian", "kinematic"));
+
+TEST_P(NetworkWorlds, AreTheSameOnAnyThreadsAndInstructions) {
+    const auto hashes = [&](base::Executor& executor) {
+        World world{network(GetParam(), 6000), base::Seed{5}};
+        std::vector<base::StateHash> hashes;
+        for (int tick = 0; tick < 130; ++tick) { // more than two generations
+            world.advance_tick(executor);
+            hashes.push_back(world.hash());
+        }
+        return hashes;
+    };
+    base::InlineExecutor one;
+    const std::vector<base::StateHash> expected = hashes(one);
+    for (const std::size_t threads : {2u, 3u, 16u}) {
+        support::ThreadExecutor several{threads};
+        EXPECT_EQ(hashes(several), expected) << threads;
+    }
+    base::use_instructions(base::Instructions::Baseline);
+    const std::vector<base::StateHash> baseline = hashes(one);
+    base::use_instructions(base::widest_instructions());
+    EXPECT_EQ(baseline, expected);
+}
+
+TEST_P(NetworkWorlds, DoWhatIsPredicted) {
+    base::InlineExecutor executor;
+    parameters::Parameters parameters = network(GetParam(), 1);
+    parameters.food_count = parameters.poison_count = 0; // no item reappears
+    parameters.damping = 1;
+    World world{parameters, base::Seed{2}};
+    const auto organism = [&] {
+        const physics::Circles& bodies = world.islands()[0].bodies();
+        return std::pair{bodies.velocity_x[0], bodies.velocity_y[0]};
+    };
+    for (int tick = 0; tick < 20; ++tick) {
+        const auto before = organism();
+        const Intention intention = world.intentions(world.islands()[0], {0, 1})[0];
+        ASSERT_EQ(intention.choice, Choice::Steer);
+        const float mass = 1 / world.islands()[0].bodies().inverse_mass[0];
+        world.advance_tick(executor);
+        const auto after = organism();
+        const auto scale = static_cast<float>(parameters.tick_s) / mass;
+        EXPECT_NEAR(after.first, before.first + intention.force_x * scale, 1e-3f) << tick;
+        EXPECT_NEAR(after.second, before.second + intention.force_y * scale, 1e-3f) << tick;
+    }
+}
+
+TEST(NetworkWorld, HeadingsArePartOfTheHash) {
+    base::InlineExecutor executor;
+    parameters::Parameters parameters = network("newtonian", 50);
+    World still{parameters, base::Seed{2}};
+    parameters.turn_rate_max_deg_s = 0;
+    World straight{parameters, base::Seed{2}};
+    still.advance_tick(executor);
+    straight.advance_tick(executor);
+    EXPECT_NE(still.hash(), straight.hash());
+    const Living& living = straight.islands()[0].living();
+    EXPECT_EQ(living.heading.size(), living.health.size());
+    EXPECT_EQ(living.weight_count(), 8u * (7 + 1) + 2 * (8 + 1));
+}
+
+TEST(NetworkWorld, KinematicBodiesPassThroughEachOther) {
+    base::InlineExecutor executor;
+    World world{network("kinematic", 300), base::Seed{3}};
+    for (int tick = 0; tick < 55; ++tick) {
+        world.advance_tick(executor);
+    }
+    EXPECT_EQ(world.islands()[0].motion_report(world.parameters().active).touching_count, 0u);
+}
+
+} // namespace
+} // namespace evod::simulation
