@@ -1,6 +1,7 @@
 // evoctl breeding: prints how a generation was bred.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
+#include "proto/codec/descendant.h"
 #include "proto/command_line/command.h"
 
 #include <algorithm>
@@ -147,10 +148,7 @@ std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world
     for (int i = 0; i < shown; ++i) {
         const auto& d = bred.descendants(i);
         const bool child = d.kind() == v1::DESCENDANT_KIND_CHILD;
-        std::string genes_of;
-        for (int gene = 0; child && gene < d.genes_size(); ++gene) {
-            genes_of += (d.from_second() >> gene & 1) != 0 ? '2' : '1';
-        }
+        std::string genes_of = child ? codec::parents_of_genes(d) : "";
         if (d.second_share() > 0) {
             genes_of = fixed(1 - d.second_share(), 3) + " of 1 + " + fixed(d.second_share(), 3) + " of 2";
         }

@@ -53,10 +53,9 @@ Result<Population> read_population(std::istream& in) {
         begin = end + 1;
     }
     if (!good) {
-        return wrong_line(1,
-                          "the heading " + std::string{population_heading} +
-                              ", which the names of further genes may follow",
-                          line);
+        return wrong_line(
+            1, "the heading " + std::string{population_heading} + ", which the names of further genes may follow",
+            line);
     }
 
     std::vector<std::vector<float>>& islands = population.islands;

@@ -21,7 +21,7 @@ constexpr std::string_view population_heading =
 constexpr std::size_t genes_max = 10'000; // columns of genes in a file
 
 struct Population {
-    std::vector<std::string> gene_names; // the first six are those in population_heading
+    std::vector<std::string> gene_names;     // the first six are those in population_heading
     std::vector<std::vector<float>> islands; // shape (islands, organisms · gene_names.size()): organism by organism
 
     std::size_t organism_count(std::size_t island) const { return islands[island].size() / gene_names.size(); }

@@ -14,8 +14,7 @@ simulation::FirstPopulation first_population_of(const v1::CreateWorld& request, 
     bool whole = true;
     for (int island = 0; island < request.population_size(); ++island) {
         const auto& genes = request.population(island).genes();
-        evolution::GeneMatrix& matrix =
-            islands.emplace_back(gene_count, genes.size() / static_cast<int>(gene_count));
+        evolution::GeneMatrix& matrix = islands.emplace_back(gene_count, genes.size() / static_cast<int>(gene_count));
         if (matrix.size() == genes.size()) {
             std::copy(genes.begin(), genes.end(), matrix.data());
             continue;

@@ -218,8 +218,8 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
             answer.lives.push_back(island.life(static_cast<std::uint32_t>(id), tick));
         }
     }
-    answer.genes = born.genes.middleCols(static_cast<Eigen::Index>(ids.begin),
-                                         static_cast<Eigen::Index>(ids.end - ids.begin));
+    answer.genes =
+        born.genes.middleCols(static_cast<Eigen::Index>(ids.begin), static_cast<Eigen::Index>(ids.end - ids.begin));
     if (!born.parents.empty()) {
         answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
     }

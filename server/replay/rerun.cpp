@@ -210,10 +210,9 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
     }
     const std::size_t islands = (*begun)->born.size();
     auto history = file.generations().history(
-        generation,
-        std::min(history_count, simulation::World::history_generations_kept_of(
-                                    std::max<std::size_t>(islands, 1),
-                                    evolution::gene_count((*begun)->opening.parameters.active))));
+        generation, std::min(history_count, simulation::World::history_generations_kept_of(
+                                                std::max<std::size_t>(islands, 1),
+                                                evolution::gene_count((*begun)->opening.parameters.active))));
     if (!history) {
         return history.error();
     }

@@ -323,9 +323,8 @@ Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes
     for (const IslandShape& shape : with_placed(shapes, most_placed)) {
         most_given.push_back(shape.organisms);
     }
-    if (bytes < bytes_of(shapes, false) ||
-        bytes > bytes_of(with_placed(shapes, most_placed), true) + bytes_of(most_placed, shapes) +
-                    bytes_of(most_given)) {
+    if (bytes < bytes_of(shapes, false) || bytes > bytes_of(with_placed(shapes, most_placed), true) +
+                                                       bytes_of(most_placed, shapes) + bytes_of(most_given)) {
         return refusal("its size differs from that of a state of this world");
     }
     std::string columns(bytes, '\0');

@@ -70,7 +70,6 @@ struct Generations::Writers {
         }
     }
 
-
     TableWriter<GenerationTable> generation;
     TableWriter<PopulationTable> population;
     TableWriter<FoundersTable> founders;
@@ -130,7 +129,8 @@ Result<std::vector<evolution::NextGeneration>> Generations::read_populations(con
     const auto genes = static_cast<Eigen::Index>(evolution::gene_count(opening.parameters.active));
     while (rows.next(row)) {
         const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
-        if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count || row.born.genes.rows() != genes ||
+        if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
+            row.born.genes.rows() != genes ||
             // Organisms of the first generation have no parents.
             (!row.born.parents.empty() && row.born.parents.size() != organisms)) {
             return bad();

@@ -99,7 +99,7 @@ struct PlaceEntities {
         double x_px, y_px; // any numbers
     };
     struct Organism {
-        double x_px, y_px; // any numbers
+        double x_px, y_px;        // any numbers
         std::vector<float> genes; // in chromosome order
     };
     std::string world;

@@ -169,8 +169,8 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
                          .deviation = std::sqrt(variance.genes[gene]),
                          .min = static_cast<double>(extremes.gene_min[gene]),
                          .max = static_cast<double>(extremes.gene_max[gene])};
-        const auto width =
-            static_cast<double>(bounds.max(static_cast<Eigen::Index>(gene)) - bounds.min(static_cast<Eigen::Index>(gene)));
+        const auto width = static_cast<double>(bounds.max(static_cast<Eigen::Index>(gene)) -
+                                               bounds.min(static_cast<Eigen::Index>(gene)));
         s.diversity += width > 0 ? s.genes[gene].deviation / width / static_cast<double>(gene_count) : 0;
     }
 

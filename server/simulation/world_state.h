@@ -44,8 +44,8 @@ struct IslandCounts {
 struct IslandShape {
     std::uint32_t genes = evolution::body_gene_count; // number of genes of each organism
     std::uint32_t organisms = 0;                      // number of organisms that were born
-    bool has_bodies = true;      // if false, the other parts are empty
-    bool has_headings = false;   // whether the controller is network
+    bool has_bodies = true;                           // if false, the other parts are empty
+    bool has_headings = false;                        // whether the controller is network
     std::uint32_t crates = 0, food = 0, poison = 0;
 
     friend bool operator==(const IslandShape&, const IslandShape&) = default;

@@ -51,6 +51,7 @@ from evod.results import (
     Detail,
     EntityIds,
     GeneAccount,
+    GeneGroup,
     GenerationStatistics,
     GeneStatistics,
     LiveStatistics,
@@ -78,8 +79,8 @@ PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunSta
 __all__ = [
     "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
-    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneStatistics", "Generation", "GenerationStatistics",
-    "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
+    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation",
+    "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
     "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
     "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",

@@ -88,6 +88,14 @@ class Detail(_State):
     DENSITY = stream_pb2.DETAIL_DENSITY  #: numbers of entities per cell
 
 
+class GeneGroup(_State):
+    """What a gene is for."""
+
+    BODY = world_pb2.GENE_GROUP_BODY  #: the six genes that every chromosome begins with
+    BRAIN = world_pb2.GENE_GROUP_BRAIN  #: a weight of the neural network that steers the organism
+    FREE = world_pb2.GENE_GROUP_FREE  #: the simulation does not read it (parameter free_genes)
+
+
 class DescendantKind(_State):
     """How an organism came into the next generation."""
 
@@ -165,6 +173,7 @@ class WorldInfo(_Result):
     run_until_tick: int | None  #: the world runs until this tick
     ticks_per_s: float  #: measured over about the last second; 0 while the world does not run
     gene_names: tuple[str, ...]  #: the names of the genes, in the order of all arrays
+    gene_groups: tuple[GeneGroup, ...]  #: the group of each gene
     replay: ReplayRange | None  #: None: this is not a replay
     storage: Storage | None  #: None: the server does not store the run
     leased: bool  #: a client has a lease from `World.run_until_tick`
@@ -357,7 +366,7 @@ class OrderMutation(_Result):
 class Mutation(_Result):
     """A mutation of one gene."""
 
-    gene: int  #: index in `evod.GENE_NAMES`
+    gene: int  #: index in `gene_names` of the world
     kind: MutationKind
     before: float
     after: float
@@ -373,7 +382,8 @@ class Descendant(_Result):
     second_parent: int
     first_genes: Genes  #: genes of the first parent
     second_genes: Genes
-    from_second: int  #: bit g is set if gene g comes from the second parent
+    from_second: int  #: bit g is set if gene g comes from the second parent, for the first 32 genes
+    more_from_second: tuple[int, ...]  #: like from_second, for the genes 32 to 63, 64 to 95, …
     second_share: float  #: blend crossover: the weight of the second parent in every gene; otherwise 0
     crossed: bool  #: crossover took place
     order_mutation: OrderMutation | None
@@ -411,7 +421,7 @@ _CLASSES: Mapping[str, type[Any]] = {
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
 } | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {
-    kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, MutationKind, Outcome, RunState, StorageState)
+    kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, GeneGroup, MutationKind, Outcome, RunState, StorageState)
 }
 _SPECIAL: Mapping[str, Callable[[Any], Any]] = {
     "Speed": lambda speed: "max" if speed.max else speed.real_time_factor,
@@ -451,7 +461,10 @@ def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> Callable[[g
             convert = lambda items: tuple(of_item(item) for item in items)
     elif convert is None and field.enum_type is not None:
         state = _STATES[field.enum_type.name]
-        convert = lambda number: state(number) if number else None
+        if is_repeated:
+            convert = lambda numbers: tuple(state(number) for number in numbers)
+        else:
+            convert = lambda number: state(number) if number else None
     elif convert is None and is_repeated:
         convert = tuple
     if is_optional:

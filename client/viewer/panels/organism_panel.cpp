@@ -149,7 +149,8 @@ void OrganismPanel::build_freeze(Context& context, const OrganismHistory& histor
         const std::string name = context.world.feed.name() + "-g" + std::to_string(history.generation()) + "-o" +
                                  std::to_string(history.id());
         const auto& genes = history.info()->genes();
-        const auto saved = context.freezer->save(name, {context.world.feed.gene_names(), {{genes.begin(), genes.end()}}});
+        const auto saved =
+            context.freezer->save(name, {context.world.feed.gene_names(), {{genes.begin(), genes.end()}}});
         context.world.server.notice(saved ? "Stored the organism in the freezer as " + *saved : saved.error().what);
     }
     widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");

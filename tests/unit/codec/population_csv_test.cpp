@@ -45,7 +45,8 @@ TEST(PopulationCsv, FurtherGenesHaveTheirNames) {
     Population population{body_genes, {{1, 2, 3, 4, 5, 6, 0.5f, -1, 7, 8, 9, 10, 11, 12, 0.25f, 3}}};
     population.gene_names.insert(population.gene_names.end(), {"hidden1<food_bearing", "free0"});
     const std::string text = population_text(population);
-    EXPECT_THAT(text, StartsWith(std::string{population_heading} + ",hidden1<food_bearing,free0\n0,0,1,2,3,4,5,6,0.5,-1\n"));
+    EXPECT_THAT(text,
+                StartsWith(std::string{population_heading} + ",hidden1<food_bearing,free0\n0,0,1,2,3,4,5,6,0.5,-1\n"));
     const auto back = read(text);
     ASSERT_TRUE(back) << back.error().what;
     EXPECT_EQ(back->gene_names, population.gene_names);

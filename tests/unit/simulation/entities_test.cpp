@@ -118,7 +118,8 @@ TEST_F(EntitiesTest, AnOrganismLivesFromThePlacingOn) {
     parameters.health_loss_per_s = 60; // 1 per tick
     create();
     advance(10);
-    const auto placed = place({}, {organism_at(clear_place(), genes_of(5)), organism_at_px(10, 590, genes_of(300, 90))});
+    const auto placed =
+        place({}, {organism_at(clear_place(), genes_of(5)), organism_at_px(10, 590, genes_of(300, 90))});
     ASSERT_FALSE(placed); // base_health_max is 200
     EXPECT_THAT(fields_of(placed.error()),
                 ElementsAre("place.organisms[0].base_health", "place.organisms[1].base_health"));
@@ -214,13 +215,13 @@ TEST_F(EntitiesTest, EveryWrongFieldIsNamedAndNothingPlaced) {
     wild(evolution::Impulse) = std::nanf("");
     wild(evolution::FoodRadius) = 1e9f;
     const base::StateHash before = world().hash();
-    const auto refused = place(
-        {{ItemKind::Food, 400, 3.9},
-         {ItemKind::Food, nan, 1e300},
-         {ItemKind::Poison, physics::to_px(crate.x), physics::to_px(crate.y)},
-         {ItemKind::Poison, physics::to_px(obstacle.x), physics::to_px(obstacle.y)},
-         {ItemKind::Food, 4, 596}},
-        {organism_at(first, genes_of()), organism_at_px(300, 9.9, genes_of()), organism_at_px(300, 300, wild), organism_at(crate, genes_of())});
+    const auto refused = place({{ItemKind::Food, 400, 3.9},
+                                {ItemKind::Food, nan, 1e300},
+                                {ItemKind::Poison, physics::to_px(crate.x), physics::to_px(crate.y)},
+                                {ItemKind::Poison, physics::to_px(obstacle.x), physics::to_px(obstacle.y)},
+                                {ItemKind::Food, 4, 596}},
+                               {organism_at(first, genes_of()), organism_at_px(300, 9.9, genes_of()),
+                                organism_at_px(300, 300, wild), organism_at(crate, genes_of())});
     ASSERT_FALSE(refused);
     EXPECT_THAT(fields_of(refused.error()),
                 ElementsAre("place.items[0].y_px", "place.items[1].x_px", "place.items[1].y_px", "place.items[2]",

@@ -14,7 +14,7 @@ namespace evod::simulation {
 namespace {
 
 evolution::BodyGenes genes_of(float normal_speed, float impulse, float body_size, float base_health, float food_radius,
-                               float poison_radius) {
+                              float poison_radius) {
     evolution::BodyGenes genes;
     genes << normal_speed, impulse, body_size, base_health, food_radius, poison_radius;
     return genes;

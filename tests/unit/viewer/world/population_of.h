@@ -9,7 +9,8 @@
 namespace evod::viewer {
 
 inline codec::Population population_of(std::vector<std::vector<float>> islands) {
-    return {{"normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"}, std::move(islands)};
+    return {{"normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"},
+            std::move(islands)};
 }
 
 } // namespace evod::viewer

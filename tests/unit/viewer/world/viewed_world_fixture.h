@@ -63,7 +63,8 @@ struct ViewedWorldTest : testing::Test {
         world.set_name(name);
         world.set_run_id("aa");
         world.set_state(state);
-        for (const char* gene : {"normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"}) {
+        for (const char* gene :
+             {"normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"}) {
             world.add_gene_names(gene);
         }
         return world;
