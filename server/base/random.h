@@ -100,7 +100,7 @@ class RandomStream {
     std::uint32_t below(std::uint32_t bound) {
         EVOD_ASSERT(bound >= 1);
         std::uint64_t product = std::uint64_t{word()} * bound;
-        if (static_cast<std::uint32_t>(product) < bound) {
+        if (static_cast<std::uint32_t>(product) < bound) [[unlikely]] {
             const std::uint32_t threshold = (0u - bound) % bound;
             while (static_cast<std::uint32_t>(product) < threshold) {
                 product = std::uint64_t{word()} * bound;

@@ -3,6 +3,8 @@
 #include "server/base/assert.h"
 #include "server/evolution/brain_layout.h"
 
+#include <algorithm>
+
 namespace evod::evolution {
 
 template <std::size_t extent>
@@ -11,10 +13,8 @@ unsigned clamp(std::span<float, extent> genes, const GeneBounds& bounds) {
     unsigned clamped = 0;
     for (unsigned gene = 0; gene < genes.size(); ++gene) {
         const float value = genes[gene];
-        const bool below = value < min[gene];
-        const bool above = value > max[gene];
-        genes[gene] = below ? min[gene] : above ? max[gene] : value;
-        clamped += below || above;
+        genes[gene] = std::min(std::max(value, min[gene]), max[gene]);
+        clamped += genes[gene] != value;
     }
     return clamped;
 }
