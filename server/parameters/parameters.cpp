@@ -294,6 +294,22 @@ namespace {
 /// The genes of all organisms together: 4 million organisms with a network of 25 weights, or 1.9 million with 58.
 constexpr std::uint64_t genes_max = 124'000'000;
 
+std::string_view group_name(evolution::GeneGroup group) {
+    return base::ChoiceNames<evolution::GeneGroup>::names[static_cast<std::size_t>(group)];
+}
+
+/// "all, body, free"
+std::string groups_with_genes(const Parameters& parameters) {
+    using enum evolution::GeneGroup;
+    std::string names{group_name(All)};
+    for (const evolution::GeneGroup group : {Body, Brain, Free}) {
+        if (evolution::genes_of(group, parameters).count > 0) {
+            names += ", " + std::string{group_name(group)};
+        }
+    }
+    return names;
+}
+
 } // namespace
 
 std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
@@ -346,13 +362,14 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         }
     }
     if (const auto genes = static_cast<std::uint64_t>(organisms) * evolution::gene_count(p); genes > genes_max) {
-        refuse(has_brains ? "brain_hidden" : "free_genes",
+        const unsigned weights = evolution::brain_genes(p).count;
+        refuse(weights > p.free_genes ? "brain_hidden" : "free_genes",
                "at most " + std::to_string(genes_max) + " genes in all organisms together",
                number_text(organisms) + " organisms with a total of " + std::to_string(genes) + " genes");
     }
     if (evolution::genes_of(p.mutate_group, p).count == 0) {
-        refuse("mutate_group", has_brains ? "all, body or brain: free_genes is 0" : "a group that has genes",
-               std::string{base::ChoiceNames<evolution::GeneGroup>::names[static_cast<std::size_t>(p.mutate_group)]});
+        refuse("mutate_group", "a group with genes: " + groups_with_genes(p) + "; their number changes at a reset",
+               std::string{group_name(p.mutate_group)});
     }
 
     if (!has_bodies(p)) {

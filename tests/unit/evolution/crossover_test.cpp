@@ -99,7 +99,7 @@ TEST(Crossover, TheParentChangesAtEveryCut) {
 }
 
 TEST(Crossover, EverySetOfCutsHasOneIndex) {
-    for (const unsigned genes : {6u, 7u, 64u}) {
+    for (const unsigned genes : {6u, 10u, 64u, 65u}) {
         for (std::uint32_t cuts = 1; cuts <= 2; ++cuts) {
             const Crossover<> crossover{with(CrossoverMethod::MultiPoint, cuts), genes};
             const std::uint64_t sets = cuts == 1 ? genes - 1 : std::uint64_t{genes - 1} * (genes - 2) / 2;
@@ -121,7 +121,7 @@ TEST(Crossover, EverySetOfCutsHasOneIndex) {
 
 TEST(Crossover, AnyNumberOfGenesIsCutEquallyOften) {
     // Law: each of the genes − 1 cuts equally likely. Chi-square.
-    for (const unsigned genes : {7u, 64u, 328u}) {
+    for (const unsigned genes : wide_gene_counts) {
         const Crossover<> crossover{with(CrossoverMethod::SinglePoint), genes};
         std::vector<std::uint64_t> counts(genes - 1);
         for (std::uint32_t i = 0; i < 100'000; ++i) {
@@ -135,28 +135,70 @@ TEST(Crossover, AnyNumberOfGenesIsCutEquallyOften) {
 }
 
 TEST(Crossover, UniformGivesEachOfAnyNumberOfGenesEquallyOften) {
-    // Law: each gene from the second parent with probability 1/2, so the number of genes has the mean n/2 and the
-    // variance n/4. The mean of 20,000 draws within 5 standard errors; two-sided 6e-7.
-    for (const unsigned genes : {7u, 64u, 328u}) {
+    // Law: each gene from the second parent with probability 1/2: chi-square, one degree of freedom per gene. Genes are
+    // independent, so the number from the second parent is binomial: chi-square over its values.
+    for (const unsigned genes : wide_gene_counts) {
         const Crossover<> crossover{with(CrossoverMethod::Uniform), genes};
-        std::vector<std::uint64_t> of_gene(genes);
-        double sum = 0;
-        for (std::uint32_t i = 0; i < 20'000; ++i) {
+        std::vector<std::vector<std::uint64_t>> of_gene(genes, std::vector<std::uint64_t>(2));
+        std::vector<std::uint64_t> counts(genes + 1);
+        for (std::uint32_t i = 0; i < 50'000; ++i) {
             base::RandomStream random = stream_of(190, i);
             Mixture<> mixture{genes};
             crossover.draw(mixture, random);
-            sum += mixture.from_second.count();
+            ++counts[mixture.from_second.count()];
             for (unsigned gene = 0; gene < genes; ++gene) {
-                of_gene[gene] += mixture.from_second.contains(gene);
+                ++of_gene[gene][mixture.from_second.contains(gene)];
             }
         }
-        EXPECT_NEAR(sum / 20'000, genes / 2.0, 5 * std::sqrt(genes / 4.0 / 20'000)) << genes;
-        EXPECT_GT(support::p_value_of_equal_cells(of_gene), alpha) << genes;
+        EXPECT_GT(p_value_of_rows(of_gene, std::vector{0.5, 0.5}), alpha) << genes;
+        EXPECT_GT(p_value_of_joined_cells(counts, binomial_law(genes, 0.5)), alpha) << genes;
+    }
+}
+
+/// The number of subsets of `chosen` out of `count` elements.
+double subsets(unsigned count, unsigned chosen) {
+    double number = 1;
+    for (unsigned i = 0; i < chosen; ++i) {
+        number *= count > i ? static_cast<double>(count - i) / (i + 1) : 0;
+    }
+    return number;
+}
+
+TEST(Crossover, MultiPointCutsAnyNumberOfGenesEquallyOften) {
+    // Law: each set of k of the genes − 1 cuts equally likely, so the r-th cut is before gene m with probability
+    // C(m − 1, r − 1) C(genes − 1 − m, k − r) / C(genes − 1, k). Chi-square over m, for each r. 1,328 genes are the most
+    // that a chromosome can have.
+    for (const unsigned genes : {10u, 64u, 65u, 328u, 1328u}) {
+        for (unsigned cuts = 2; cuts <= 5; ++cuts) {
+            const Crossover<> crossover{with(CrossoverMethod::MultiPoint, cuts), genes};
+            std::vector<std::vector<std::uint64_t>> counts(cuts, std::vector<std::uint64_t>(genes));
+            for (std::uint32_t i = 0; i < 10'000; ++i) {
+                base::RandomStream random = stream_of(180, i);
+                Mixture<> mixture{genes};
+                ASSERT_TRUE(crossover.draw(mixture, random));
+                ASSERT_FALSE(mixture.from_second.contains(0));
+                unsigned cut = 0;
+                for (unsigned gene = 1; gene < genes; ++gene) {
+                    if (mixture.from_second.contains(gene) != mixture.from_second.contains(gene - 1)) {
+                        ++counts.at(cut++)[gene];
+                    }
+                }
+                ASSERT_EQ(cut, cuts);
+            }
+            for (unsigned r = 1; r <= cuts; ++r) {
+                std::vector<double> law(genes);
+                for (unsigned m = 1; m < genes; ++m) {
+                    law[m] = subsets(m - 1, r - 1) * subsets(genes - 1 - m, cuts - r) / subsets(genes - 1, cuts);
+                }
+                EXPECT_GT(p_value_of_joined_cells(counts[r - 1], law), alpha)
+                    << genes << " genes, cut " << r << " of " << cuts;
+            }
+        }
     }
 }
 
 RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
-    const unsigned genes = *rc::gen::element(6u, 7u, 64u, 328u);
+    const unsigned genes = *rc::gen::element(6u, 10u, 64u, 65u, 328u);
     std::vector<float> first(genes), second(genes), child(genes), sibling(genes);
     for (unsigned gene = 0; gene < genes; ++gene) {
         first[gene] = static_cast<float>(gene);
@@ -181,40 +223,43 @@ RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
 TEST(Crossover, BlendDrawsAUniformWeight) {
     // Law: with probability 0.8 uniform in (0, 1), otherwise no crossover. Chi-square over 100 cells and the pairs without
     // crossover, 100 degrees of freedom.
-    const Crossover<> crossover{with(CrossoverMethod::Blend, 2, 0.8), body_gene_count};
-    std::vector<std::uint64_t> counts(101);
-    for (std::uint32_t i = 0; i < 500'000; ++i) {
-        base::RandomStream random = stream_of(188, i);
-        Mixture<> mixture{body_gene_count};
-        if (!crossover.draw(mixture, random)) {
-            ++counts[100];
-            continue;
+    for (const unsigned genes : {6u, 10u, 64u, 65u, 328u}) {
+        const Crossover<> crossover{with(CrossoverMethod::Blend, 2, 0.8), genes};
+        std::vector<std::uint64_t> counts(101);
+        for (std::uint32_t i = 0; i < 100'000; ++i) {
+            base::RandomStream random = stream_of(188, i);
+            Mixture<> mixture{genes};
+            if (!crossover.draw(mixture, random)) {
+                ++counts[100];
+                continue;
+            }
+            const double share = mixture.second_share;
+            ASSERT_GT(share, 0);
+            ASSERT_LT(share, 0.5);
+            ASSERT_TRUE(mixture.from_second.count() == 0 || mixture.from_second.count() == genes);
+            ++counts[static_cast<std::size_t>((mixture.from_second.count() == 0 ? share : 1 - share) * 100)];
         }
-        const double share = mixture.second_share;
-        ASSERT_GT(share, 0);
-        ASSERT_LT(share, 0.5);
-        ASSERT_TRUE(mixture.from_second.count() == 0 || mixture.from_second.count() == body_gene_count);
-        ++counts[static_cast<std::size_t>((mixture.from_second.count() == 0 ? share : 1 - share) * 100)];
+        std::vector<double> law(101, 0.008);
+        law[100] = 0.2;
+        EXPECT_GT(p_value_of_law(counts, law), alpha) << genes;
     }
-    std::vector<double> law(101, 0.008);
-    law[100] = 0.2;
-    EXPECT_GT(p_value_of_law(counts, law), alpha);
 }
 
 RC_GTEST_PROP(Crossover, BlendedSiblingsHaveTheMeanOfTheirParents, ()) {
-    std::array<float, body_gene_count> first, second, child, sibling;
+    const unsigned genes = *rc::gen::element(6u, 10u, 64u, 65u, 328u);
+    std::vector<float> first(genes), second(genes), child(genes), sibling(genes);
     const auto draw = [] {
         const auto size = static_cast<float>(*rc::gen::inRange(0, 1 << 24));
         return std::ldexp(*rc::gen::arbitrary<bool>() ? size : -size, *rc::gen::inRange(-30, -8));
     };
-    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+    for (unsigned gene = 0; gene < genes; ++gene) {
         first[gene] = draw();
         second[gene] = draw();
     }
     const double share = (*rc::gen::inRange(0u, 0x7fff'ffffu) + 0.5) * 0x1p-32;
     blend(ConstGenes{first}, ConstGenes{second}, share, Genes{child});
     blend(ConstGenes{second}, ConstGenes{first}, share, Genes{sibling});
-    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+    for (unsigned gene = 0; gene < genes; ++gene) {
         const double a = double{first[gene]}, b = double{second[gene]};
         const double one = double{child[gene]}, other = double{sibling[gene]};
         const double largest = std::max(std::abs(a), std::abs(b));

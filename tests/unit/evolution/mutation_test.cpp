@@ -333,5 +333,249 @@ TEST(Bounds, NothingIsCountedIfNoGeneIsOutside) {
             [](const Values&, unsigned clamped) { ASSERT_EQ(clamped, 0u); });
 }
 
+// Chromosomes of more than six genes: the same laws hold for each gene, with the bounds and the step of its group.
+
+/// A chromosome with every gene in the middle of its bounds.
+std::vector<float> middle_of_bounds(const Parameters& parameters) {
+    const GeneBounds bounds = gene_bounds(parameters);
+    const Eigen::ArrayXf genes = (bounds.min + bounds.max) / 2;
+    return {genes.begin(), genes.end()};
+}
+
+template <class Visit>
+void wide_mutants(const Parameters& parameters, std::uint32_t count, std::uint64_t seed, const Visit& visit) {
+    const std::vector<float> start = middle_of_bounds(parameters);
+    const ValueMutation<> mutation{parameters};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::vector<float> genes = start;
+        base::RandomStream random = stream_of(seed, i);
+        ASSERT_EQ(mutation.apply(genes, random), 0u);
+        visit(genes);
+    }
+}
+
+using Rows = std::vector<std::vector<std::uint64_t>>;
+Rows rows_of(std::size_t genes, std::size_t cells) {
+    return Rows(genes, std::vector<std::uint64_t>(cells));
+}
+
+TEST(WideCreep, StepsAreUniformWithinTheStepOfTheGroup) {
+    // Law: uniform in ± the step. Chi-square over 20 cells for each gene, 19 degrees of freedom per gene.
+    for (const unsigned genes : wide_gene_counts) {
+        Parameters parameters = wide_parameters(genes);
+        parameters.mutation_chance = 1;
+        const std::vector<float> start = middle_of_bounds(parameters);
+        const double beyond_body = genes == 328 ? parameters.brain_mutation_step : parameters.free_mutation_step;
+        Rows cells = rows_of(genes, 20);
+        wide_mutants(parameters, 20'000, 221, [&](const std::vector<float>& mutant) {
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                const double step = gene < body_gene_count ? parameters.mutation_step : beyond_body;
+                const double share = (double{mutant[gene]} - double{start[gene]}) / step;
+                ASSERT_LE(std::abs(share), 1.00001);
+                ++cells[gene][std::min<std::size_t>(19, static_cast<std::size_t>(std::max(0.0, (share + 1) * 10)))];
+            }
+        });
+        EXPECT_GT(p_value_of_rows(cells, std::vector<double>(20, 0.05)), alpha) << genes;
+    }
+}
+
+TEST(WideCreep, EachGeneMutatesWithItsChanceIndependently) {
+    // Law: each gene with probability 0.15: chi-square with one degree of freedom per gene. The number of mutated genes is
+    // binomial: chi-square over its values.
+    for (const unsigned genes : wide_gene_counts) {
+        Parameters parameters = wide_parameters(genes);
+        parameters.mutation_chance = 0.15;
+        const std::vector<float> start = middle_of_bounds(parameters);
+        Rows of_gene = rows_of(genes, 2);
+        std::vector<std::uint64_t> counts(genes + 1);
+        wide_mutants(parameters, 20'000, 222, [&](const std::vector<float>& mutant) {
+            unsigned mutated = 0;
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                const bool changed = mutant[gene] != start[gene];
+                ++of_gene[gene][changed];
+                mutated += changed;
+            }
+            ++counts[mutated];
+        });
+        EXPECT_GT(p_value_of_rows(of_gene, std::vector{0.85, 0.15}), alpha) << genes;
+        EXPECT_GT(p_value_of_joined_cells(counts, binomial_law(genes, 0.15)), alpha) << genes;
+    }
+}
+
+TEST(WideReset, IsUniformWithinTheBoundsOfEachGene) {
+    // Law: with probability 0.5 uniform in the gene's bounds. Chi-square over 1 + 20 cells, 20 degrees of freedom per gene.
+    std::vector<double> law(21, 0.5 / 20);
+    law[20] = 0.5;
+    for (const unsigned genes : wide_gene_counts) {
+        Parameters parameters = wide_parameters(genes);
+        parameters.reset_chance = 0.5;
+        parameters.free_gene_min = -3;
+        parameters.free_gene_max = 11;
+        const GeneBounds bounds = gene_bounds(parameters);
+        const std::vector<float> start = middle_of_bounds(parameters);
+        Rows cells = rows_of(genes, 21);
+        wide_mutants(parameters, 5'000, 223, [&](const std::vector<float>& mutant) {
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                ASSERT_GE(mutant[gene], bounds.min[gene]);
+                ASSERT_LE(mutant[gene], bounds.max[gene]);
+                const float share = (mutant[gene] - bounds.min[gene]) / (bounds.max[gene] - bounds.min[gene]);
+                ++cells[gene][mutant[gene] == start[gene]
+                                  ? 20
+                                  : std::min<std::size_t>(19, static_cast<std::size_t>(share * 20))];
+            }
+        });
+        EXPECT_GT(p_value_of_rows(cells, law), alpha) << genes;
+    }
+}
+
+TEST(WideScale, MultipliesEachGeneEquallyOften) {
+    // Law: with probability 0.6 one gene, each equally likely, is multiplied by a factor uniform in (0.75, 1.25).
+    // Chi-square over 10 cells per gene and the chromosomes without a change.
+    for (const unsigned genes : wide_gene_counts) {
+        Parameters parameters = wide_parameters(genes);
+        parameters.scale_chance = 0.6;
+        parameters.scale_range = 0.25;
+        parameters.free_gene_max = 4;
+        const ValueMutation<> mutation{parameters};
+        std::vector<float> start(genes, 2.0f);
+        std::fill(start.begin(), start.begin() + body_gene_count, 100.0f);
+        std::vector<std::uint64_t> counts(10 * genes + 1);
+        for (std::uint32_t i = 0; i < 100'000; ++i) {
+            std::vector<float> mutant = start;
+            base::RandomStream random = stream_of(224, i);
+            ASSERT_EQ(mutation.apply(mutant, random), 0u);
+            std::size_t cell = 10 * genes;
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                if (mutant[gene] != start[gene]) {
+                    ASSERT_EQ(cell, 10 * genes) << "one gene at most";
+                    const double factor = double{mutant[gene]} / double{start[gene]};
+                    ASSERT_LE(std::abs(factor - 1), 0.25001);
+                    cell = gene * 10 +
+                           std::min<std::size_t>(9, static_cast<std::size_t>(std::max(factor - 0.75, 0.0) * 20));
+                }
+            }
+            ++counts[cell];
+        }
+        std::vector<double> law(10 * genes + 1, 0.06 / genes);
+        law.back() = 0.4;
+        EXPECT_GT(p_value_of_law(counts, law), alpha) << genes;
+    }
+}
+
+TEST(WideBitFlip, EveryBitFlipsWithItsChanceIndependently) {
+    // Law: p^k (1−p)^(3−k) for each of the 8 sets of flipped bits of a 3-bit gene. Chi-square, 7 degrees of freedom per
+    // gene. Flips with the chance 0.1 are drawn by their distances, six genes at a time.
+    for (const double chance : {0.2, 0.1}) {
+        std::vector<double> law(8);
+        for (unsigned set = 0; set < 8; ++set) {
+            law[set] = std::pow(chance, std::popcount(set)) * std::pow(1 - chance, 3 - std::popcount(set));
+        }
+        for (const unsigned genes : wide_gene_counts) {
+            Parameters parameters = wide_parameters(genes);
+            parameters.bit_flip_chance = chance;
+            parameters.bit_flip_bits = 3;
+            const GeneBounds bounds = gene_bounds(parameters);
+            const auto view_of = [&](unsigned gene) { return BinaryView{bounds.min[gene], bounds.max[gene], 3}; };
+            const std::vector<float> start = middle_of_bounds(parameters);
+            std::vector<std::uint32_t> start_codes;
+            for (unsigned gene = 0; gene < genes; ++gene) {
+                start_codes.push_back(view_of(gene).to_code(start[gene]));
+            }
+            Rows flips = rows_of(genes, 8);
+            wide_mutants(parameters, 5'000, 225, [&](const std::vector<float>& mutant) {
+                for (unsigned gene = 0; gene < genes; ++gene) {
+                    ++flips[gene].at(view_of(gene).to_code(mutant[gene]) ^ start_codes[gene]);
+                }
+            });
+            EXPECT_GT(p_value_of_rows(flips, law), alpha) << genes << " genes, chance " << chance;
+        }
+    }
+}
+
+/// A world with 6 genes of the body, a brain of 37 weights and 20 free genes.
+Parameters three_groups() {
+    Parameters parameters = still();
+    parameters.controller = Controller::Network;
+    parameters.free_genes = 20;
+    return parameters;
+}
+
+TEST(MutateGroup, LimitsEachOperatorToItsGenes) {
+    // Law: the stated chance that a gene of the group changes. Chi-square, one degree of freedom per gene.
+    struct Operator {
+        const char* name;
+        void (*enable)(Parameters&);
+        double chance_per_gene;
+    };
+    const Operator operators[] = {
+        {"creep", [](Parameters& p) { p.mutation_chance = 0.3; }, 0.3},
+        {"reset", [](Parameters& p) { p.reset_chance = 0.2; }, 0.2},
+        {"rare flips", [](Parameters& p) { p.bit_flip_chance = 0.02; }, 1 - std::pow(0.98, 16)},
+        {"flips", [](Parameters& p) { p.bit_flip_chance = 0.2; }, 1 - std::pow(0.8, 16)},
+    };
+    for (const GeneGroup group : {GeneGroup::All, GeneGroup::Body, GeneGroup::Brain, GeneGroup::Free}) {
+        for (const Operator& by : operators) {
+            Parameters parameters = three_groups();
+            parameters.mutate_group = group;
+            by.enable(parameters);
+            const GeneRange range = genes_of(group, parameters);
+            const std::vector<float> start = middle_of_bounds(parameters);
+            Rows changes = rows_of(start.size(), 2);
+            wide_mutants(parameters, 20'000, 226, [&](const std::vector<float>& mutant) {
+                for (unsigned gene = 0; gene < start.size(); ++gene) {
+                    ++changes[gene][mutant[gene] != start[gene]];
+                }
+            });
+            for (unsigned gene = 0; gene < start.size(); ++gene) {
+                if (gene - range.first >= range.count) {
+                    EXPECT_EQ(changes[gene][1], 0u) << by.name << " of gene " << gene;
+                }
+            }
+            const double chance = by.chance_per_gene;
+            EXPECT_GT(
+                p_value_of_rows(std::span{changes}.subspan(range.first, range.count), std::vector{1 - chance, chance}),
+                alpha)
+                << by.name << " of group " << static_cast<int>(group);
+        }
+    }
+}
+
+TEST(MutateGroup, LimitsScalingToItsGenes) {
+    // Law: each gene of the group equally often. Chi-square over the genes of the group.
+    for (const GeneGroup group : {GeneGroup::All, GeneGroup::Body, GeneGroup::Brain, GeneGroup::Free}) {
+        Parameters parameters = three_groups();
+        parameters.mutate_group = group;
+        parameters.scale_chance = 1;
+        parameters.free_gene_max = 4;
+        const GeneRange range = genes_of(group, parameters);
+        const ValueMutation<> mutation{parameters};
+        const std::vector<float> start(gene_count(parameters), 2.0f); // body_size, from 1
+        std::vector<std::uint64_t> scaled(start.size());
+        for (std::uint32_t i = 0; i < 50'000; ++i) {
+            std::vector<float> mutant = start;
+            base::RandomStream random = stream_of(227, i);
+            ASSERT_EQ(mutation.apply(mutant, random), 0u);
+            for (unsigned gene = 0; gene < start.size(); ++gene) {
+                scaled[gene] += mutant[gene] != start[gene];
+            }
+        }
+        std::vector<double> law(start.size());
+        std::fill_n(law.begin() + range.first, range.count, 1.0 / range.count);
+        EXPECT_GT(p_value_of_law(scaled, law), alpha) << static_cast<int>(group);
+    }
+}
+
+TEST(MutateGroup, GenesOfOtherGroupsStayWithinBounds) {
+    Parameters parameters = three_groups();
+    parameters.mutate_group = GeneGroup::Free;
+    std::vector<float> genes = middle_of_bounds(parameters);
+    genes[BodySize] = 5000;
+    genes[body_gene_count] = -100; // a weight of the brain
+    base::RandomStream random = stream_of(228);
+    EXPECT_EQ(ValueMutation<>{parameters}.apply(genes, random), 2u);
+    EXPECT_EQ(genes[BodySize], 1000);
+    EXPECT_EQ(genes[body_gene_count], -4);
+}
+
 } // namespace
 } // namespace evod::evolution

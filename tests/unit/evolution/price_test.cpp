@@ -79,8 +79,9 @@ double mean(const GeneMatrix& genes, unsigned gene) {
 SelectionAccount by_definition(const Bred& bred) {
     using Real = long double;
     const auto n = static_cast<std::size_t>(bred.before.cols());
-    SelectionAccount account(body_gene_count);
-    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+    const auto genes = static_cast<unsigned>(bred.before.rows());
+    SelectionAccount account(genes);
+    for (unsigned gene = 0; gene < genes; ++gene) {
         const auto z = [&](std::uint32_t i) { return static_cast<Real>(bred.bred_from(gene, i)); };
         std::vector<Real> shares(n), moved(n); // of each organism; moved: Σ share · (descendant − organism)
         for (std::size_t child = 0; child < bred.next.parents.size(); ++child) {
@@ -114,10 +115,25 @@ SelectionAccount by_definition(const Bred& bred) {
 }
 
 void expect_closed(const SelectionAccount& account) {
-    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+    for (std::size_t gene = 0; gene < account.size(); ++gene) {
         const GeneAccount& of = account[gene];
-        EXPECT_NEAR(of.selection + of.transmission + of.migration, of.change, 1e-9 * largest(of))
-            << body_gene_names[gene];
+        EXPECT_NEAR(of.selection + of.transmission + of.migration, of.change, 1e-9 * largest(of)) << gene;
+    }
+}
+
+/// The account closes, and equals the Price equation as written.
+void expect_as_defined(const Bred& bred) {
+    expect_closed(bred.account);
+    const SelectionAccount defined = by_definition(bred);
+    ASSERT_EQ(bred.account.size(), defined.size());
+    for (unsigned gene = 0; gene < defined.size(); ++gene) {
+        const GeneAccount &one = bred.account[gene], &other = defined[gene];
+        const double allowed = 1e-9 * std::max(largest(other), 1e-3);
+        EXPECT_NEAR(one.selection, other.selection, allowed);
+        EXPECT_NEAR(one.transmission, other.transmission, allowed);
+        EXPECT_NEAR(one.migration, other.migration, allowed);
+        EXPECT_NEAR(one.change, other.change, allowed);
+        EXPECT_NEAR(one.change, mean(bred.next.genes, gene) - mean(bred.before, gene), 1e-10);
     }
 }
 
@@ -173,24 +189,41 @@ TEST(Price, EqualsTheWrittenEquationForEveryChoice) {
                                 }
                                 const Bred bred = breed(of);
                                 SCOPED_TRACE(seed);
-                                expect_closed(bred.account);
-                                const SelectionAccount defined = by_definition(bred);
-                                for (unsigned gene = 0; gene < body_gene_count; ++gene) {
-                                    const GeneAccount &one = bred.account[gene], &other = defined[gene];
-                                    const double allowed = 1e-9 * std::max(largest(other), 1e-3);
-                                    EXPECT_NEAR(one.selection, other.selection, allowed);
-                                    EXPECT_NEAR(one.transmission, other.transmission, allowed);
-                                    EXPECT_NEAR(one.migration, other.migration, allowed);
-                                    EXPECT_NEAR(one.change, other.change, allowed);
-                                    EXPECT_NEAR(one.change, mean(bred.next.genes, gene) - mean(bred.before, gene),
-                                                1e-10);
-                                }
+                                expect_as_defined(bred);
                                 if (testing::Test::HasFailure()) {
                                     return;
                                 }
                             }
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+TEST(Price, EqualsTheWrittenEquationBeyondSixGenes) {
+    std::uint64_t seed = 5000;
+    for (const unsigned genes : wide_gene_counts) {
+        for (const auto crossover : {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint,
+                                     CrossoverMethod::MultiPoint, CrossoverMethod::Blend, CrossoverMethod::None}) {
+            for (const auto group :
+                 {GeneGroup::All, GeneGroup::Body, genes == 328 ? GeneGroup::Brain : GeneGroup::Free}) {
+                for (const bool migration : {false, true}) {
+                    Case of{.parameters = wide_parameters(genes), .wanted = 71, .migration = migration, .seed = ++seed};
+                    of.parameters.crossover = crossover;
+                    of.parameters.mutate_group = group;
+                    of.parameters.mutation_chance = 0.3;
+                    of.parameters.reset_chance = 0.02;
+                    of.parameters.scale_chance = 0.5;
+                    of.parameters.bit_flip_chance = 0.01;
+                    of.parameters.rearranging = OrderMutationMethod::Scramble;
+                    of.parameters.mutate_survivors = true;
+                    SCOPED_TRACE(seed);
+                    const Bred bred = breed(of);
+                    expect_as_defined(bred);
+                    ASSERT_EQ(bred.account.size(), genes);
+                    ASSERT_FALSE(testing::Test::HasFailure());
                 }
             }
         }

@@ -1,5 +1,6 @@
 #include "server/parameters/parameters.h"
 
+#include "server/parameters/schedule.h"
 #include "tests/unit/parameters/assignments.h"
 
 #include <gmock/gmock.h>
@@ -293,6 +294,63 @@ TEST(CrossFieldRules, LimitTheGenesOfAllOrganisms) {
     EXPECT_THAT(network_violations({scaled, million, {"brain_hidden", std::uint32_t{32}}}), Contains(fault));
     EXPECT_THAT(network_violations({scaled, million, {"brain_hidden", std::uint32_t{8}}}),
                 Not(Contains(HasSubstr("genes in all organisms"))));
+}
+
+TEST(CrossFieldRules, LimitFreeGenes) {
+    const auto set = [](std::vector<Assignment> assignments) { return violations(assign({}, assignments)); };
+    EXPECT_THAT(set({{"free_genes", std::uint32_t{1000}}}), IsEmpty());
+    EXPECT_THAT(set({{"free_genes", std::uint32_t{1001}}}),
+                ElementsAre("free_genes: got 1001, allowed a whole number, 0 to 1000"));
+    EXPECT_THAT(set({{"free_gene_min", 2.0}, {"free_gene_max", 2.0}}), IsEmpty());
+    EXPECT_THAT(set({{"free_gene_min", 2.0}, {"free_gene_max", 1.5}}),
+                ElementsAre("free_gene_max: got 1.5, allowed at least free_gene_min (2)"));
+    EXPECT_THAT(set({{"free_gene_min", -2e6}}), ElementsAre("free_gene_min: got -2e+06, allowed -1e+06 to 1e+06"));
+    const Assignment no_bodies{"fitness", std::string{"gene_sum"}}, many{"population_size", std::uint32_t{200'000}};
+    EXPECT_THAT(set({no_bodies, many, {"free_genes", std::uint32_t{614}}}), IsEmpty());
+    EXPECT_THAT(
+        set({no_bodies, many, {"free_genes", std::uint32_t{615}}}),
+        ElementsAre("free_genes: got 200000 organisms with a total of 124200000 genes, allowed at most 124000000 "
+                    "genes in all organisms together"));
+    EXPECT_THAT(
+        network_violations({no_bodies, many, {"free_genes", std::uint32_t{1000}}}),
+        ElementsAre("free_genes: got 200000 organisms with a total of 208600000 genes, allowed at most 124000000 "
+                    "genes in all organisms together"))
+        << "most genes are free, although there is a network";
+}
+
+TEST(CrossFieldRules, MutateGroupHasGenes) {
+    const auto set = [](std::string group, bool network, std::uint32_t free_genes) {
+        return violations(assign({}, std::vector<Assignment>{{"mutate_group", std::move(group)},
+                                                             {"controller", std::string{network ? "network" : "rules"}},
+                                                             {"free_genes", free_genes}}));
+    };
+    const auto fault = [](const std::string& got, const std::string& groups) {
+        return "mutate_group: got " + got + ", allowed a group with genes: " + groups +
+               "; their number changes at a reset";
+    };
+    for (const bool network : {false, true}) {
+        for (const std::uint32_t free_genes : {0u, 10u}) {
+            const std::string groups =
+                std::string{"all, body"} + (network ? ", brain" : "") + (free_genes > 0 ? ", free" : "");
+            EXPECT_THAT(set("all", network, free_genes), IsEmpty());
+            EXPECT_THAT(set("body", network, free_genes), IsEmpty());
+            const std::vector<std::string> accepted;
+            EXPECT_EQ(set("brain", network, free_genes), network ? accepted : std::vector{fault("brain", groups)});
+            EXPECT_EQ(set("free", network, free_genes), free_genes > 0 ? accepted : std::vector{fault("free", groups)});
+        }
+    }
+    EXPECT_THAT(set("weights", false, 0), ElementsAre("mutate_group: got weights, allowed all, body, brain, free"));
+}
+
+TEST(CrossFieldRules, MutateGroupMustHaveGenesBeforeAReset) {
+    const ParameterSet running{.active = {}, .requested = {}, .revision = 1};
+    const std::vector<Assignment> both{{"free_genes", std::uint32_t{10}}, {"mutate_group", std::string{"free"}}};
+    EXPECT_TRUE(assign({}, both).has_value()) << "of a new world";
+    EXPECT_THAT(
+        violations(request_of(running, both, "set_parameters.")),
+        ElementsAre("set_parameters.mutate_group: got free, allowed a group with genes: all, body; their number "
+                    "changes at a reset"));
+    EXPECT_TRUE(request_of(running, std::vector{both[0]}, "").has_value());
 }
 
 TEST(CrossFieldRules, KinematicOrganismsHaveNoObstacles) {
