@@ -365,7 +365,8 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         const unsigned weights = evolution::brain_genes(p).count;
         refuse(weights > p.free_genes ? "brain_hidden" : "free_genes",
                "at most " + std::to_string(genes_max) + " genes in all organisms together",
-               number_text(organisms) + " organisms with a total of " + std::to_string(genes) + " genes");
+               std::to_string(static_cast<std::uint64_t>(organisms)) + " organisms with a total of " +
+                   std::to_string(genes) + " genes");
     }
     if (evolution::genes_of(p.mutate_group, p).count == 0) {
         refuse("mutate_group", "a group with genes: " + groups_with_genes(p) + "; their number changes at a reset",

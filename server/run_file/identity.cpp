@@ -110,6 +110,16 @@ const std::vector<std::pair<std::string, Key>>& keys() {
               }
               return schedule.has_value();
           }}},
+        {"gene_names",
+         {[](const StoredIdentity& identity) {
+              std::string names;
+              for (const std::string& name : evolution::gene_layout(identity.run.parameters).names) {
+                  names += (names.empty() ? "" : ",") + name;
+              }
+              return names;
+          },
+          [](const std::string&, StoredIdentity&) { return true; }, // for other programs: follows from the parameters
+          false}},
         {"keep_every",
          {[](const StoredIdentity& identity) { return std::to_string(identity.keep_every); },
           [](const std::string& text, StoredIdentity& identity) {

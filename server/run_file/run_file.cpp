@@ -48,6 +48,11 @@ Result<void> expect_whole_pages(RunDatabase& database) {
     return {};
 }
 
+/// Whether the chromosomes have genes beyond those of the body.
+bool has_genes_beyond_body(const parameters::Parameters& parameters) {
+    return evolution::gene_count(parameters) > evolution::body_gene_count;
+}
+
 } // namespace
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
@@ -68,7 +73,7 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
     }
     file->identity_ = {identity, options.keep_every};
     file->begin();
-    create_schema(file->database_, evolution::gene_count(identity.parameters) > evolution::body_gene_count);
+    create_schema(file->database_, has_genes_beyond_body(identity.parameters));
     write_identity(file->database_, file->identity_);
     return file;
 }
@@ -170,6 +175,11 @@ Result<void> RunFile::read_beginning() {
         return identity.error();
     }
     identity_ = *std::move(identity);
+    if (has_genes_beyond_body(identity_.run.parameters)) {
+        if (auto whole = check_more_genes(database_); !whole) {
+            return whole;
+        }
+    }
     if (auto read = retention_.read(); !read) {
         return read;
     }

@@ -40,7 +40,7 @@ void create_all_tables(Database& database) {
 }
 
 /// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body genes
-/// alone lack the second.
+/// alone lack the second: check_more_genes().
 constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name};
 
 const Schema& expected_schema() {
@@ -127,6 +127,14 @@ Result<void> check_schema(RunDatabase& database) {
                            std::to_string(format_version));
     }
     return check_tables(database);
+}
+
+Result<void> check_more_genes(RunDatabase& database) {
+    const std::string name{MoreGenesTable::name};
+    if (database.number("SELECT count(*) FROM sqlite_schema WHERE name = '" + name + "'") == 0) {
+        return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks the table \"" + name + '"');
+    }
+    return {};
 }
 
 } // namespace evod::run_file

@@ -20,6 +20,9 @@ void create_schema(RunDatabase& database, bool more_genes);
 /// untrusted file could run code.
 base::Result<void> check_schema(RunDatabase& database);
 
+/// Refuses the database unless it contains the table of the genes beyond those of the body.
+base::Result<void> check_more_genes(RunDatabase& database);
+
 /// Whether the database has no tables and no application id. SQLite creates such a file before its first transaction.
 bool is_empty(RunDatabase& database);
 base::Refusal empty_file(const std::string& path);

@@ -78,15 +78,15 @@ class Generation:
 
     @property
     def genes(self) -> Genes:
-        """The mean of each gene, shape (6,): ``g.genes["body_size"]``."""
+        """The mean of each gene, shape (genes,): ``g.genes["body_size"]``."""
         means = numpy.array([[gene.mean for gene in island.genes] for island in self.islands])
-        return Genes(numpy.average(means, axis=0, weights=self._weights()))
+        return Genes(numpy.average(means, axis=0, weights=self._weights()), self.islands[0].genes.names)
 
     @property
     def selection(self) -> Genes:
         """The part of `change` that is due to selection, because some organisms had more descendants than others.
 
-        Shape (6,), in the units of the genes: ``g.selection["body_size"]``. nan in the first generation, and in runs
+        Shape (genes,), in the units of the genes: ``g.selection["body_size"]``. nan in the first generation, and in runs
         of older versions, which did not record it. selection + transmission + migration = change (docs/MODEL.md).
 
         Examples
@@ -113,12 +113,12 @@ class Generation:
 
     @property
     def change(self) -> Genes:
-        """The mean of each gene minus its mean in the previous generation; shape (6,), nan in the first generation."""
+        """The mean of each gene minus its mean in the previous generation; shape (genes,), nan in the first generation."""
         return self._mean_part("change")
 
     def _mean_part(self, name: str) -> Genes:
         parts = [[account_part(gene, name) for gene in island.genes] for island in self.islands]
-        return Genes(numpy.average(numpy.array(parts), axis=0, weights=self._weights()))
+        return Genes(numpy.average(numpy.array(parts), axis=0, weights=self._weights()), self.islands[0].genes.names)
 
     def _weights(self) -> list[int]:
         return [island.organism_count for island in self.islands]
@@ -136,11 +136,11 @@ class Generation:
         )
 
 
-def generations_of(rows: Iterable[world_pb2.GenerationStatistics]) -> list[Generation]:
+def generations_of(rows: Iterable[world_pb2.GenerationStatistics], gene_names: Sequence[str]) -> list[Generation]:
     """Combines the rows of each generation into a Generation. The rows must be ordered by generation and island."""
     by_number: dict[int, list[GenerationStatistics]] = {}
     for row in rows:
-        by_number.setdefault(row.generation, []).append(result(row))
+        by_number.setdefault(row.generation, []).append(result(row, gene_names))
     return [Generation(number, tuple(islands)) for number, islands in by_number.items()]
 
 
@@ -166,14 +166,19 @@ class History(list[Generation]):
     1           2         294.4           101.4
     """
 
+    @property
+    def gene_names(self) -> tuple[str, ...]:
+        """The names of the genes."""
+        return self[0].islands[0].genes.names if self else GENE_NAMES
+
     def columns(self) -> dict[str, numpy.typing.NDArray[Any]]:
         """Returns the columns of `to_pandas` as arrays, without pandas."""
         rows = [island for g in self for island in g.islands]
         columns = {name: numpy.array([getattr(row, name) for row in rows]) for name in _ISLAND_COLUMNS}
-        for gene in GENE_NAMES:
+        for gene in self.gene_names:
             for what in ("mean", "deviation", "min", "max"):
                 columns[f"{gene}_{what}"] = numpy.array([getattr(row.genes[gene], what) for row in rows], float)
-        for gene in GENE_NAMES:
+        for gene in self.gene_names:
             for part in ACCOUNT_PARTS:
                 columns[f"{gene}_{part}"] = numpy.array([account_part(row.genes[gene], part) for row in rows], float)
         return columns
@@ -217,7 +222,7 @@ class Population:
 
     generation: int
     generation_tick: int  #: ticks since the generation began
-    genes: Genes  #: shape (count, 6): genes["body_size"] has the shape (count,)
+    genes: Genes  #: shape (count, genes): genes["body_size"] has the shape (count,)
     parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids of the parents; (0, 2) in the first generation
     founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder of the lineage; (0,) if unknown
     choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.Choice of the next tick; 0: none
@@ -244,7 +249,12 @@ class Population:
         return pandas().DataFrame(columns | self.genes.to_dict())
 
 
-def population_of(parts: Sequence[commands_pb2.Population], island: int) -> Population:
+def gene_count_of(part: commands_pb2.Population) -> int:
+    """The number of genes of the organisms; 6 if there are none."""
+    return len(part.genes) // 4 // part.count if part.count else len(GENE_NAMES)
+
+
+def population_of(parts: Sequence[commands_pb2.Population], island: int, gene_names: Sequence[str]) -> Population:
     """Joins the parts of one population of an island. The parts must be in order."""
 
     def rows(field: str, kind: str, columns: int) -> Any:
@@ -253,8 +263,7 @@ def population_of(parts: Sequence[commands_pb2.Population], island: int) -> Popu
         ]
         return numpy.concatenate(whole) if whole else numpy.zeros((0, columns), kind)
 
-    gene_count = max((len(part.genes) // 4 // part.count for part in parts if part.count), default=6)
-    genes = Genes(rows("genes", "<f4", gene_count))
+    genes = Genes(rows("genes", "<f4", len(gene_names)), gene_names)
 
     def lived(field: str, kind: str) -> Any:
         column = rows(field, kind, 1)[:, 0]

@@ -11,7 +11,9 @@ GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radiu
 
 
 class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
-    """An array of genes, shape (6,) or (count, 6), that can also be indexed with the name of a gene.
+    """An array of genes, shape (genes,) or (count, genes), that can also be indexed with the name of a gene.
+
+    A chromosome has the six genes of the body, `evod.GENE_NAMES`; the weights of a network and free genes may follow.
 
     Rows of a Genes array are Genes arrays. Results of calculations are arrays without names.
 
@@ -78,7 +80,14 @@ def _plain(array: Any) -> Any:
 
 
 class ByGene(tuple[T, ...]):
-    """A tuple with one element for each gene, in the order of `evod.GENE_NAMES`, that can also be indexed with a name."""
+    """A tuple with one element for each gene, in the order of `names`, that can also be indexed with a name."""
+
+    names: tuple[str, ...]  #: the names of the genes
+
+    def __new__(cls, items: Iterable[T], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
+        made = super().__new__(cls, items)
+        made.names = tuple(names)
+        return made
 
     @overload
     def __getitem__(self, key: SupportsIndex | str) -> T: ...
@@ -86,7 +95,7 @@ class ByGene(tuple[T, ...]):
     def __getitem__(self, key: slice) -> tuple[T, ...]: ...
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str):
-            if key not in GENE_NAMES:
-                raise KeyError(f"there is no gene {key!r}; the genes are: {', '.join(GENE_NAMES)}")
-            return super().__getitem__(GENE_NAMES.index(key))
+            if key not in self.names:
+                raise KeyError(f"there is no gene {key!r}; the genes are: {', '.join(self.names)}")
+            return super().__getitem__(self.names.index(key))
         return super().__getitem__(key)

@@ -32,7 +32,7 @@ from evod.errors import (
     wrong_argument,
 )
 from evod.genes import GENE_NAMES, Genes
-from evod.generations import Generation, History, Life, Population, generations_of, population_of
+from evod.generations import Generation, History, Life, Population, gene_count_of, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.results import EntityIds, result
 from evod.snapshots import Snapshot
@@ -180,7 +180,9 @@ class LabPlans:
             for kind, name in ((c.ITEM_KIND_FOOD, "food"), (c.ITEM_KIND_POISON, "poison"))
             for x, y in positions[name]
         ]
-        placed = [_placed_organism(i, organism) for i, organism in enumerate(organisms)]
+        placed = []
+        for index, organism in enumerate(organisms):
+            placed.append((yield from _placed_organism(world, index, organism)))
         try:
             response = yield from request("place", world=world, island=island, items=items, organisms=placed)
         except Error as error:
@@ -500,7 +502,7 @@ class GenerationStream:
             if number > self._next:
                 yield from self._fill(number - 1)
             if number >= self._next:
-                self._ready += generations_of(event.generation_finished.statistics)
+                self._ready += generations_of(event.generation_finished.statistics, self.info.gene_names)
         elif kind == "fitness_awaited":
             self._awaited = event.fitness_awaited
         elif kind == "run_control_changed":
@@ -600,12 +602,26 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
         answer = response.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
-            return History(generations_of(rows))
+            names = yield from gene_names(world, len(rows[0].genes) if rows else len(GENE_NAMES))
+            return History(generations_of(rows, names))
         first = answer.next_generation
 
 
-def population(world: str, island: int) -> Plan[Population]:
-    """Requests the population of an island in several parts and returns it. All parts belong to the same generation."""
+def gene_names(world: str, count: int) -> Plan[Sequence[str]]:
+    """Returns the names of the genes of a world in which organisms had `count` genes."""
+    if count == len(GENE_NAMES):
+        return GENE_NAMES
+    names = (yield from world_info(world)).gene_names
+    if len(names) != count:
+        raise NotFound(f"the world '{world}' was reset while its genes were requested")
+    return names
+
+
+def population(world: str, island: int, names: Sequence[str] | None = None) -> Plan[Population]:
+    """Requests the population of an island in several parts and returns it. All parts belong to the same generation.
+
+    names  of the genes; None: requested from the server
+    """
     parts: list[c.Population] = []
     first = 0
     while True:
@@ -619,7 +635,9 @@ def population(world: str, island: int) -> Plan[Population]:
         parts.append(part)
         first = part.first + part.count
         if first >= part.organism_count or part.count == 0:
-            return population_of(parts, island)
+            if names is None:
+                names = yield from gene_names(world, gene_count_of(parts[0]))
+            return population_of(parts, island, names)
 
 
 def genes_of(snapshot: Snapshot) -> Plan[Genes]:
@@ -630,7 +648,8 @@ def genes_of(snapshot: Snapshot) -> Plan[Genes]:
     else:  # the next generation has begun: the run file contains the genes
         text = yield from export(snapshot.world, "population", "csv", snapshot.generation, None)
         rows = [row for row in csv.DictReader(io.StringIO(text)) if int(row["island"]) == snapshot.island]
-        genes = Genes(numpy.array([[row[name] for name in GENE_NAMES] for row in rows], numpy.float32))
+        names = now.genes.names or GENE_NAMES
+        genes = Genes(numpy.array([[row[name] for name in names] for row in rows], numpy.float32), names)
     if (yield from world_info(snapshot.world)).run_id != snapshot.run_id:
         raise NotFound(f"the world '{snapshot.world}' was reset before the genes of the snapshot were requested")
     return genes
@@ -721,11 +740,13 @@ def _positions(field: str, positions: numpy.typing.ArrayLike) -> list[tuple[floa
     return [(float(x), float(y)) for x, y in array]
 
 
-def _placed_organism(index: int, organism: tuple[float, float, object]) -> c.PlacedOrganism:
-    allowed = "x and y in px, and the genes: 6 numbers, or numbers by gene name"
+def _placed_organism(world: str, index: int, organism: tuple[float, float, object]) -> Plan[c.PlacedOrganism]:
+    allowed = "x and y in px, and the genes: a number for each, or numbers by gene name"
     try:
         x, y, genes = organism
-        values = [genes[name] for name in GENE_NAMES] if isinstance(genes, Mapping) else genes
+        values = genes
+        if isinstance(genes, Mapping):
+            values = [genes[name] for name in (yield from gene_names(world, len(genes)))]
         numbers = numpy.asarray(values, "<f4").ravel()
         return c.PlacedOrganism(x_px=float(x), y_px=float(y), genes=numbers)
     except (KeyError, TypeError, ValueError):

@@ -181,11 +181,21 @@ def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
     return ax
 
 
+GENES_PLOTTED_MAX = 12
+
+
 def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = None) -> Any:
-    """Plots the mean of each gene over all islands. A band around the mean shows one standard deviation."""
+    """Plots the mean of each gene over all islands. A band around the mean shows one standard deviation.
+
+    Of more than 12 genes, it plots the 12 whose means changed most, in units of their first standard deviation.
+    """
     ax = _axes(ax)
-    for gene in gene_names:
-        generation, mean, deviation = _spread(columns, gene)
+    curves = {gene: _spread(columns, gene) for gene in gene_names}
+    if len(curves) > GENES_PLOTTED_MAX:
+        changes = {gene: abs(mean[-1] - mean[0]) / (deviation[0] or 1) for gene, (_, mean, deviation) in curves.items()}
+        most_changed = sorted(curves, key=lambda gene: -changes[gene])[:GENES_PLOTTED_MAX]
+        curves = {gene: curves[gene] for gene in most_changed}
+    for gene, (generation, mean, deviation) in curves.items():
         (line,) = ax.plot(generation, mean, label=gene)
         ax.fill_between(generation, mean - deviation, mean + deviation, alpha=0.12, linewidth=0, color=line.get_color())
     ax.set(xlabel="generation", ylabel="gene")

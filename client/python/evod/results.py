@@ -286,7 +286,7 @@ class OrganismInfo(_Result):
     id: int
     island: int
     generation: int
-    genes: Genes  #: shape (6,): genes["body_size"]
+    genes: Genes  #: shape (genes,): genes["body_size"]
     alive: bool
     x_px: float
     y_px: float
@@ -382,8 +382,7 @@ class Descendant(_Result):
     second_parent: int
     first_genes: Genes  #: genes of the first parent
     second_genes: Genes
-    from_second: int  #: bit g is set if gene g comes from the second parent, for the first 32 genes
-    more_from_second: tuple[int, ...]  #: like from_second, for the genes 32 to 63, 64 to 95, …
+    from_second: int  #: bit g is set if gene g comes from the second parent
     second_share: float  #: blend crossover: the weight of the second parent in every gene; otherwise 0
     crossed: bool  #: crossover took place
     order_mutation: OrderMutation | None
@@ -411,8 +410,8 @@ class Breeding(_Result):
 # ---- conversion -----------------------------------------------------------------------------------------------------------
 
 
-def _genes(values: Sequence[float]) -> Genes:
-    return Genes(numpy.array(values or [numpy.nan] * len(GENE_NAMES), numpy.float32))
+def _genes(values: Sequence[float], names: Sequence[str]) -> Genes:
+    return Genes(numpy.array(values or [numpy.nan] * len(names), numpy.float32), names)
 
 
 _CLASSES: Mapping[str, type[Any]] = {
@@ -423,56 +422,72 @@ _CLASSES: Mapping[str, type[Any]] = {
 _STATES: Mapping[str, type[_State]] = {
     kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, GeneGroup, MutationKind, Outcome, RunState, StorageState)
 }
-_SPECIAL: Mapping[str, Callable[[Any], Any]] = {
-    "Speed": lambda speed: "max" if speed.max else speed.real_time_factor,
-    "GenerationStatistics.genes": lambda genes: ByGene(result(gene) for gene in genes),
+_OF_GENES: Mapping[str, Callable[[Any, Sequence[str]], Any]] = {
+    "GenerationStatistics.genes": lambda genes, names: ByGene((result(gene) for gene in genes), names),
     "OrganismInfo.genes": _genes,
     "Descendant.genes": _genes,
     "Descendant.first_genes": _genes,
     "Descendant.second_genes": _genes,
+}
+_SPECIAL: Mapping[str, Callable[[Any], Any]] = {
+    "Speed": lambda speed: "max" if speed.max else speed.real_time_factor,
     "Breeding.parameters": lambda assigned: {assignment.name: value_of(assignment.value) for assignment in assigned},
 }
 
 
-def result(message: google.protobuf.message.Message) -> Any:
-    """Converts a message of the protocol to the dataclass of the same name."""
+def result(message: google.protobuf.message.Message, gene_names: Sequence[str] = GENE_NAMES) -> Any:
+    """Converts a message of the protocol to the dataclass of the same name. `gene_names` are those of the message's world."""
     make, fields = _converters(message.DESCRIPTOR)
-    return make(*(convert(message) for convert in fields))
+    return make(*(convert(message, gene_names) for convert in fields))
+
+
+_Converter = Callable[[google.protobuf.message.Message, Sequence[str]], Any]
 
 
 @functools.lru_cache(maxsize=None)
-def _converters(
-    message: google.protobuf.descriptor.Descriptor,
-) -> tuple[type[Any], tuple[Callable[[google.protobuf.message.Message], Any], ...]]:
+def _converters(message: google.protobuf.descriptor.Descriptor) -> tuple[type[Any], tuple[_Converter, ...]]:
     made = _CLASSES[message.name]
     return made, tuple(_converter(message.fields_by_name[field.name]) for field in dataclasses.fields(made))
 
 
-def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> Callable[[google.protobuf.message.Message], Any]:
+def _from_second(descendant: Any, names: Sequence[str]) -> int:
+    words = (descendant.from_second, *descendant.more_from_second)
+    return sum(word << 32 * index for index, word in enumerate(words))
+
+
+def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     name = field.name
+    full_name = f"{field.containing_type.name}.{name}"
+    if full_name == "Descendant.from_second":
+        return _from_second
+    if of_genes := _OF_GENES.get(full_name):
+        return lambda message, names: of_genes(getattr(message, name), names)
     # Newer versions of protobuf have is_repeated in place of label.
     is_repeated = field.is_repeated if hasattr(field, "is_repeated") else field.label == field.LABEL_REPEATED
     is_optional = field.has_presence and not is_repeated
-    convert: Callable[[Any], Any] | None = _SPECIAL.get(f"{field.containing_type.name}.{name}")
-    if convert is None and field.message_type is not None:
-        convert = _SPECIAL.get(field.message_type.name, result)
-        if is_repeated:
-            of_item = convert
-            convert = lambda items: tuple(of_item(item) for item in items)
-    elif convert is None and field.enum_type is not None:
+    convert = _SPECIAL.get(full_name)
+    if field.enum_type is not None:
         state = _STATES[field.enum_type.name]
         if is_repeated:
             convert = lambda numbers: tuple(state(number) for number in numbers)
         else:
             convert = lambda number: state(number) if number else None
+    elif convert is None and field.message_type is not None:
+        special = _SPECIAL.get(field.message_type.name)
+        of_item: _Converter = (lambda item, names: special(item)) if special else result
+        if is_repeated:
+            return lambda message, names: tuple(of_item(item, names) for item in getattr(message, name))
+        if is_optional:
+            return lambda message, names: of_item(getattr(message, name), names) if message.HasField(name) else None
+        return lambda message, names: of_item(getattr(message, name), names)
     elif convert is None and is_repeated:
         convert = tuple
     if is_optional:
         present = convert
-        return lambda message: (
+        return lambda message, names: (
             (present(getattr(message, name)) if present else getattr(message, name)) if message.HasField(name) else None
         )
     if convert is None:
-        return lambda message: getattr(message, name)
+        return lambda message, names: getattr(message, name)
     always = convert
-    return lambda message: always(getattr(message, name))
+    return lambda message, names: always(getattr(message, name))

@@ -8,7 +8,7 @@ import shutil
 import sqlite3
 import urllib.parse
 import weakref
-from typing import Any, Iterator, Mapping
+from typing import Any, Iterator, Mapping, Sequence
 
 import google.protobuf.json_format
 import google.protobuf.message
@@ -119,6 +119,11 @@ class RunFile:
         return self._parameters_of(self.about["parameters"])
 
     @property
+    def gene_names(self) -> tuple[str, ...]:
+        """The names of the genes, in the order of all arrays."""
+        return tuple(self.about.get("gene_names", ",".join(GENE_NAMES)).split(","))
+
+    @property
     def first_generation(self) -> int:
         """The first generation in the file: 1, or the generation at which the run was forked."""
         return int(self.about["first_generation"])
@@ -151,17 +156,18 @@ class RunFile:
 
     def generations(self) -> Any:
         """Returns the statistics of all ended generations as a DataFrame, with one row per generation and island."""
-        accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
+        body_accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
         if list(self._rows("SELECT 1 FROM sqlite_schema WHERE name = 'selection_account'")):
-            columns, join = accounts, "LEFT JOIN selection_account USING (generation, island)"
+            columns, join = body_accounts, "LEFT JOIN selection_account USING (generation, island)"
         else:  # the file has format 3 or older
-            columns, join = [f"NULL AS {name}" for name in accounts], ""
+            columns, join = [f"NULL AS {name}" for name in body_accounts], ""
         cursor = self._execute(
             f"SELECT statistics.*, {', '.join(columns)} FROM statistics {join} ORDER BY generation, island"
         )
         names = [column[0] for column in cursor.description]
         table = pandas().DataFrame(self._fetch(cursor), columns=names).drop(columns="checksum")
-        return table.astype({name: float for name in accounts})
+        table = table.astype({name: float for name in body_accounts})
+        return self._with_more_genes(table) if len(self.gene_names) > len(GENE_NAMES) else table
 
     def organisms(self) -> Any:
         """Returns all organisms of the retained generations as a DataFrame: origin, parents, genes, fitness and fate."""
@@ -181,7 +187,7 @@ class RunFile:
         )
         parts = []
         for generation, island, count, elite, survivors, genes, parents, fitness, lived_ticks, cause in rows:
-            begun = _organisms(count, elite, survivors, genes, parents)
+            begun = _organisms(count, elite, survivors, genes, parents, self.gene_names)
             lived: Mapping[str, Any]
             if fitness is None:
                 lived = {"fitness": numpy.nan, "lived_s": numpy.nan, "cause": numpy.full(count, None)}
@@ -202,7 +208,7 @@ class RunFile:
         """Returns the genes of a generation as a DataFrame; by default, of the last generation that has begun."""
         parts = []
         for island, genes in enumerate(self.genes(generation)):
-            columns = dict(zip(GENE_NAMES, genes.T))
+            columns = dict(zip(self.gene_names, genes.T))
             parts.append(pandas().DataFrame({"island": island, "organism": numpy.arange(len(genes)), **columns}))
         return pandas().concat(parts, ignore_index=True)
 
@@ -212,7 +218,7 @@ class RunFile:
         Returns
         -------
         list of Genes
-            One array for each island, with shape (population_size, 6) and columns in the order of `evod.GENE_NAMES`.
+            One array for each island, with shape (population_size, genes) and columns in the order of `gene_names`.
 
         Examples
         --------
@@ -228,7 +234,8 @@ class RunFile:
         rows = self._rows(
             "SELECT organism_count, chromosomes FROM population WHERE generation = ? ORDER BY island", number
         )
-        islands = [Genes(_array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)) for count, genes in rows]
+        names = self.gene_names
+        islands = [Genes(_array(genes, "<f4", count * len(names)).reshape(count, -1), names) for count, genes in rows]
         if not islands:
             raise self._missing(number)
         return islands
@@ -271,17 +278,40 @@ class RunFile:
 
     def plot_genes(self, ax: Any = None) -> Any:
         """Plots the mean and the standard deviation of each gene; returns the axes."""
-        return plotting.plot_genes(self.generations(), GENE_NAMES, ax)
+        return plotting.plot_genes(self.generations(), self.gene_names, ax)
 
     def plot_selection(self, gene: str, ax: Any = None) -> Any:
         """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
-        return plotting.plot_selection(self.generations(), GENE_NAMES, gene, ax)
+        return plotting.plot_selection(self.generations(), self.gene_names, gene, ax)
 
     def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
         """Plots the table that `lineage` returns for the same argument `of`; returns the axes."""
         return plotting.plot_lineage(self.lineage(of), ax)
 
     # ---- private --------------------------------------------------------------------------------------------------
+
+    def _with_more_genes(self, table: Any) -> Any:
+        """Adds the statistics of the genes beyond those of the body."""
+        names = self.gene_names[len(GENE_NAMES) :]
+        rows = self._rows(
+            "SELECT more_genes.statistics, account FROM more_genes JOIN statistics USING (generation, island) "
+            "ORDER BY generation, island"
+        )
+        statistics, accounts = [], []
+        for of_island, account in rows:
+            statistics.append(_array(of_island, "<f8", 4 * len(names)))
+            accounts.append(_array(account, "<f8", 4 * len(names)) if account else numpy.full(4 * len(names), numpy.nan))
+        parts = {"statistics": (statistics, ("mean", "deviation", "min", "max")), "account": (accounts, ACCOUNT_PARTS)}
+        more = {
+            part: pandas().DataFrame(
+                numpy.array(values).reshape(-1, 4 * len(names)),
+                columns=[f"{gene}_{column}" for gene in names for column in columns],
+            )
+            for part, (values, columns) in parts.items()
+        }
+        first_account = table.columns.get_loc(f"{GENE_NAMES[0]}_{ACCOUNT_PARTS[0]}")
+        columns = (table.iloc[:, :first_account], more["statistics"], table.iloc[:, first_account:], more["account"])
+        return pandas().concat(columns, axis=1)
 
     def _rows(self, query: str, *values: object) -> Iterator[tuple[Any, ...]]:
         return iter(self._fetch(self._execute(query, *values)))
@@ -321,9 +351,11 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
     return numpy.frombuffer(data, kind)
 
 
-def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: bytes) -> dict[str, Any]:
+def _organisms(
+    count: int, elite: int, survivors: int, genes: bytes, parents: bytes, gene_names: Sequence[str]
+) -> dict[str, Any]:
     """Returns those columns of a population that are known when its generation begins."""
-    chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)
+    chromosomes = _array(genes, "<f4", count * len(gene_names)).reshape(count, -1)
     if parents:
         first, second = _array(parents, "<u4", 2 * count).reshape(count, 2).T.astype(float)
         ids = numpy.arange(count)
@@ -331,4 +363,4 @@ def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: by
     else:
         first = second = numpy.full(count, numpy.nan)
         origin = numpy.full(count, "initial", object)
-    return {"parent_first": first, "parent_second": second, "origin": origin, **dict(zip(GENE_NAMES, chromosomes.T))}
+    return {"parent_first": first, "parent_second": second, "origin": origin, **dict(zip(gene_names, chromosomes.T))}

@@ -155,7 +155,7 @@ class Organisms(_Entities[Organism]):
         self._genes, self._interval_s = genes, interval_s
 
     def with_genes(self, genes: Genes) -> Organisms:
-        """Returns a copy with genes, shape (count, 6)."""
+        """Returns a copy with genes, shape (count, genes)."""
         return Organisms(self._columns, genes, self._interval_s)
 
     def _selected(self, columns: Columns, key: Any) -> Organisms:
@@ -169,7 +169,7 @@ class Organisms(_Entities[Organism]):
 
     @property
     def genes(self) -> Genes:
-        """The genes, shape (count, 6): ``organisms.genes["body_size"]``.
+        """The genes, shape (count, genes): ``organisms.genes["body_size"]``.
 
         Raises
         ------

@@ -27,9 +27,18 @@ def read_csv(text: str, **options: Any) -> Any:
     whole numbers, <NA> for organisms without parents.
     """
     kinds: dict[str, Any] = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
-    kinds |= {name: numpy.float32 for name in GENE_NAMES}
+    kinds |= {name: numpy.float32 for name in _genes_in(text)}
     kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second") for part in ("", "_generation", "_island")}
     return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, **options)
+
+
+def _genes_in(text: str) -> Sequence[str]:
+    """The names of the genes in a table of organisms: they end with the last column, or before the fitness."""
+    columns = text[: text.find("\n")].rstrip("\r").split(",")
+    if GENE_NAMES[0] not in columns:
+        return ()
+    genes = columns[columns.index(GENE_NAMES[0]) :]
+    return genes[: genes.index("fitness")] if "fitness" in genes else genes
 
 
 def html_table(heading: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:

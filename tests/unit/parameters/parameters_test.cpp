@@ -288,7 +288,7 @@ TEST(CrossFieldRules, KeepFirstWeightsWithinTheLimit) {
 }
 
 TEST(CrossFieldRules, LimitTheGenesOfAllOrganisms) {
-    constexpr auto fault = "brain_hidden: got 1e+06 organisms with a total of 232000000 genes, allowed at most "
+    constexpr auto fault = "brain_hidden: got 1000000 organisms with a total of 232000000 genes, allowed at most "
                            "124000000 genes in all organisms together";
     const Assignment scaled{"scale_with_population", true}, million{"population_size", std::uint32_t{1'000'000}};
     EXPECT_THAT(network_violations({scaled, million, {"brain_hidden", std::uint32_t{32}}}), Contains(fault));

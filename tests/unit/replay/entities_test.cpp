@@ -4,15 +4,11 @@
 #include "server/replay/breeding.h"
 #include "server/replay/fork.h"
 #include "server/replay/recovery.h"
-#include "server/replay/run_tables.h"
-#include "server/replay/verify.h"
-#include "tests/support/thread_executor.h"
-#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>
 
 #include <random>
-#include <sstream>
 
 namespace evod::replay {
 namespace {
@@ -64,55 +60,21 @@ void change_entities(RecordedRun& run, std::mt19937& random, bool remove) {
     }
 }
 
-class StoredEntitiesTest : public testing::Test {
+class StoredEntitiesTest : public StoredRuns {
   protected:
-    StoredEntitiesTest() : data{*DataFolder::open(folder.path())} {}
-
-    /// The file as a failure of the machine would leave it now.
-    std::unique_ptr<RunFile> file_left() {
-        thread.reset();
-        return file_of("w");
-    }
-    std::unique_ptr<RunFile> file_of(const std::string& name) {
-        auto file = RunFile::open(data.file_of(name), {});
-        EXPECT_TRUE(file) << to_text(file.error());
-        return *std::move(file);
-    }
-    void expect_agrees(RunFile& file) {
-        const auto verified = verify(file, three_threads, [](const VerifyProgress&) {});
-        ASSERT_TRUE(verified) << to_text(verified.error());
-        EXPECT_FALSE(verified->difference)
-            << verified->difference->part << ": " << verified->difference->stored << " but "
-            << verified->difference->simulated << " at tick " << verified->difference->differs.tick;
-    }
     /// The lines of a table that contain `part`.
     std::vector<std::string> rows_with(RunFile& file, const WantedTable& wanted, const std::string& part) {
-        std::ostringstream text;
-        const auto written = write_table({file, executor}, wanted, text);
-        EXPECT_TRUE(written) << to_text(written.error());
-        std::istringstream lines{text.str()};
-        std::vector<std::string> found;
-        for (std::string line; std::getline(lines, line);) {
-            if (line.find(part) != std::string::npos) {
-                found.push_back(line);
-            }
-        }
-        return found;
+        std::vector<std::string> lines = lines_of(file, wanted);
+        std::erase_if(lines, [&](const std::string& line) { return line.find(part) == std::string::npos; });
+        return lines;
     }
-
-    TemporaryFolder folder;
-    DataFolder data;
-    std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
-    base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
 };
 
 TEST_F(StoredEntitiesTest, AKilledRunContinuesWithThem) {
     // Ticks of commands: before the first tick, at a stored state hash, after a checkpoint, in later generations.
     for (const bool with_checkpoint : {false, true}) {
         for (const std::uint64_t last : {0u, 60u, 90u, 119u, 130u, 300u}) {
-            folder.clear();
-            thread = std::make_unique<StorageThread>(RunFile::Options{});
+            begin_again();
             RecordedRun run{data, *thread};
             std::mt19937 random{static_cast<std::uint32_t>(last + 1)};
             for (const std::uint64_t tick : {0u, 60u, 90u, 119u, 130u, 300u}) {
@@ -142,8 +104,7 @@ TEST_F(StoredEntitiesTest, AKilledRunContinuesWithThem) {
 
 TEST_F(StoredEntitiesTest, AForkContinuesWithThem) {
     for (const std::uint64_t at : {0u, 60u, 100u}) {
-        folder.clear();
-        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        begin_again();
         std::mt19937 random{11};
         base::StateHash hash;
         {
@@ -155,8 +116,7 @@ TEST_F(StoredEntitiesTest, AForkContinuesWithThem) {
             run.recorder().close_all(run.laboratory());
             hash = (*run.laboratory().find("fork"))->world.hash();
         }
-        thread.reset();
-        const auto file = file_of("fork");
+        const auto file = file_left("fork");
         const auto recovered = recover(*file, three_threads);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_EQ(recovered->world.hash(), hash);
@@ -166,7 +126,7 @@ TEST_F(StoredEntitiesTest, AForkContinuesWithThem) {
         // A fork of the file, at its present tick.
         const auto moment = replay::fork(*file, {}, data.file_of("again"), "again", {5, 6}, executor);
         ASSERT_TRUE(moment) << to_text(moment.error());
-        expect_agrees(*file_of("again"));
+        expect_agrees(*file_left("again"));
     }
 }
 

@@ -4,14 +4,9 @@
 #include "server/replay/fork.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
-#include "server/replay/run_tables.h"
-#include "server/replay/verify.h"
-#include "tests/support/thread_executor.h"
-#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>
-
-#include <sstream>
 
 namespace evod::replay {
 namespace {
@@ -19,12 +14,11 @@ namespace {
 using namespace run_file;
 using namespace recording;
 
+using testing::Contains;
 using testing::HasSubstr;
 
-class StoredRatingTest : public testing::TestWithParam<bool> {
+class StoredRatingTest : public StoredRuns, public testing::WithParamInterface<bool> {
   protected:
-    StoredRatingTest() : data{*DataFolder::open(folder.path())} {}
-
     /// A run of a world with two islands of twelve organisms, with or without bodies.
     std::unique_ptr<RecordedRun> begin() {
         auto run = std::make_unique<RecordedRun>(data, *thread);
@@ -57,31 +51,11 @@ class StoredRatingTest : public testing::TestWithParam<bool> {
             rate(run, 1, 12);
         }
     }
-    std::unique_ptr<RunFile> file_of(const std::string& name) {
-        thread.reset();
-        auto file = RunFile::open(data.file_of(name), {});
-        EXPECT_TRUE(file) << to_text(file.error());
-        return *std::move(file);
-    }
-    void expect_agrees(RunFile& file) {
-        const auto verified = verify(file, three_threads, [](const VerifyProgress&) {});
-        ASSERT_TRUE(verified) << to_text(verified.error());
-        EXPECT_FALSE(verified->difference)
-            << verified->difference->part << ": " << verified->difference->stored << " but "
-            << verified->difference->simulated << " at tick " << verified->difference->differs.tick;
-    }
-
-    TemporaryFolder folder;
-    DataFolder data;
-    std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
-    base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
 };
 
 TEST_P(StoredRatingTest, AKilledRunContinuesWithTheNumbers) {
     for (int stage = 0; stage <= 4; ++stage) {
-        folder.clear();
-        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        begin_again();
         const auto run = begin();
         rate_generations(*run, 3);
         advance_to_rating(*run);
@@ -98,7 +72,7 @@ TEST_P(StoredRatingTest, AKilledRunContinuesWithTheNumbers) {
         if (stage >= 4) {
             run->advance(1);
         }
-        const auto file = file_of("w");
+        const auto file = file_left();
         const auto recovered = recover(*file, three_threads);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_EQ(recovered->world.hash(), run->world().hash()) << stage;
@@ -111,8 +85,7 @@ TEST_P(StoredRatingTest, AKilledRunContinuesWithTheNumbers) {
 
 TEST_P(StoredRatingTest, AForkContinuesWithTheNumbers) {
     for (const int numbers : {0, 5, 12}) {
-        folder.clear();
-        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        begin_again();
         base::StateHash hash;
         {
             const auto run = begin();
@@ -129,7 +102,7 @@ TEST_P(StoredRatingTest, AForkContinuesWithTheNumbers) {
             run->recorder().close_all(run->laboratory());
             hash = (*run->laboratory().find("fork"))->world.hash();
         }
-        const auto file = file_of("fork");
+        const auto file = file_left("fork");
         const auto recovered = recover(*file, three_threads);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_EQ(recovered->world.hash(), hash) << numbers;
@@ -141,13 +114,10 @@ TEST_P(StoredRatingTest, AForkContinuesWithTheNumbers) {
 TEST_P(StoredRatingTest, TablesContainTheNumbers) {
     const auto run = begin();
     rate_generations(*run, 2);
-    const auto file = file_of("w");
-    std::ostringstream text;
-    ASSERT_TRUE(write_table({*file, executor}, {.table = RunTable::Organisms}, text));
-    EXPECT_THAT(text.str(), HasSubstr(",12,")); // the greatest number that rate() sends
-    std::ostringstream events;
-    ASSERT_TRUE(write_table({*file, executor}, {.table = RunTable::Events}, events));
-    EXPECT_THAT(events.str(), HasSubstr(",set_fitness,"));
+    const auto file = file_left();
+    // 12 is the greatest number that rate() sends.
+    EXPECT_THAT(lines_of(*file, {.table = RunTable::Organisms}), Contains(HasSubstr(",12,")));
+    EXPECT_THAT(lines_of(*file, {.table = RunTable::Events}), Contains(HasSubstr(",set_fitness,")));
 }
 
 TEST_P(StoredRatingTest, AMissingNumberIsReported) {
@@ -159,7 +129,7 @@ TEST_P(StoredRatingTest, AMissingNumberIsReported) {
     thread.reset();
     change(data.file_of("w"),
            "DELETE FROM journal WHERE number > 3"); // the last entries are those of generation 2 and 3
-    const auto file = file_of("w");
+    const auto file = file_left();
     const auto verified = verify(*file, three_threads, [](const VerifyProgress&) {});
     ASSERT_TRUE(verified) << to_text(verified.error());
     ASSERT_TRUE(verified->difference);

@@ -1,8 +1,7 @@
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 
-#include "tests/support/thread_executor.h"
-#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>
 
@@ -16,30 +15,12 @@ using namespace recording;
 
 using testing::HasSubstr;
 
-class RerunTest : public testing::Test {
-  protected:
-    RerunTest() : data{*DataFolder::open(folder.path())} {}
-
-    /// The file as a failure of the machine would leave it now: all records, no end mark.
-    std::unique_ptr<RunFile> file_left() {
-        thread.reset();
-        auto file = RunFile::open(data.file_of("w"), {});
-        EXPECT_TRUE(file) << to_text(file.error());
-        return *std::move(file);
-    }
-
-    TemporaryFolder folder;
-    DataFolder data;
-    std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
-    base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
-};
+class RerunTest : public StoredRuns {};
 
 TEST_F(RerunTest, AWorldContinuesExactly) {
     std::mt19937 random{1};
     for (int round = 0; round < 30; ++round) {
-        folder.clear();
-        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        begin_again();
         RecordedRun run{data, *thread};
         run.advance(random() % 200);
         run.command(set_parameter("mutation_chance", 0.3));
@@ -99,8 +80,7 @@ TEST_F(RerunTest, AClosedRunIsRecoveredAtItsLastTick) {
 
 TEST_F(RerunTest, RunControlIsOfTheLastCommandWithoutReachedGoals) {
     const auto control_after = [&](std::uint64_t ticks, auto... requests) {
-        folder.clear();
-        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        begin_again();
         RecordedRun run{data, *thread};
         (run.command(requests), ...);
         run.advance(ticks);

@@ -277,8 +277,8 @@ class Lab(_Closing):
         seed
             The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
         population
-            The genes of the first generation: one array for each island, with shape (population_size, 6) and columns in the
-            order of `evod.GENE_NAMES`. By default the server draws the genes with the seed.
+            The genes of the first generation: one array for each island, with shape (population_size, genes) and columns in the
+            order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
         speed
             The speed, as for `World.set_speed`. By default real time, or the speed given to `local`.
 
@@ -459,7 +459,7 @@ class World(ParameterAttributes):
             The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside the
             walls and clear of crates and obstacles.
         organisms
-            Triples (x, y, genes). `genes` are 6 numbers in the order of `evod.GENE_NAMES`, or numbers by gene name. The
+            Triples (x, y, genes). `genes` are numbers in the order of `WorldInfo.gene_names`, or numbers by gene name. The
             place must also be clear of other organisms.
         island
             The index of the island.
@@ -560,7 +560,7 @@ class World(ParameterAttributes):
         Parameters
         ----------
         function
-            It is called with the genes, of shape (count, 6), and the `Life` of the organisms of one island, and returns
+            It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and returns
             one number for each organism: larger is better, -1e100 to 1e100.
         generations
             The number of further generations, at least 1. By default until the world is paused or a termination criterion
@@ -734,7 +734,8 @@ class World(ParameterAttributes):
 
     async def statistics(self) -> Statistics:
         """Returns the live statistics of each island, and the statistics of the last generation that has ended."""
-        statistics: Statistics = result((await self._request("get_statistics")).statistics)
+        answer = (await self._request("get_statistics")).statistics
+        statistics: Statistics = result(answer, answer.world.gene_names)
         return statistics
 
     async def history(
@@ -759,7 +760,8 @@ class World(ParameterAttributes):
         NotFound
             The current generation contains no organism with this id.
         """
-        info: OrganismInfo = result((await self._request("get_organism", island=island, organism=organism)).organism)
+        answer = (await self._request("get_organism", island=island, organism=organism)).organism
+        info: OrganismInfo = result(answer, await self._link.perform(plans.gene_names(self.name, len(answer.genes))))
         return info
 
     async def population(self, island: int = 0) -> Population:
@@ -804,7 +806,9 @@ class World(ParameterAttributes):
             first_pick=first_pick,
             first_descendant=first_descendant,
         )
-        breeding: Breeding = result(response.breeding)
+        answer = response.breeding
+        gene_count = len(answer.descendants[0].genes) if answer.descendants else len(GENE_NAMES)
+        breeding: Breeding = result(answer, await self._link.perform(plans.gene_names(self.name, gene_count)))
         return breeding
 
     async def motion(self, island: int = 0) -> Motion:
@@ -888,11 +892,13 @@ class World(ParameterAttributes):
 
     async def plot_genes(self, ax: Any = None) -> Any:
         """Plots the mean and the standard deviation of each gene in all ended generations; returns the axes."""
-        return plotting.plot_genes((await self.history()).columns(), GENE_NAMES, ax)
+        history = await self.history()
+        return plotting.plot_genes(history.columns(), history.gene_names, ax)
 
     async def plot_selection(self, gene: str, ax: Any = None) -> Any:
         """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
-        return plotting.plot_selection((await self.history()).columns(), GENE_NAMES, gene, ax)
+        history = await self.history()
+        return plotting.plot_selection(history.columns(), history.gene_names, gene, ax)
 
     async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
         """Records snapshots of an island and returns them as a matplotlib animation. Notebooks can play it.
@@ -981,7 +987,8 @@ class Run(_Stream):
                 generations.append(step)
                 continue
             for island in step.islands:
-                population = await world.population(island)
+                names = self._stream.info.gene_names
+                population = await self._link.perform(plans.population(world.name, island, names))
                 if population.generation != step.generation:
                     break  # another client has rated this generation
                 fitness = await blocking_call(plans.rate, function, population)
