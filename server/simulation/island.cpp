@@ -174,7 +174,14 @@ void Island::put_living(std::size_t body, std::uint32_t id, const parameters::Pa
     living_.put(body, evolution::body_genes(born_.genes, id), parameters);
     if (living_.has_brains()) {
         base::RandomStream random{heading_key_, id};
-        living_.put_brain(body, weights_of(id), static_cast<float>(random.uniform(-base::pi, base::pi)));
+        const auto heading = static_cast<float>(random.uniform(-base::pi, base::pi));
+        living_.put_brain(body, weights_of(id), heading);
+        if (is_kinematic_) {
+            const auto speed = static_cast<float>(random.uniform()) * step_parameters_.max_speed_px_s;
+            const base::Direction ahead = base::direction_of(heading);
+            bodies_.velocity_x[body] = speed * ahead.x;
+            bodies_.velocity_y[body] = speed * ahead.y;
+        }
     }
 }
 

@@ -32,7 +32,7 @@ const std::map<std::string, std::string> golden_hashes = {
     {"scale_mutation", "33c1ab1d2cc139b7d9def6a91647d621"},
     {"crowded_migration", "786103d0bfe4f8d3042345471872260d"},
     {"newtonian_networks", "d1c1626c62a64f926065300db1f00841"},
-    {"kinematic_networks", "383c02e6b84f0c663ec58de241106005"},
+    {"kinematic_networks", "18b6c4aa2ddd3278ab0454fdb6f6c08e"},
 };
 
 class GoldenHash : public testing::TestWithParam<Scenario> {};

@@ -89,6 +89,26 @@ TEST(NetworkWorld, HeadingsArePartOfTheHash) {
     EXPECT_EQ(living.weight_count(), 8u * (7 + 1) + 2 * (8 + 1));
 }
 
+TEST(NetworkWorld, KinematicBodiesStartWithRandomSpeeds) {
+    const World world{network("kinematic", 6000), base::Seed{3}}, at_rest{network("newtonian", 6000), base::Seed{3}};
+    const auto speed_max = static_cast<float>(world.parameters().active.max_speed_px_s);
+    const physics::Circles& bodies = world.islands()[0].bodies();
+    const Living& living = world.islands()[0].living();
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const float speed = std::hypot(bodies.velocity_x[i], bodies.velocity_y[i]);
+        ASSERT_LE(speed, speed_max * 1.00001f);
+        ASSERT_NEAR(bodies.velocity_x[i], speed * std::cos(living.heading[i]), speed_max * 1e-5f);
+        ASSERT_NEAR(bodies.velocity_y[i], speed * std::sin(living.heading[i]), speed_max * 1e-5f);
+        ASSERT_EQ(at_rest.islands()[0].bodies().velocity_x[i], 0) << "forces accelerate newtonian bodies";
+        sum += speed / speed_max;
+        squares += speed / speed_max * speed / speed_max;
+    }
+    // Uniform in 0 … 1: mean 1/2, variance 1/12; 5 standard errors (alpha 6e-7, two-sided).
+    EXPECT_NEAR(sum / 6000, 1.0 / 2, 5 * std::sqrt(1.0 / 12 / 6000));
+    EXPECT_NEAR(squares / 6000, 1.0 / 3, 5 * std::sqrt(4.0 / 45 / 6000));
+}
+
 TEST(NetworkWorld, KinematicBodiesPassThroughEachOther) {
     base::InlineExecutor executor;
     World world{network("kinematic", 300), base::Seed{3}};
