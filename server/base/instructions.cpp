@@ -1,9 +1,13 @@
 #include "server/base/instructions.h"
 
-#include "server/base/assert.h"
+#include <algorithm>
+#include <array>
+#include <cstddef>
 
 namespace evod::base {
 namespace {
+
+constexpr std::array<std::string_view, 3> names = {"baseline", "avx2", "avx512"};
 
 Instructions& in_use() {
     static Instructions value = widest_instructions();
@@ -12,9 +16,17 @@ Instructions& in_use() {
 
 } // namespace
 
+std::string_view name_of(Instructions instructions) {
+    return names[static_cast<std::size_t>(instructions)];
+}
+
 Instructions widest_instructions() {
 #if defined(__x86_64__)
     __builtin_cpu_init();
+    // Processors with AVX-512 but without VBMI2 (Intel before Ice Lake) reduce their clock for 512-bit vectors.
+    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vbmi2")) {
+        return Instructions::Avx512;
+    }
     if (__builtin_cpu_supports("avx2")) {
         return Instructions::Avx2;
     }
@@ -22,13 +34,22 @@ Instructions widest_instructions() {
     return Instructions::Baseline;
 }
 
+std::span<const std::string_view> available_instructions() {
+    return std::span{names}.first(static_cast<std::size_t>(widest_instructions()) + 1);
+}
+
 Instructions instructions() {
     return in_use();
 }
 
-void use_instructions(Instructions instructions) {
-    EVOD_ASSERT(instructions <= widest_instructions());
-    in_use() = instructions;
+bool use_instructions(std::string_view name) {
+    const auto available = available_instructions();
+    const auto found = std::ranges::find(available, name);
+    if (found == available.end()) {
+        return false;
+    }
+    in_use() = static_cast<Instructions>(found - available.begin());
+    return true;
 }
 
 } // namespace evod::base

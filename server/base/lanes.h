@@ -1,7 +1,7 @@
-// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled twice:
-// once for every processor and once for processors with AVX2.
+// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled once for
+// each set of instructions: for every processor, for AVX2 and for AVX-512.
 //
-// Everything in this file is in an unnamed namespace, and kernels include no other inline code. If both copies of a
+// Everything in this file is in an unnamed namespace, and kernels include no other inline code. If the copies of a
 // kernel shared an inline function, the linker would keep only one copy of that function. The copy might contain
 // instructions that some processors lack.
 // Determinism  a lane computes what a loop over single numbers would compute, so results do not depend on the width.
@@ -10,12 +10,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #if defined(__x86_64__)
 #include <immintrin.h> // always inlined; for operations that have no operator
 #endif
 
 /// EVOD_KERNEL(name) is the name of a kernel in this copy.
-#if EVOD_LANES == 8
+#if EVOD_LANES == 16
+#define EVOD_KERNEL(name) name##_avx512
+#elif EVOD_LANES == 8
 #define EVOD_KERNEL(name) name##_avx2
 #else
 #define EVOD_KERNEL(name) name##_baseline
@@ -25,7 +28,7 @@ namespace evod::base {
 namespace {
 
 constexpr std::size_t lanes = EVOD_LANES;
-static_assert(lanes == 4 || lanes == 8);
+static_assert(lanes == 4 || lanes == 8 || lanes == 16);
 
 using Floats = float __attribute__((vector_size(4 * lanes)));
 using Integers = std::int32_t __attribute__((vector_size(4 * lanes)));
@@ -79,7 +82,9 @@ inline Floats to_floats(Integers v) {
 }
 
 inline Floats square_root(Floats v) {
-#if defined(__x86_64__) && EVOD_LANES == 8
+#if defined(__x86_64__) && EVOD_LANES == 16
+    return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
+#elif defined(__x86_64__) && EVOD_LANES == 8
     return (Floats)_mm256_sqrt_ps((__m256)v);
 #elif defined(__x86_64__)
     return (Floats)_mm_sqrt_ps((__m128)v);
@@ -93,7 +98,9 @@ inline Floats square_root(Floats v) {
 
 /// Rounds to the nearest integer, halves to even.
 inline Integers round_to_integers(Floats v) {
-#if defined(__x86_64__) && EVOD_LANES == 8
+#if defined(__x86_64__) && EVOD_LANES == 16
+    return (Integers)_mm512_maskz_cvtps_epi32(0xffff, (__m512)v);
+#elif defined(__x86_64__) && EVOD_LANES == 8
     return (Integers)_mm256_cvtps_epi32((__m256)v);
 #elif defined(__x86_64__)
     return (Integers)_mm_cvtps_epi32((__m128)v);
@@ -108,7 +115,9 @@ inline Integers round_to_integers(Floats v) {
 
 /// Returns a number whose bit i is 1 if the comparison holds in lane i.
 inline unsigned bits_of(Integers mask) {
-#if defined(__x86_64__) && EVOD_LANES == 8
+#if defined(__x86_64__) && EVOD_LANES == 16
+    return static_cast<unsigned>(_mm512_movepi32_mask((__m512i)mask));
+#elif defined(__x86_64__) && EVOD_LANES == 8
     return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
 #elif defined(__x86_64__)
     return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
@@ -123,7 +132,9 @@ inline unsigned bits_of(Integers mask) {
 
 /// Multiplies the lower halves of the 64-bit lanes; the products have 64 bits.
 inline Longs multiply_low_halves(Longs a, Longs b) {
-#if defined(__x86_64__) && EVOD_LANES == 8
+#if defined(__x86_64__) && EVOD_LANES == 16
+    return (Longs)_mm512_maskz_mul_epu32(0xff, (__m512i)a, (__m512i)b);
+#elif defined(__x86_64__) && EVOD_LANES == 8
     return (Longs)_mm256_mul_epu32((__m256i)a, (__m256i)b);
 #elif defined(__x86_64__)
     return (Longs)_mm_mul_epu32((__m128i)a, (__m128i)b);
@@ -145,31 +156,28 @@ inline Words interleave(Longs even, Longs odd) {
     return (Words)((even & 0xffff'ffffu) | odd << 32);
 }
 
+/// Returns a vector whose lane i is lane from(i) of a, or lane from(i) − lanes of b.
+template <class From, std::size_t... i>
+inline Words shuffled(Words a, Words b, From from, std::index_sequence<i...>) {
+    return __builtin_shufflevector(a, b, from(i)...);
+}
+template <class From>
+inline Words shuffled(Words a, Words b, From from) {
+    return shuffled(a, b, from, std::make_index_sequence<lanes>{});
+}
+
 /// Combines lane 2i of a and lane 2i of b into one 64-bit lane, with a's lane in the lower half. odd_pairs() does the
 /// same with lanes 2i + 1.
 inline Longs even_pairs(Words a, Words b) {
-#if EVOD_LANES == 8
-    return (Longs)__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-#else
-    return (Longs)__builtin_shufflevector(a, b, 0, 4, 2, 6);
-#endif
+    return (Longs)shuffled(a, b, [](std::size_t i) { return i % 2 == 0 ? i : i + lanes - 1; });
 }
 inline Longs odd_pairs(Words a, Words b) {
-#if EVOD_LANES == 8
-    return (Longs)__builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-#else
-    return (Longs)__builtin_shufflevector(a, b, 1, 5, 3, 7);
-#endif
+    return (Longs)shuffled(a, b, [](std::size_t i) { return i % 2 == 0 ? i + 1 : i + lanes; });
 }
 
 /// Exchanges the two halves of each 64-bit lane: a rotation by 32 bits.
 inline Longs exchanged_halves(Longs v) {
-    const auto words = (Words)v;
-#if EVOD_LANES == 8
-    return (Longs)__builtin_shufflevector(words, words, 1, 0, 3, 2, 5, 4, 7, 6);
-#else
-    return (Longs)__builtin_shufflevector(words, words, 1, 0, 3, 2);
-#endif
+    return (Longs)shuffled((Words)v, (Words)v, [](std::size_t i) { return i ^ 1; });
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // Motion kernels: update the velocities and positions of circles in a tick, several circles at once.
 //
-// Determinism  each circle is computed independently. The kernels are compiled for two sets of instructions, which give
-//              the same bits (base/instructions.h).
+// Determinism  each circle is computed independently. The kernels are compiled for several sets of instructions, which
+//              give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@
 namespace evod::physics {
 
 /// Kernels process several bodies at once, so the length of the columns that they read is a multiple of this number.
-constexpr std::size_t lanes_max = 8;
+constexpr std::size_t lanes_max = 16;
 constexpr std::size_t padded(std::size_t size) {
     return (size + lanes_max - 1) / lanes_max * lanes_max;
 }

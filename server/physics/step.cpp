@@ -8,10 +8,10 @@
 
 namespace evod::physics {
 
-extern const MotionKernels motion_kernels_baseline, motion_kernels_avx2;
+extern const MotionKernels motion_kernels_baseline, motion_kernels_avx2, motion_kernels_avx512;
 
 const MotionKernels& motion_kernels() {
-    return base::chosen(motion_kernels_baseline, motion_kernels_avx2);
+    return base::chosen(motion_kernels_baseline, motion_kernels_avx2, motion_kernels_avx512);
 }
 
 namespace {

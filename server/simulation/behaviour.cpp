@@ -9,10 +9,10 @@
 
 namespace evod::simulation {
 
-extern const BrainKernels brain_kernels_baseline, brain_kernels_avx2;
+extern const BrainKernels brain_kernels_baseline, brain_kernels_avx2, brain_kernels_avx512;
 
 const BrainKernels& brain_kernels() {
-    return base::chosen(brain_kernels_baseline, brain_kernels_avx2);
+    return base::chosen(brain_kernels_baseline, brain_kernels_avx2, brain_kernels_avx512);
 }
 
 namespace {

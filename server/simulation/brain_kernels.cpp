@@ -12,7 +12,7 @@ namespace {
 using namespace evod::base; // the vector types of lanes.h
 using evolution::BrainInput;
 
-constexpr std::size_t group_size = 8; // physics::lanes_max
+constexpr std::size_t group_size = 16; // physics::lanes_max
 constexpr float tau = 6.28318530717958647693f;
 constexpr float tiny = 1e-30f; // so that no divisor is 0
 

@@ -3,8 +3,8 @@
 // A network has one hidden layer; evolution/brain_layout.h states its inputs and the order of its weights. A neuron is
 // tanh of the sum of its weighted inputs, which are added in the order of the weights.
 //
-// Determinism  each organism is computed independently. The kernels are compiled for two sets of instructions, which
-//              give the same bits (base/instructions.h).
+// Determinism  each organism is computed independently. The kernels are compiled for several sets of instructions,
+//              which give the same bits (base/instructions.h).
 #pragma once
 
 #include "server/evolution/brain_input.h"

@@ -17,7 +17,8 @@ using physics::Coordinate;
 extern const ItemsKernels items_kernels_baseline, items_kernels_avx2;
 
 const ItemsKernels& items_kernels() {
-    return base::chosen(items_kernels_baseline, items_kernels_avx2);
+    // A bucket has eight slots, so these kernels do not use wider vectors than those of AVX2.
+    return base::chosen(items_kernels_baseline, items_kernels_avx2, items_kernels_avx2);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // Items kernels: find the nearest items, eight positions at a time.
 //
-// Determinism  the kernels are compiled for two sets of instructions, which give the same bits (base/instructions.h).
+// Determinism  the kernels are compiled for baseline instructions and AVX2, which give the same bits
+//              (base/instructions.h).
 #pragma once
 
 #include <cstddef>

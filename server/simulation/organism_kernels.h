@@ -1,7 +1,7 @@
 // Organism kernels: the steps of every tick for several organisms at once.
 //
-// Determinism  each organism is computed independently. The kernels are compiled for two sets of instructions, which
-//              give the same bits (base/instructions.h).
+// Determinism  each organism is computed independently. The kernels are compiled for several sets of instructions,
+//              which give the same bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>

@@ -13,10 +13,10 @@ namespace evod::simulation {
 using physics::Circles;
 using physics::Coordinate;
 
-extern const OrganismKernels organism_kernels_baseline, organism_kernels_avx2;
+extern const OrganismKernels organism_kernels_baseline, organism_kernels_avx2, organism_kernels_avx512;
 
 const OrganismKernels& organism_kernels() {
-    return base::chosen(organism_kernels_baseline, organism_kernels_avx2);
+    return base::chosen(organism_kernels_baseline, organism_kernels_avx2, organism_kernels_avx512);
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // instruction_count: fixed pieces of work whose instructions callgrind counts; see instruction_count.py.
 //
-// instruction_count WORK [--instructions baseline|avx2] does everything that is needed before the work, then the work
+// instruction_count WORK [--instructions NAME] does everything that is needed before the work, then the work
 // inside counted_work(), which is what callgrind counts; one thread.
 #include "server/base/inline_executor.h"
 #include "server/evolution/next_generation.h"
@@ -90,17 +90,15 @@ int run(int argc, char** argv) {
     add_instructions_option(app);
     CLI11_PARSE(app, argc, argv);
     if (list) {
-        for (const auto& [name, instructions] : instructions_by_name) {
-            if (instructions <= base::widest_instructions()) {
-                std::cout << name << '\n';
-            }
+        for (const std::string_view name : base::available_instructions()) {
+            std::cout << name << '\n';
         }
         return 0;
     }
     std::cout << boost::json::object{{"work", work},
                                      {"units", works.at(work)()},
                                      {"compiler", EVOD_COMPILER},
-                                     {"instruction_set", instructions_name()}}
+                                     {"instruction_set", base::name_of(base::instructions())}}
               << '\n';
     return 0;
 }

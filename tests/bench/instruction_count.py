@@ -3,7 +3,7 @@
 
 Counts do not depend on who else uses the machine, so a change of a few per cent is real. More than 5 % above the
 reference fails; more than 5 % below asks for the reference to be renewed. They depend on the compiler and on the
-set of vector instructions that the kernels use, so every set is counted that the processor has; the reference names
+set of vector instructions that the kernels use, so every set is counted that valgrind executes; the reference names
 compiler and set, and another compiler has no reference.
 """
 import argparse
@@ -34,7 +34,7 @@ def count(program, work, instruction_set):
 
 def count_all(program):
     """The baseline first, the widest set last."""
-    listed = subprocess.run([program, "--list"], capture_output=True, text=True, check=True).stdout.split()
+    listed = subprocess.run(["valgrind", "--quiet", "--tool=none", program, "--list"], capture_output=True, text=True, check=True).stdout.split()
     instruction_sets = sorted(listed, key="baseline".__ne__)
     return [count(program, work, instruction_set) for instruction_set in instruction_sets for work in works]
 

@@ -88,7 +88,7 @@ boost::json::object report(const Options& options, const Measured& measured) {
         {"islands", options.islands},
         {"threads", options.threads},
         {"spatial_order", options.spatial_order},
-        {"instructions", instructions_name()},
+        {"instructions", base::name_of(base::instructions())},
         {"first_seed", options.window.first_seed},
         {"scenes", options.window.scenes},
         {"rounds", measured.rounds},

@@ -10,6 +10,7 @@
 
 #include <map>
 #include <string>
+#include <tuple>
 
 namespace evod::scenarios {
 namespace {
@@ -35,32 +36,33 @@ const std::map<std::string, std::string> golden_hashes = {
     {"kinematic_networks", "18b6c4aa2ddd3278ab0454fdb6f6c08e"},
 };
 
-class GoldenHash : public testing::TestWithParam<Scenario> {};
-INSTANTIATE_TEST_SUITE_P(All, GoldenHash, testing::ValuesIn(all()), testing::PrintToStringParamName());
+/// A scenario with a set of vector instructions.
+class GoldenHash : public testing::TestWithParam<std::tuple<Scenario, base::Instructions>> {
+  protected:
+    ~GoldenHash() override { base::use_instructions(base::name_of(base::widest_instructions())); }
+};
+std::string name_of_test(const testing::TestParamInfo<GoldenHash::ParamType>& test) {
+    return std::string{std::get<Scenario>(test.param).name} + "_" +
+           std::string{base::name_of(std::get<base::Instructions>(test.param))};
+}
+INSTANTIATE_TEST_SUITE_P(All, GoldenHash,
+                         testing::Combine(testing::ValuesIn(all()),
+                                          testing::Values(base::Instructions::Baseline, base::Instructions::Avx2,
+                                                          base::Instructions::Avx512)),
+                         name_of_test);
 
-void expect_golden_hash(const Scenario& scenario) {
+TEST_P(GoldenHash, IsTheSameInEveryBuild) {
+    const auto& [scenario, instructions] = GetParam();
+    if (!base::use_instructions(base::name_of(instructions))) {
+        GTEST_SKIP() << "this processor has no " << base::name_of(instructions);
+    }
     Play run{scenario};
     base::InlineExecutor executor;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
         run.advance(executor);
     }
     const auto known = golden_hashes.find(scenario.name);
-    EXPECT_EQ(base::to_text(run.world().hash()), known == golden_hashes.end() ? "unknown" : known->second)
-        << scenario.name;
-}
-
-TEST_P(GoldenHash, IsTheSameInEveryBuild) {
-    expect_golden_hash(GetParam());
-}
-
-TEST_P(GoldenHash, IsTheSameWithTheInstructionsOfEveryProcessor) {
-    const base::Instructions widest = base::widest_instructions();
-    if (widest == base::Instructions::Baseline) {
-        GTEST_SKIP() << "this processor has no others";
-    }
-    base::use_instructions(base::Instructions::Baseline);
-    expect_golden_hash(GetParam());
-    base::use_instructions(widest);
+    EXPECT_EQ(base::to_text(run.world().hash()), known == golden_hashes.end() ? "unknown" : known->second);
 }
 
 TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) {

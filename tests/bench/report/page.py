@@ -161,7 +161,7 @@ class Page:
                        digits(row["tick_us"]["median"])] for name in names if (row := rows.get(name))])
 
     def instruction_sets(self):
-        names = {"baseline": "evod, baseline instructions", "avx2": "evod, AVX2"}
+        names = {"baseline": "evod, baseline instructions", "avx2": "evod, AVX2", "avx512": "evod, AVX-512"}
         rows = self.results.get("instruction_sets", [])
         key = "organism_ticks_per_processor_s"
         return table(["20,000 organisms, one thread", "M organism-ticks/s", "× baseline"],

@@ -1,5 +1,5 @@
 // Kernels compute in every lane what the functions for one entity compute. Tested with four lanes; the golden hashes,
-// which hold for four and eight lanes, show that eight give the same.
+// which hold for 4, 8 and 16 lanes, show that the other widths give the same.
 #include "server/base/elementary.h"
 #include "server/base/elementary_lanes.h"
 #include "server/base/hash_lanes.h"
