@@ -2,6 +2,7 @@
 #include "proto/command_line/completion.h"
 #include "proto/command_line/terminal.h"
 #include "server/commands/commands.h"
+#include "server/commands/common_options.h"
 #include "server/commands/termination.h"
 
 #include <google/protobuf/stubs/logging.h>
@@ -23,6 +24,9 @@ int main(int argument_count, char** arguments) {
 
     evod::command_line::Command app{"evod", "evod: an evolution laboratory that runs as a server",
                                     "evod " EVOD_VERSION};
+    app.environment("EVOD_INSTRUCTIONS",
+                    "The vector instructions to use: baseline, avx2 or avx512; default: the best of this "
+                    "processor. All give the same results.");
     add_server(app);
     add_run_command(app);
     add_compare_command(app);
@@ -42,7 +46,7 @@ int main(int argument_count, char** arguments) {
         return 0;
     }
     const std::optional<int> ended = app.parse(argument_count, arguments);
-    const int status = ended ? *ended : app.run();
+    const int status = ended ? *ended : use_instructions_of_environment() ? app.run() : exit_error;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) {
         return status;
     }

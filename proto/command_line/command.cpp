@@ -170,6 +170,11 @@ Command& Command::group(const std::string& heading) {
     return *this;
 }
 
+Command& Command::environment(const std::string& variable, const std::string& effect) {
+    variables_.push_back({variable, effect});
+    return *this;
+}
+
 Command& Command::footer(const std::string& text) {
     app_->footer(text);
     return *this;

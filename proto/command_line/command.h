@@ -98,6 +98,8 @@ class Command {
     Command& option_group(const std::string& heading);
     /// Sets a text that the help prints after the options.
     Command& footer(const std::string& text);
+    /// Describes an environment variable that replaces no option, for the man page.
+    Command& environment(const std::string& variable, const std::string& effect);
     /// Also accepts options of this command after the name of a subcommand. Applies to subcommands that are added
     /// later.
     Command& accept_options_after_commands();
@@ -139,6 +141,11 @@ class Command {
     std::string heading() const; // the heading of this subcommand in the help of the program
     std::string footer() const;
     const std::string& version() const { return version_; }
+    struct Variable {
+        std::string name, effect;
+    };
+    /// The environment variables that replace no option.
+    const std::vector<Variable>& variables() const { return variables_; }
     /// The text that --help prints.
     std::string help_text() const;
     const std::list<Command>& commands() const { return commands_; }
@@ -161,6 +168,7 @@ class Command {
     std::string version_;      // of the program; empty for a subcommand
     std::string option_group_; // heading for the next options; empty: "Options"
     std::string owner_;        // owner of options that are handed down; empty: none are handed down
+    std::vector<Variable> variables_;
     std::vector<std::shared_ptr<void>> kept_;
 };
 

@@ -140,7 +140,7 @@ std::string commands_text(const Command& parent, const std::string& words) {
     return text;
 }
 
-/// The environment variables that replace options.
+/// The environment variables of the program.
 std::string environment_text(const Command& program) {
     std::string text;
     for (const OptionDescription& option : program.options()) {
@@ -148,6 +148,9 @@ std::string environment_text(const Command& program) {
             text += ".TP\n" + bold(option.environment) + "\nThe value of " + bold(option.names.back()) +
                     ", if the command line does not contain it.\n";
         }
+    }
+    for (const Command::Variable& variable : program.variables()) {
+        text += ".TP\n" + bold(variable.name) + "\n" + prose(variable.effect);
     }
     return text + ".TP\n" + bold("NO_COLOR") + "\nIf it is not empty, the output contains no colours.\n";
 }

@@ -10,7 +10,8 @@ namespace evod::command_line {
 std::string joined(const auto& names, const char* separator = ", ") {
     std::string text;
     for (const auto& name : names) {
-        text += (text.empty() ? "" : separator) + name;
+        text += text.empty() ? "" : separator;
+        text += name;
     }
     return text;
 }

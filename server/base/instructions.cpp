@@ -1,5 +1,7 @@
 #include "server/base/instructions.h"
 
+#include "server/base/assert.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -10,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 3> names = {"baseline", "avx2", "avx512"};
 
 Instructions& in_use() {
-    static Instructions value = widest_instructions();
+    static Instructions value = default_instructions();
     return value;
 }
 
@@ -23,8 +25,7 @@ std::string_view name_of(Instructions instructions) {
 Instructions widest_instructions() {
 #if defined(__x86_64__)
     __builtin_cpu_init();
-    // Processors with AVX-512 but without VBMI2 (Intel before Ice Lake) reduce their clock for 512-bit vectors.
-    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vbmi2")) {
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
         return Instructions::Avx512;
     }
     if (__builtin_cpu_supports("avx2")) {
@@ -32,6 +33,16 @@ Instructions widest_instructions() {
     }
 #endif
     return Instructions::Baseline;
+}
+
+Instructions default_instructions() {
+#if defined(__x86_64__)
+    // Intel processors before Ice Lake reduce their clock for 512-bit vectors; they have no VBMI2.
+    if (widest_instructions() == Instructions::Avx512 && !__builtin_cpu_supports("avx512vbmi2")) {
+        return Instructions::Avx2;
+    }
+#endif
+    return widest_instructions();
 }
 
 std::span<const std::string_view> available_instructions() {
@@ -42,13 +53,18 @@ Instructions instructions() {
     return in_use();
 }
 
+void use_instructions(Instructions instructions) {
+    EVOD_ASSERT(instructions <= widest_instructions());
+    in_use() = instructions;
+}
+
 bool use_instructions(std::string_view name) {
     const auto available = available_instructions();
     const auto found = std::ranges::find(available, name);
     if (found == available.end()) {
         return false;
     }
-    in_use() = static_cast<Instructions>(found - available.begin());
+    use_instructions(static_cast<Instructions>(found - available.begin()));
     return true;
 }
 

@@ -1,7 +1,7 @@
 // Instructions: selects the processor's vector instructions for the loops over many bodies.
 //
 // The loops are compiled several times from one source (see evod_kernels in the top CMakeLists.txt). All copies compute
-// the same bits; the wider ones are faster.
+// the same bits; on most processors the wider ones are faster.
 #pragma once
 
 #include <span>
@@ -14,18 +14,22 @@ enum class Instructions : unsigned char { Baseline, Avx2, Avx512 };
 
 std::string_view name_of(Instructions instructions);
 
-/// Returns the instructions in use: initially the widest.
-Instructions instructions();
-
-/// Returns the widest vector instructions that this processor executes at full speed. AVX-512 counts only where it does
-/// not reduce the clock of the processor.
+/// Returns the widest vector instructions that this processor has.
 Instructions widest_instructions();
 
-/// Returns the names of all instructions up to widest_instructions(), in ascending order of width.
+/// Returns the instructions that evod uses unless others are selected: the widest, but no AVX-512 on processors that may
+/// reduce their clock for it.
+Instructions default_instructions();
+
+/// Returns the names of all instructions that this processor has, in ascending order of width.
 std::span<const std::string_view> available_instructions();
 
-/// Selects the instructions to use, of those available. Returns false and changes nothing if the name is another one.
-/// No kernel may be running during the call.
+/// Returns the instructions in use: initially default_instructions().
+Instructions instructions();
+
+/// Selects the instructions to use. The processor must have them, and no kernel may be running during the call.
+void use_instructions(Instructions instructions);
+/// Selects the instructions with this name. Returns false and changes nothing if they are not available.
 bool use_instructions(std::string_view name);
 
 /// Returns the copy of a kernel for the instructions in use.

@@ -1,6 +1,8 @@
 #include "server/commands/common_options.h"
 
 #include "proto/command_line/terminal.h"
+#include "proto/command_line/words.h"
+#include "server/base/instructions.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -26,6 +28,16 @@ int fail(const base::Refusal& error) {
 
 std::size_t default_thread_count() {
     return std::max(1u, std::thread::hardware_concurrency());
+}
+
+bool use_instructions_of_environment() {
+    const char* const name = std::getenv("EVOD_INSTRUCTIONS");
+    if (name == nullptr || *name == '\0' || base::use_instructions(name)) {
+        return true;
+    }
+    fail("EVOD_INSTRUCTIONS: got " + std::string{name} + ", allowed on this processor " +
+         command_line::joined(base::available_instructions()));
+    return false;
 }
 
 std::string data_folder_or_default(const std::string& given) {

@@ -22,6 +22,10 @@ int fail(const base::Refusal& error);
 /// The number of processors, at least 1. This is the default of --threads and --jobs.
 std::size_t default_thread_count();
 
+/// Uses the vector instructions that the environment variable EVOD_INSTRUCTIONS names, unless it is empty or unset.
+/// Prints an error and returns false if this processor does not have them.
+bool use_instructions_of_environment();
+
 /// The folder of run files and tokens. If `given` is empty, it is the folder of evod in the state folder of the XDG
 /// Base Directory Specification. Returns an empty text if the environment does not define that folder.
 std::string data_folder_or_default(const std::string& given);

@@ -1,5 +1,6 @@
 // The server: `evod` without a subcommand, and `evod replay`.
 #include "proto/command_line/command.h"
+#include "server/base/instructions.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/serve_options.h"
@@ -59,6 +60,7 @@ int run_server(network::ServerOptions options) {
     if (!folder.empty()) {
         log::info("runs are stored in {}", folder);
     }
+    log::info("vector instructions: {}", base::name_of(base::instructions()));
     const auto endpoint = (*server)->endpoint();
     if (!endpoint.address().is_loopback() && !encrypted) {
         log::warn("without TLS, any machine on the network path to {} can read tokens and use them: see --tls-cert",

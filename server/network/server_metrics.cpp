@@ -1,4 +1,5 @@
 // The part of Server that collects metrics, checks the server's health and serves both over HTTP.
+#include "server/base/instructions.h"
 #include "server/metrics/exposition.h"
 #include "server/metrics/families.h"
 #include "server/metrics/process.h"
@@ -123,7 +124,8 @@ void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::St
 
 v1::Metrics Server::metrics() {
     v1::Metrics all;
-    add_gauge(all, "evod_build_info", "Always 1; the label is the version").add(1, {{"version", EVOD_VERSION}});
+    add_gauge(all, "evod_build_info", "Always 1; the labels are the version and the vector instructions in use")
+        .add(1, {{"version", EVOD_VERSION}, {"instructions", std::string{base::name_of(base::instructions())}}});
     add_worlds(all, worlds_counted_);
     add_queues(all, mailbox_.fill(), outbox_.fill());
     add_sessions(all, sessions_, options_.session_bounds.sessions_max);

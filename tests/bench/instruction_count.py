@@ -34,7 +34,8 @@ def count(program, work, instruction_set):
 
 def count_all(program):
     """The baseline first, the widest set last."""
-    listed = subprocess.run(["valgrind", "--quiet", "--tool=none", program, "--list"], capture_output=True, text=True, check=True).stdout.split()
+    listed = subprocess.run(["valgrind", "--quiet", "--tool=none", program, "--list"], capture_output=True, text=True,
+                            check=True).stdout.split()
     instruction_sets = sorted(listed, key="baseline".__ne__)
     return [count(program, work, instruction_set) for instruction_set in instruction_sets for work in works]
 

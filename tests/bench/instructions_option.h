@@ -10,12 +10,12 @@
 
 namespace evod::bench {
 
-/// Puts what is given into use; the widest that the processor has unless it is given.
+/// Puts what is given into use; otherwise evod's choice.
 inline void add_instructions_option(CLI::App& app) {
     const auto available = base::available_instructions();
     app.add_option_function<std::string>(
            "--instructions", [](const std::string& name) { base::use_instructions(name); },
-           "vector instructions; the widest that this processor has unless given")
+           "vector instructions; those that evod chooses unless given")
         ->check(CLI::IsMember(std::vector<std::string>{available.begin(), available.end()}));
 }
 

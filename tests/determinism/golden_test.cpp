@@ -39,7 +39,7 @@ const std::map<std::string, std::string> golden_hashes = {
 /// A scenario with a set of vector instructions.
 class GoldenHash : public testing::TestWithParam<std::tuple<Scenario, base::Instructions>> {
   protected:
-    ~GoldenHash() override { base::use_instructions(base::name_of(base::widest_instructions())); }
+    ~GoldenHash() override { base::use_instructions(base::default_instructions()); }
 };
 std::string name_of_test(const testing::TestParamInfo<GoldenHash::ParamType>& test) {
     return std::string{std::get<Scenario>(test.param).name} + "_" +
@@ -53,9 +53,10 @@ INSTANTIATE_TEST_SUITE_P(All, GoldenHash,
 
 TEST_P(GoldenHash, IsTheSameInEveryBuild) {
     const auto& [scenario, instructions] = GetParam();
-    if (!base::use_instructions(base::name_of(instructions))) {
+    if (instructions > base::widest_instructions()) {
         GTEST_SKIP() << "this processor has no " << base::name_of(instructions);
     }
+    base::use_instructions(instructions);
     Play run{scenario};
     base::InlineExecutor executor;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {

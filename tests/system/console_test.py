@@ -183,14 +183,21 @@ class Options(Folder):
 class Output(Folder):
     def test_a_server_logs_on_standard_error(self):
         with subprocess.Popen([EVOD, "--port", "0", "--data", self.folder.name], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True) as server:
-            lines = [server.stderr.readline() for _ in range(2)]
+                              text=True, env=os.environ | {"EVOD_INSTRUCTIONS": "baseline"}) as server:
+            lines = [server.stderr.readline() for _ in range(3)]
             server.terminate()
             printed, logged = waiting.communicate(server)
         self.assertEqual(server.returncode, 0)
-        self.assertRegex(lines[1], r" info evod \S+ listening on 127\.0\.0\.1:\d+, world \"default\", seed \d+\n$")
+        self.assertRegex(lines[1], r" info vector instructions: baseline\n$")
+        self.assertRegex(lines[2], r" info evod \S+ listening on 127\.0\.0\.1:\d+, world \"default\", seed \d+\n$")
         self.assertIn(" info stopped\n", logged)
         self.assertEqual(printed, "")
+
+    def test_vector_instructions_that_are_unknown_are_an_error(self):
+        done = waiting.run([EVOD, "parameters"], capture_output=True, text=True, env=os.environ | {"EVOD_INSTRUCTIONS": "mmx"})
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^evod: EVOD_INSTRUCTIONS: got mmx, allowed on this processor baseline\b.*\n$")
+        self.assertEqual(done.stdout, "")
 
     def test_a_full_standard_output_is_an_error(self):
         for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",

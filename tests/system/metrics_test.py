@@ -235,7 +235,7 @@ class Counts(Case):
         self.assertNotIn("evod_storage_state", self.metrics(keeps_nothing).names())
 
     def test_the_process(self):
-        server = self.serve()
+        server = self.serve(env=os.environ | {"EVOD_INSTRUCTIONS": "baseline"})
         metrics = self.metrics(server)
         status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
         resident = int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) * 1024
@@ -248,7 +248,7 @@ class Counts(Case):
         self.assertEqual(len(threads), 4)
         self.assertLessEqual(max(threads), metrics("process_cpu_seconds_total") + 1)
         version = waiting.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
-        self.assertEqual(metrics("evod_build_info", version=version), 1)
+        self.assertEqual(metrics("evod_build_info", version=version, instructions="baseline"), 1)
 
     def test_a_replay_has_metrics_too(self):
         server = self.serve("--speed", "max")

@@ -2130,10 +2130,12 @@ class StartAndEnd(unittest.TestCase):
         process = subprocess.Popen([evod_path, "--port", "0", "--keep-nothing"], stderr=subprocess.PIPE, text=True)
         self.addCleanup(waiting.ended, process)
         self.addCleanup(process.terminate)
-        line = process.stderr.readline()
+        address = None
+        while address is None:
+            address = re.search(r":(\d+), world", process.stderr.readline())
         process.stderr.close()
         server = lambda: None  # the parts of a Server that a Client needs
-        server.port = int(re.search(r":(\d+), world", line)[1])
+        server.port = int(address[1])
         for _ in range(3):  # each is logged
             with Client(server) as client:
                 client.call(list_worlds=c.ListWorlds())

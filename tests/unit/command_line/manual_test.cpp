@@ -15,6 +15,7 @@ TEST(Manual, ContainsEveryOptionAndCommand) {
     app.option_group("World");
     app.add_option("--world", &world, "World").environment("LAB_WORLD");
     app.footer("It is quiet.\nAt night too.\n\nExamples:\n  lab run    .5 \\ 3\nAfterwards, go home.");
+    app.environment("LAB_ROOM", "The room, if not the first one.");
     app.add_command("token", "Tokens").add_command("add", "Adds").add_option("NAME", &role, "Name").required();
     const std::string page = manual(app);
     EXPECT_THAT(page, HasSubstr(".TH LAB 1 \"\" \"lab 1.2\" \"evod manual\"\n.SH NAME\nlab \\- a laboratory\n"));
@@ -24,6 +25,7 @@ TEST(Manual, ContainsEveryOptionAndCommand) {
     EXPECT_THAT(page, HasSubstr(".SS \"World\"\n.TP\n\\fB\\-\\-world\\fR \\fITEXT\\fR\nWorld.\n"));
     EXPECT_THAT(page, HasSubstr(".SS \"token add\"\n\\fBlab token add\\fR [\\fIOPTIONS\\fR] \\fINAME\\fR\n"));
     EXPECT_THAT(page, HasSubstr("\\fBLAB_WORLD\\fR\nThe value of \\fB\\-\\-world\\fR,"));
+    EXPECT_THAT(page, HasSubstr("\\fBLAB_ROOM\\fR\nThe room, if not the first one.\n"));
 }
 
 TEST(Manual, LinesAreNoRequests) {

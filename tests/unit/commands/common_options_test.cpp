@@ -1,5 +1,7 @@
 #include "server/commands/common_options.h"
 
+#include "server/base/instructions.h"
+
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -50,6 +52,30 @@ TEST(DataFolder, IsRequiredWithoutADefault) {
     folder = "given";
     EXPECT_TRUE(find_data_folder(folder));
     EXPECT_EQ(folder, "given");
+}
+
+TEST(InstructionsOfTheEnvironment, AreUsed) {
+    const Variable instructions{"EVOD_INSTRUCTIONS", "baseline"};
+    EXPECT_TRUE(use_instructions_of_environment());
+    EXPECT_EQ(base::instructions(), base::Instructions::Baseline);
+    base::use_instructions(base::default_instructions());
+}
+
+TEST(InstructionsOfTheEnvironment, AreRefusedIfUnknown) {
+    const Variable instructions{"EVOD_INSTRUCTIONS", "mmx"};
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(use_instructions_of_environment());
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                testing::StartsWith("evod: EVOD_INSTRUCTIONS: got mmx, allowed on this processor baseline"));
+    EXPECT_EQ(base::instructions(), base::default_instructions());
+}
+
+TEST(InstructionsOfTheEnvironment, AreOptional) {
+    for (const char* none : {static_cast<const char*>(nullptr), ""}) {
+        const Variable instructions{"EVOD_INSTRUCTIONS", none};
+        EXPECT_TRUE(use_instructions_of_environment());
+        EXPECT_EQ(base::instructions(), base::default_instructions());
+    }
 }
 
 TEST(Fail, PrintsTheProgramAndEveryWrongField) {

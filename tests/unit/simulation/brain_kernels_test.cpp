@@ -209,11 +209,12 @@ class NetworkKernels : public testing::TestWithParam<base::Instructions> {
         }
         base::use_instructions(GetParam());
     }
-    void TearDown() override { base::use_instructions(base::widest_instructions()); }
+    void TearDown() override { base::use_instructions(base::default_instructions()); }
 };
 
 INSTANTIATE_TEST_SUITE_P(AllInstructions, NetworkKernels,
-                         testing::Values(base::Instructions::Baseline, base::Instructions::Avx2));
+                         testing::Values(base::Instructions::Baseline, base::Instructions::Avx2,
+                                         base::Instructions::Avx512));
 
 TEST_P(NetworkKernels, ComputeWhatSingleNumbersGive) {
     struct Shape {
