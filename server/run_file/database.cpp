@@ -145,7 +145,7 @@ void Statement::bind(int parameter, std::span<const std::byte> bytes) {
     if (!database_.failed()) {
         database_.check(sqlite3_bind_blob64(handle_.get(), parameter + 1,
                                             bytes.empty() ? "" : static_cast<const void*>(bytes.data()), bytes.size(),
-                                            SQLITE_TRANSIENT)); // nullptr would bind NULL
+                                            SQLITE_STATIC)); // nullptr would bind NULL
     }
 }
 

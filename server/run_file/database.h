@@ -71,6 +71,7 @@ class Statement {
     void bind(int parameter, std::int64_t value);
     void bind(int parameter, double value);
     void bind(int parameter, std::string_view text);
+    /// Does not copy the bytes, because chromosomes can be large: they must stay valid until row() or done().
     void bind(int parameter, std::span<const std::byte> bytes);
     void bind_null(int parameter);
 

@@ -51,7 +51,7 @@ class RowWriter {
     RowWriter& real(double value);
     RowWriter& real(std::optional<double> value);
     RowWriter& text(std::string_view value);
-    RowWriter& bytes(std::span<const std::byte> value);
+    RowWriter& bytes(std::span<const std::byte> value); // must stay valid until finish()
     /// Includes the checksum of another row in the checksum of this row.
     RowWriter& covers(std::int64_t checksum);
     /// Writes the row and returns its checksum.

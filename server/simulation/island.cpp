@@ -64,6 +64,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     EVOD_ASSERT(generation >= 1);
     EVOD_ASSERT(bred.genes.rows() == evolution::gene_count(parameters));
     EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
+    born_ = {}; // frees the previous chromosomes now: Eigen's move assignment would exchange them with the new ones
     born_ = std::move(bred);
     placed_.clear();
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};

@@ -49,6 +49,10 @@ class Island {
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
+    /// Frees the copies of the weights that networks read. Until begin_generation(), organisms cannot act. Breeding reads
+    /// only the chromosomes, and the weights would be a quarter of the memory that it needs.
+    void free_weights() { living_.free_weights(); }
+
     /// Performs one tick. `tick` is its number within the generation, from 1.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 

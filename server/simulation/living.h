@@ -39,6 +39,8 @@ struct Living {
     void put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& parameters);
     void put_brain(std::size_t body, std::span<const float> new_weights, float new_heading);
     void put_weights(std::size_t body, std::span<const float> new_weights);
+    /// Returns the memory of the weights. Until clear(), nothing may read or write weights.
+    void free_weights() { weights = base::Column<float>{}; }
     /// Returns the index in `weights` of the first weight of an organism; the next one is physics::lanes_max further.
     std::size_t first_weight(std::size_t body) const {
         constexpr std::size_t group = physics::lanes_max;

@@ -324,6 +324,9 @@ void World::turn_over(base::Executor& executor) {
         p, islands_.size(), [&](std::size_t island) -> std::span<double> { return fitness_[island]; }, seed_,
         moment_.generation, executor);
 
+    for (Island& island : islands_) {
+        island.free_weights();
+    }
     std::vector<evolution::GeneMatrix> migrated;
     const std::vector<const evolution::GeneMatrix*> genes = parents(migrated);
     std::vector<evolution::NextGeneration> bred(islands_.size());

@@ -46,10 +46,11 @@ TEST_P(NetworkWorlds, AreTheSameOnAnyThreadsAndInstructions) {
         support::ThreadExecutor several{threads};
         EXPECT_EQ(hashes(several), expected) << threads;
     }
-    base::use_instructions(base::Instructions::Baseline);
-    const std::vector<base::StateHash> baseline = hashes(one);
-    base::use_instructions(base::widest_instructions());
-    EXPECT_EQ(baseline, expected);
+    for (const std::string_view instructions : base::available_instructions()) {
+        base::use_instructions(instructions);
+        EXPECT_EQ(hashes(one), expected) << instructions;
+    }
+    base::use_instructions(base::default_instructions());
 }
 
 TEST_P(NetworkWorlds, DoWhatIsPredicted) {
@@ -72,6 +73,17 @@ TEST_P(NetworkWorlds, DoWhatIsPredicted) {
         const auto scale = static_cast<float>(parameters.tick_s) / mass;
         EXPECT_NEAR(after.first, before.first + intention.force_x * scale, 1e-3f) << tick;
         EXPECT_NEAR(after.second, before.second + intention.force_y * scale, 1e-3f) << tick;
+    }
+}
+
+TEST(NetworkWorld, BreedingNeedsNoMemoryForWeights) {
+    Living living;
+    for (int generation = 0; generation < 2; ++generation) {
+        living.clear(3);
+        living.resize(5);
+        EXPECT_EQ(living.weights.size(), 3 * physics::padded(5));
+        living.free_weights();
+        EXPECT_EQ(living.weights.capacity(), 0u);
     }
 }
 
