@@ -14,6 +14,7 @@ import textwrap
 import unittest
 
 import numpy
+import pandas
 
 import evod
 import evod.aio
@@ -23,6 +24,7 @@ from support import PROGRAM, Relay, Server, until
 
 KILLS = int(os.environ.get("KILLS", 6))
 OPTIMISER = {"fitness": "external", "external_bodies": False, "population_size": 30, "elite_count": 2}
+FREE = {**OPTIMISER, "mutate_group": "free", "selection": "tournament", "creep": "gaussian"}
 
 
 def gene_sum(genes, life):
@@ -31,8 +33,19 @@ def gene_sum(genes, life):
 
 
 def rastrigin(genes, life):
-    x = (numpy.asarray(genes, float) - 150) / 25
+    """0 is the maximum, where all free genes are 0; the other local maxima are about 1, 2, 3 … lower."""
+    x = genes[:, 6:]
     return -(10 * x.shape[1] + (x**2 - 10 * numpy.cos(2 * numpy.pi * x)).sum(axis=1))
+
+
+ANGLES = numpy.random.default_rng(5).permutation(20) * numpy.pi / 10
+CITIES = numpy.stack([numpy.cos(ANGLES), numpy.sin(ANGLES)], axis=1)  # the corners of a polygon of 20 sides, in a random order
+
+
+def tour(genes, life):
+    """The negative length of the tour that visits the cities in the order of their free genes: random keys."""
+    stops = CITIES[numpy.argsort(genes[:, 6:], axis=1)]
+    return -numpy.linalg.norm(stops - numpy.roll(stops, 1, axis=1), axis=2).sum(axis=1)
 
 
 def verify(folder, world):
@@ -78,10 +91,65 @@ class Evaluate(unittest.TestCase):
         self.assertEqual(len(eaten), 12)
         self.assertEqual(sum(eaten), sum(s.food_eaten for g in mine.history() for s in g.islands))
 
-    def test_rastrigin_is_optimised(self):
-        world = self.lab.create_world("rastrigin", {**OPTIMISER, "population_size": 200}, seed=1)
-        history = world.evaluate(rastrigin, generations=150)
-        self.assertGreater(history[-1].best, history[0].best / 5)  # 0 is the maximum
+    def test_rastrigin_in_ten_dimensions_is_solved(self):
+        setting = {**FREE, "population_size": 200, "free_genes": 10, "free_gene_min": -5.12, "free_gene_max": 5.12,
+                   "free_mutation_step": 0.5, "mutation_chance": 0.1}
+        for seed in (1, 2, 3):
+            world = self.lab.create_world(f"rastrigin{seed}", setting, seed=seed)
+            history = world.evaluate(rastrigin, generations=300)
+            self.assertLess(history[0].best, -80)
+            self.assertGreater(history[-1].best, -0.05)  # above every local maximum but the greatest
+            self.assertLess(numpy.abs(history[-1].genes[6:]).max(), 1)
+            verify(self.data.name, f"rastrigin{seed}")
+
+    def test_the_shortest_tour_of_20_cities_is_found(self):
+        setting = {**FREE, "population_size": 500, "free_genes": 20, "elite_count": 5, "mutation_chance": 0.05,
+                   "reset_chance": 0.03, "rearranging": "swap", "rearrange_chance": 0.3}
+        for seed in (1, 2, 3):
+            world = self.lab.create_world(f"tour{seed}", setting, seed=seed)
+            history = world.evaluate(tour, generations=300)
+            self.assertLess(history[0].best, -15)
+            self.assertAlmostEqual(history[-1].best, -40 * numpy.sin(numpy.pi / 20))  # the sides of the polygon
+            verify(self.data.name, f"tour{seed}")
+
+    def test_genes_have_names_in_all_results(self):
+        setting = {"free_genes": 40, "controller": "network", "population_size": 12, "generation_s": 2}
+        world = self.lab.create_world("named", setting, seed=3)
+        names = world.info().gene_names
+        self.assertEqual((len(names), names[6], names[-1]), (83, "hidden1<food_bearing", "free39"))
+        groups = world.info().gene_groups
+        self.assertEqual((groups[5], groups[6], groups[82]), (evod.GeneGroup.BODY, evod.GeneGroup.BRAIN, evod.GeneGroup.FREE))
+        ended = list(world.run(generations=3))
+        history, table = world.history(), world.table("generations")
+        self.assertEqual(set(history.to_pandas().columns), set(table.columns))
+        self.assertEqual(ended[2].genes.names, names)
+        self.assertEqual(ended[2].islands[0].genes["free39"], history[2].islands[0].genes["free39"])
+        self.assertAlmostEqual(float(history[2].change["free39"]), history[2].genes["free39"] - history[1].genes["free39"])
+        self.assertEqual(world.statistics().last[0].genes["turn<bias"], history[2].islands[0].genes["turn<bias"])
+        population = world.population()
+        self.assertEqual((population.genes.shape, population.genes.names), ((12, 83), names))
+        self.assertEqual(world.organism(5).genes["free0"], population.genes["free0"][5])
+        self.assertEqual(world.table("population").dtypes["free39"], numpy.float32)
+        child = world.breeding(generation=1).descendants[-1]
+        crossed = [bool(child.from_second >> gene & 1) for gene in range(83)]
+        self.assertIn(True, crossed[64:])
+        for gene in range(83):
+            if child.order_mutation is None and gene not in [mutation.gene for mutation in child.mutations]:
+                self.assertEqual(child.genes[gene], (child.second_genes if crossed[gene] else child.first_genes)[gene])
+        world.step()
+        placed = world.place(organisms=[(600, 400, world.population().genes[3].to_dict())])
+        self.assertEqual(world.organism(placed.organisms[0]).genes["free7"], world.population().genes["free7"][3])
+        with evod.open_run(f"{self.data.name}/named.evod") as run:
+            self.assertEqual(run.gene_names, names)
+            self.assertEqual(list(run.generations().columns), list(table.columns))
+            pandas.testing.assert_frame_equal(run.generations(), table, check_dtype=False, check_exact=True)
+            self.assertEqual(run.genes(3)[0].names, names)
+            self.assertTrue((run.organisms()["free39"].iloc[24:36].to_numpy() == run.genes(3)[0]["free39"]).all())
+            again = {**setting, "population_size": 12}
+            copy = self.lab.create_world("copy", again, population=run.genes(3))
+            self.assertTrue((copy.population().genes == run.genes(3)[0]).all())
+            with self.assertRaises(evod.InvalidArgument):
+                self.lab.create_world("six", {"population_size": 12}, population=run.genes(3))
 
     def test_a_wrong_result_names_it_and_the_world_waits(self):
         world = self.lab.create_world("wrong", OPTIMISER, seed=2)

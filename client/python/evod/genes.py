@@ -85,7 +85,7 @@ class ByGene(tuple[T, ...]):
     names: tuple[str, ...]  #: the names of the genes
 
     def __new__(cls, items: Iterable[T], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
-        made = super().__new__(cls, items)
+        made = super().__new__(cls, items)  # type: ignore[arg-type]
         made.names = tuple(names)
         return made
 

@@ -611,7 +611,7 @@ def gene_names(world: str, count: int) -> Plan[Sequence[str]]:
     """Returns the names of the genes of a world in which organisms had `count` genes."""
     if count == len(GENE_NAMES):
         return GENE_NAMES
-    names = (yield from world_info(world)).gene_names
+    names: Sequence[str] = (yield from world_info(world)).gene_names
     if len(names) != count:
         raise NotFound(f"the world '{world}' was reset while its genes were requested")
     return names

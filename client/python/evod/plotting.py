@@ -192,7 +192,7 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
     ax = _axes(ax)
     curves = {gene: _spread(columns, gene) for gene in gene_names}
     if len(curves) > GENES_PLOTTED_MAX:
-        changes = {gene: abs(mean[-1] - mean[0]) / (deviation[0] or 1) for gene, (_, mean, deviation) in curves.items()}
+        changes = {gene: float(abs(mean[-1] - mean[0]) / (deviation[0] or 1)) for gene, (_, mean, deviation) in curves.items()}
         most_changed = sorted(curves, key=lambda gene: -changes[gene])[:GENES_PLOTTED_MAX]
         curves = {gene: curves[gene] for gene in most_changed}
     for gene, (generation, mean, deviation) in curves.items():

@@ -173,7 +173,7 @@ class WorldInfo(_Result):
     run_until_tick: int | None  #: the world runs until this tick
     ticks_per_s: float  #: measured over about the last second; 0 while the world does not run
     gene_names: tuple[str, ...]  #: the names of the genes, in the order of all arrays
-    gene_groups: tuple[GeneGroup, ...]  #: the group of each gene
+    gene_groups: tuple[GeneGroup, ...]  #: the group of each gene; () from a server that knows only the six genes of the body
     replay: ReplayRange | None  #: None: this is not a replay
     storage: Storage | None  #: None: the server does not store the run
     leased: bool  #: a client has a lease from `World.run_until_tick`
@@ -420,7 +420,8 @@ _CLASSES: Mapping[str, type[Any]] = {
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
 } | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {
-    kind.__name__: kind for kind in (CauseOfDeath, Choice, DescendantKind, GeneGroup, MutationKind, Outcome, RunState, StorageState)
+    kind.__name__: kind
+    for kind in (CauseOfDeath, Choice, DescendantKind, GeneGroup, MutationKind, Outcome, RunState, StorageState)
 }
 _OF_GENES: Mapping[str, Callable[[Any, Sequence[str]], Any]] = {
     "GenerationStatistics.genes": lambda genes, names: ByGene((result(gene) for gene in genes), names),
@@ -460,7 +461,8 @@ def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     full_name = f"{field.containing_type.name}.{name}"
     if full_name == "Descendant.from_second":
         return _from_second
-    if of_genes := _OF_GENES.get(full_name):
+    if full_name in _OF_GENES:
+        of_genes = _OF_GENES[full_name]
         return lambda message, names: of_genes(getattr(message, name), names)
     # Newer versions of protobuf have is_repeated in place of label.
     is_repeated = field.is_repeated if hasattr(field, "is_repeated") else field.label == field.LABEL_REPEATED
@@ -469,12 +471,14 @@ def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     if field.enum_type is not None:
         state = _STATES[field.enum_type.name]
         if is_repeated:
-            convert = lambda numbers: tuple(state(number) for number in numbers)
-        else:
-            convert = lambda number: state(number) if number else None
+            return lambda message, names: tuple(state(number) for number in getattr(message, name))
+        convert = lambda number: state(number) if number else None
     elif convert is None and field.message_type is not None:
         special = _SPECIAL.get(field.message_type.name)
-        of_item: _Converter = (lambda item, names: special(item)) if special else result
+
+        def of_item(item: Any, names: Sequence[str]) -> Any:
+            return special(item) if special is not None else result(item, names)
+
         if is_repeated:
             return lambda message, names: tuple(of_item(item, names) for item in getattr(message, name))
         if is_optional:
