@@ -202,6 +202,7 @@ SubscriptionHandle Connection::subscribe(evod::v1::SubscribeSnapshots subscripti
         subscription.set_codec(evod::v1::CODEC_DELTA);
         subscription.set_compression(evod::v1::COMPRESSION_ZSTD);
         subscription.set_unacknowledged_max(unacknowledged_snapshots_max);
+        subscription.set_headings(true);
     }
     *request.mutable_subscribe_snapshots() = std::move(subscription);
     return io_->subscribe(std::move(request));

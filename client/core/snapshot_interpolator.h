@@ -42,6 +42,15 @@ struct Positions {
         return {between(previous->x[j], entities->x[i]), between(previous->y[j], entities->y[i])};
     }
 
+    /// Returns the heading of entity i in radians, turned by the smaller angle. The entities must have headings.
+    float heading_radians(std::size_t i) const {
+        const std::uint32_t j = previous == nullptr || !previous->has_headings() ? no_match : match[i];
+        const auto turned = static_cast<std::int8_t>(j == no_match ? 0 : entities->heading[i] - previous->heading[j]);
+        constexpr double per_step = 6.283185307179586 / codec::heading_steps;
+        const double steps = static_cast<std::int8_t>(entities->heading[i]) - (1 - blend) * turned;
+        return static_cast<float>(steps * per_step);
+    }
+
   private:
     /// Interpolates between two positions given in steps. The difference of whole steps is exact, and few conversions
     /// are needed.

@@ -274,6 +274,40 @@ struct OrganismOptions {
     MomentOptions moment;
 };
 
+/// What an organism is about to do: "seeks food at 120.0, 40.0 px".
+std::string choice_text(const v1::OrganismInfo& info) {
+    const std::string target = " at " + fixed(info.target_x_px(), 1) + ", " + fixed(info.target_y_px(), 1) + " px";
+    switch (info.choice()) {
+    case v1::CHOICE_WANDER:
+        return "wanders";
+    case v1::CHOICE_SEEK:
+        return "seeks food" + target;
+    case v1::CHOICE_FLEE:
+        return "flees from poison" + target;
+    case v1::CHOICE_STEER:
+        return "steers with its neural network";
+    default:
+        return "";
+    }
+}
+
+/// The activations of the network, a line per layer: "  inputs: food_bearing 0.21, food_proximity 0.40".
+std::string brain_text(const v1::Brain& brain) {
+    const auto layer = [](const std::string& title, const auto& values, const auto& name) {
+        std::string text = "  " + title + ": ";
+        for (int i = 0; i < values.size(); ++i) {
+            text += (i == 0 ? "" : ", ") + name(i) + " " + fixed(double{values.Get(i)}, 3);
+        }
+        return text + "\n";
+    };
+    const auto named = [](const auto& names) {
+        return [&names](int i) { return i < names.size() ? names.Get(i) : std::to_string(i); };
+    };
+    return layer("inputs", brain.inputs(), named(brain.input_names())) +
+           layer("hidden", brain.hidden(), [](int i) { return "hidden" + std::to_string(i + 1); }) +
+           layer("outputs", brain.outputs(), named(brain.output_names()));
+}
+
 void organism(const Common& common, const OrganismOptions& options) {
     Caller caller{common};
     const std::string name = world_at(caller, common, options.moment);
@@ -298,7 +332,18 @@ void organism(const Common& common, const OrganismOptions& options) {
                 std::to_string(info.poison_eaten()) + " poison\n";
         if (info.alive()) {
             text += "  at " + fixed(info.x_px(), 1) + ", " + fixed(info.y_px(), 1) + " px, moving " +
-                    fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s\n";
+                    fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s";
+            if (info.has_heading()) {
+                constexpr double degrees_per_radian = 57.29577951308232;
+                text += ", heading " + fixed(info.heading() * degrees_per_radian, 1) + "°";
+            }
+            text += "\n";
+            if (const std::string choice = choice_text(info); !choice.empty()) {
+                text += "  next tick: " + choice + "\n";
+            }
+        }
+        if (info.has_brain()) {
+            text += brain_text(info.brain());
         }
         if (info.has_placed_tick()) {
             text += "  placed after tick " + std::to_string(info.placed_tick()) + " of its generation\n";

@@ -45,7 +45,9 @@ void BodyWriter::planes(Numbers values, Numbers indices, std::uint32_t bytes) {
             }
         }
     };
-    bytes == 2 ? write(std::integral_constant<std::uint32_t, 2>{}) : write(std::integral_constant<std::uint32_t, 4>{});
+    bytes == 1   ? write(std::integral_constant<std::uint32_t, 1>{})
+    : bytes == 2 ? write(std::integral_constant<std::uint32_t, 2>{})
+                 : write(std::integral_constant<std::uint32_t, 4>{});
 }
 
 void BodyWriter::column(Numbers values) {

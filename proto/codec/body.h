@@ -29,7 +29,7 @@ class BodyWriter {
     }
 
     /// Writes the values at `indices` in planes: the lowest byte of each number, then the next byte of each number, and
-    /// so on. Bytes that rarely differ are then adjacent. Each number has `bytes` bytes, 2 or 4.
+    /// so on. Bytes that rarely differ are then adjacent. Each number has `bytes` bytes, 1, 2 or 4.
     void planes(Numbers values, Numbers indices, std::uint32_t bytes);
 
     /// Writes signed numbers in the width that needs the fewest bytes.

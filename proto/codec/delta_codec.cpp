@@ -13,8 +13,9 @@ namespace evod::codec {
 
 namespace {
 
-constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // flags in the parts of a section
-constexpr std::uint32_t size_bytes = 2;                       // size of a radius, health, half width or half height
+constexpr std::uint8_t some_are_gone = 1, some_have_come = 2, have_headings = 4; // flags in the parts of a section
+constexpr std::uint32_t size_bytes = 2;    // size of a radius, health, half width or half height
+constexpr std::uint32_t heading_bytes = 1; // size of a heading
 
 /// Describes a kind of entity: its columns, and which of them can change.
 struct Kind {
@@ -243,8 +244,9 @@ Column at(Numbers column, Numbers indices) {
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
                  const Pairing& pairing, const BaselineView::Displacements* displacements) {
     const Column& come = pairing.come;
-    writer.number(
-        static_cast<std::uint8_t>((pairing.gone.empty() ? 0 : some_are_gone) | (come.empty() ? 0 : some_have_come)));
+    writer.number(static_cast<std::uint8_t>((pairing.gone.empty() ? 0 : some_are_gone) |
+                                            (come.empty() ? 0 : some_have_come) |
+                                            (entities.heading.empty() ? 0 : have_headings)));
     if (!pairing.gone.empty()) {
         writer.number(static_cast<std::uint32_t>(pairing.gone.size()));
         writer.rising_column(pairing.gone);
@@ -261,6 +263,9 @@ void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entit
     if (kind.sizes) {
         writer.planes(entities.width, come, size_bytes);
         writer.planes(entities.height, come, size_bytes);
+    }
+    if (!entities.heading.empty()) {
+        writer.planes(entities.heading, come, heading_bytes);
     }
     if (kind.displacements) {
         const Column still(displacements ? 0 : come.size(), 0);
@@ -300,9 +305,9 @@ struct Section {
 };
 
 /// Returns all columns of a section.
-std::array<Column*, 7> columns_of(Section& section) {
-    return {&section.entities.id,     &section.entities.x,      &section.entities.y,     &section.entities.width,
-            &section.entities.height, &section.displacements.x, &section.displacements.y};
+std::array<Column*, 8> columns_of(Section& section) {
+    return {&section.entities.id,     &section.entities.x,       &section.entities.y,      &section.entities.width,
+            &section.entities.height, &section.entities.heading, &section.displacements.x, &section.displacements.y};
 }
 
 /// Inserts the entities `come` into `stayed`: ordered by id, or at the end if the kind has no ids.
@@ -343,11 +348,17 @@ struct Step {
 /// count  the number of entities of this kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
-    if (parts & ~(some_are_gone | some_have_come)) {
-        reader.refuse("has parts " + std::to_string(parts) + ", not 0 to 3");
+    const unsigned parts_max = kind.health ? 7 : 3; // only organisms have headings
+    if (parts > parts_max) {
+        reader.refuse("has parts " + std::to_string(parts) + ", not 0 to " + std::to_string(parts_max));
         return {};
     }
     const std::size_t base_count = base.entities.x.size();
+    const bool headings = (parts & have_headings) != 0;
+    if (base_count > 0 && headings != base.entities.has_headings() && count > 0) {
+        reader.refuse(headings ? "has headings, unlike its base" : "has no headings, unlike its base");
+        return {};
+    }
     Section section = std::move(base);
     if (parts & some_are_gone) {
         const auto gone_count = reader.number<std::uint32_t>();
@@ -377,6 +388,9 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
         if (kind.sizes) {
             come.entities.width = reader.planes(come_count, size_bytes);
             come.entities.height = reader.planes(come_count, size_bytes);
+        }
+        if (headings) {
+            come.entities.heading = reader.planes(come_count, heading_bytes);
         }
         if (kind.displacements) {
             come.displacements.x = reader.column(come_count);
@@ -412,6 +426,12 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
             add(section.entities.height, differences);
         }
     }
+    if (stayed_count > 0 && headings) {
+        const Column differences = reader.column(stayed_count);
+        for (std::size_t i = 0; !reader.damage() && i < stayed_count; ++i) {
+            section.entities.heading[i] = (section.entities.heading[i] + differences[i]) % heading_steps;
+        }
+    }
     const auto too_large = [](std::uint32_t value) { return value > 0xffff; };
     if ((step.position_bytes == 2 &&
          (std::ranges::any_of(section.entities.x, too_large) || std::ranges::any_of(section.entities.y, too_large))) ||
@@ -443,7 +463,7 @@ QuantisedView::QuantisedView(const QuantisedSnapshot& snapshot)
     : position_bytes{snapshot.position_bytes}, of_tile{snapshot.of_tile} {
     for (const Kind& kind : kinds) {
         const Entities& entities = snapshot.*kind.entities;
-        this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height};
+        this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height, entities.heading};
     }
 }
 
@@ -458,7 +478,9 @@ bool follows(const QuantisedView& next, const QuantisedView& base) {
     const auto same_sizes = [&](const EntitiesView& a, const EntitiesView& b) {
         return same(a.width, b.width) && same(a.height, b.height);
     };
+    const bool both_have_organisms = !next.organisms.x.empty() && !base.organisms.x.empty();
     return next.position_bytes == base.position_bytes && next.of_tile == base.of_tile &&
+           (!both_have_organisms || next.organisms.heading.empty() == base.organisms.heading.empty()) &&
            (next.of_tile || (same_sizes(next.crates, base.crates) && same_sizes(next.obstacles, base.obstacles) &&
                              same(next.obstacles.x, base.obstacles.x) && same(next.obstacles.y, base.obstacles.y)));
 }
@@ -556,6 +578,18 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
             each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
                 for (std::size_t n = 0; n < count; ++n) {
                     residuals[k + n] = to.height[j + n] - from.height[i + n];
+                }
+                k += count;
+            });
+            writer.column(residuals);
+        }
+        if (!to.heading.empty()) {
+            std::size_t k = 0;
+            each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                for (std::size_t n = 0; n < count; ++n) {
+                    // The cast keeps the difference modulo 256 within one signed byte.
+                    residuals[k + n] = static_cast<std::uint32_t>(
+                        std::int32_t{static_cast<std::int8_t>(to.heading[j + n] - from.heading[i + n])});
                 }
                 k += count;
             });

@@ -40,7 +40,7 @@ struct Baseline {
 
 /// Non-owning views of a QuantisedSnapshot and a Baseline, or of the parts of their columns that belong to one tile.
 struct EntitiesView {
-    std::span<const std::uint32_t> id, x, y, width, height;
+    std::span<const std::uint32_t> id, x, y, width, height, heading{};
 };
 struct QuantisedView {
     QuantisedView() = default;
@@ -64,7 +64,7 @@ struct BaselineView {
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
 /// Returns whether `next` can be encoded as a delta against `base`. All boxes must be the same, except for the
-/// positions of crates.
+/// positions of crates. The organisms of both or of neither must have headings.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.

@@ -1,4 +1,4 @@
-// Quantised snapshot: the entities of a snapshot as whole numbers, in units of 1/16 px or 1/16 of health (steps.h). All
+// Quantised snapshot: the entities of a snapshot as whole numbers, in units of steps (steps.h). All
 // codecs encode exactly these numbers.
 #pragma once
 
@@ -19,8 +19,9 @@ struct Entities {
     // Organisms, food and poison have ids. In a tile, boxes have ids too: their indices on the island.
     Column id;
     Column x, y;
-    Column width;  // organisms: radius; boxes: half width
-    Column height; // organisms: health; boxes: half height
+    Column width;     // organisms: radius; boxes: half width
+    Column height;    // organisms: health; boxes: half height
+    Column heading{}; // organisms that have a heading, if the viewer wants it
 
     // These functions return the values of entity i.
     std::uint32_t id_of(std::size_t i) const { return id.empty() ? static_cast<std::uint32_t>(i) : id[i]; }
@@ -28,6 +29,8 @@ struct Entities {
     float y_px(std::size_t i) const { return px_of(y[i]); }
     float radius_px(std::size_t i) const { return px_of(width[i]); }
     float health(std::size_t i) const { return px_of(height[i]); }
+    bool has_headings() const { return !heading.empty(); }
+    float heading_radians(std::size_t i) const { return radians_of(heading[i]); }
     float half_width_px(std::size_t i) const { return px_of(width[i]); }
     float half_height_px(std::size_t i) const { return px_of(height[i]); }
 

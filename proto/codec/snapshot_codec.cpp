@@ -16,6 +16,8 @@ namespace {
 using Floats = google::protobuf::RepeatedField<float>;
 using Ids = google::protobuf::RepeatedField<std::uint32_t>;
 
+constexpr float heading_max = 3.1416f; // radians: pi, and a little for rounding
+
 Damage wrong(const std::string& field, const std::string& got, const std::string& allowed) {
     return Damage{"a snapshot's " + field + " is " + got + ", not " + allowed};
 }
@@ -45,6 +47,23 @@ void set_boxes(const Entities& boxes, evod::v1::PlainBoxes& to) {
     set_values(boxes.height, *to.mutable_half_height_px());
 }
 
+Damage count_mismatch(const std::string& field, int size, std::uint32_t count) {
+    return wrong(field, std::to_string(size) + " numbers long", std::to_string(count) + " as the count says");
+}
+
+std::optional<Damage> read_headings(const Floats& from, std::uint32_t count, Column& to) {
+    if (static_cast<std::uint32_t>(from.size()) != count) {
+        return count_mismatch("plain.organisms.heading", from.size(), count);
+    }
+    const auto bad = std::ranges::find_if(from, [](float value) { return !(std::abs(value) <= heading_max); });
+    if (bad != from.end()) {
+        return wrong("plain.organisms.heading", std::to_string(*bad), "-pi to pi");
+    }
+    to.resize(count);
+    std::ranges::transform(from, to.begin(), heading_in_steps);
+    return std::nullopt;
+}
+
 struct PlainColumn {
     const char* field;
     const Floats& from;
@@ -56,15 +75,13 @@ struct PlainColumn {
 /// ids  the ids of the entities; nullptr: this kind has no ids.
 std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Ids* ids,
                                  std::initializer_list<PlainColumn> columns, Entities& to) {
+    const std::string path = "plain." + kind + ".";
     const auto refused = [&](const std::string& field, const std::string& got, const std::string& allowed) {
-        return wrong("plain." + kind + "." + field, got, allowed);
-    };
-    const auto count_mismatch = [&](const std::string& field, int size) {
-        return refused(field, std::to_string(size) + " numbers long", std::to_string(count) + " as the count says");
+        return wrong(path + field, got, allowed);
     };
     if (ids != nullptr) {
         if (static_cast<std::uint32_t>(ids->size()) != count) {
-            return count_mismatch("id", ids->size());
+            return count_mismatch(path + "id", ids->size(), count);
         }
         if (std::adjacent_find(ids->begin(), ids->end(), std::greater_equal<>{}) != ids->end()) {
             return refused("id", "out of order", "rising");
@@ -74,7 +91,7 @@ std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, c
     for (const PlainColumn& column : columns) {
         const Floats& from = column.from;
         if (static_cast<std::uint32_t>(from.size()) != count) {
-            return count_mismatch(column.field, from.size());
+            return count_mismatch(path + column.field, from.size(), count);
         }
         const auto bad = std::find_if(from.begin(), from.end(), [](float value) { return !std::isfinite(value); });
         if (bad != from.end()) {
@@ -91,7 +108,7 @@ std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, c
 void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
     for (const auto part : snapshot_parts) {
         const Entities& entities = snapshot.*part;
-        for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height}) {
+        for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height, &entities.heading}) {
             const bool optional = column != &entities.y; // not all kinds have this column
             if (column->size() != entities.x.size() && !(optional && column->empty())) {
                 throw std::invalid_argument{"a snapshot has columns of different lengths"};
@@ -113,6 +130,9 @@ void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& fr
     set_values(snapshot.organisms.y, *organisms.mutable_y_px());
     set_values(snapshot.organisms.width, *organisms.mutable_radius_px());
     set_values(snapshot.organisms.height, *organisms.mutable_health());
+    for (const std::uint32_t steps : snapshot.organisms.heading) {
+        organisms.add_heading(radians_of(steps));
+    }
     set_items(snapshot.food, *plain.mutable_food());
     set_items(snapshot.poison, *plain.mutable_poison());
     set_boxes(snapshot.crates, *plain.mutable_crates());
@@ -162,6 +182,9 @@ Result<ReceivedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
                                                {"radius_px", organisms.radius_px(), &Entities::width},
                                                {"health", organisms.health(), &Entities::height}},
                                               entities->organisms);
+    if (!damage && !organisms.heading().empty()) {
+        damage = read_headings(organisms.heading(), frame.organism_count(), entities->organisms.heading);
+    }
     const auto read_items = [&](const char* kind, std::uint32_t count, const evod::v1::PlainItems& from, Entities& to) {
         if (!damage) {
             damage = read_plain(kind, count, &from.id(),

@@ -1,7 +1,9 @@
-// Steps: the unit of lengths and health in snapshots. One step is 1/16 px, or 1/16 of health.
+// Steps: the unit of lengths, health and headings in snapshots. One step is 1/16 px, 1/16 of health, or 1/256 of a full
+// turn.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -49,6 +51,22 @@ class PositionInSteps {
     unsigned shift_;
     std::int32_t half_, largest_, top_;
 };
+
+/// The number of steps of a heading in a full turn. A heading needs one byte.
+constexpr unsigned heading_steps = 256;
+
+/// Converts radians, which must be finite, to the nearest step of a heading, 0 to 255.
+inline std::uint32_t heading_in_steps(float radians) {
+    constexpr double per_radian = heading_steps / 6.283185307179586;
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(double{radians} * per_radian + 0.5))) %
+           heading_steps;
+}
+
+/// Converts steps of a heading to radians, −π to π − 1 step.
+inline float radians_of(std::uint32_t steps) {
+    constexpr double per_step = 6.283185307179586 / heading_steps;
+    return static_cast<float>(static_cast<double>(static_cast<std::int8_t>(steps)) * per_step);
+}
 
 inline std::uint16_t size_in_steps(float size) {
     // If `steps` is NaN, the first comparison is false, so the result is 0.

@@ -172,8 +172,12 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
             }
             return {to, indices.size()};
         };
-        view.*parts_seen[p] = {from.id.empty() ? indices : column(0, from.id), column(1, from.x), column(2, from.y),
-                               column(3, from.width), column(4, from.height)};
+        view.*parts_seen[p] = {from.id.empty() ? indices : column(0, from.id),
+                               column(1, from.x),
+                               column(2, from.y),
+                               column(3, from.width),
+                               column(4, from.height),
+                               column(5, from.heading)};
     }
     return view;
 }
@@ -245,8 +249,12 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
                 }
             }
         };
-        for (const auto column : {&Entities::id, &Entities::x, &Entities::y, &Entities::width, &Entities::height}) {
+        for (const auto column :
+             {&Entities::id, &Entities::x, &Entities::y, &Entities::width, &Entities::height, &Entities::heading}) {
             gather(column);
+        }
+        if (to.has_headings() && to.heading.size() != to.x.size()) {
+            return Damage{"a snapshot has headings only in some tiles"};
         }
     }
     return snapshot;

@@ -184,6 +184,23 @@ v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::u
     return to;
 }
 
+namespace {
+
+void set_brain(const evolution::BrainLayout& layout, const simulation::Activations& activations, v1::Brain& to) {
+    for (const evolution::BrainInput input : layout.inputs) {
+        to.add_input_names(std::string{evolution::brain_input_names[static_cast<std::size_t>(input)]});
+    }
+    for (const std::string_view name : layout.output_names) {
+        to.add_output_names(std::string{name});
+    }
+    to.mutable_inputs()->Assign(activations.inputs.begin(), activations.inputs.end());
+    to.mutable_hidden()->Assign(activations.hidden.begin(), activations.hidden.end());
+    to.mutable_outputs()->Assign(activations.outputs.begin(), activations.outputs.end());
+    to.set_has_bias(layout.has_bias);
+}
+
+} // namespace
+
 v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id) {
     const auto& parameters = world.parameters().active;
     const auto& born = island.born();
@@ -219,6 +236,9 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     to.set_force_y(intention.force_y);
     to.set_target_x_px(physics::to_px(intention.target_x));
     to.set_target_y_px(physics::to_px(intention.target_y));
+    if (const auto activations = world.activations(island, id)) {
+        set_brain(island.brain(), *activations, *to.mutable_brain());
+    }
     const simulation::Fate& fate = island.fate();
     to.set_food_eaten(fate.food_eaten[id]);
     to.set_poison_eaten(fate.poison_eaten[id]);
@@ -229,6 +249,9 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
         to.set_velocity_x_px_s(bodies.velocity_x[*body]);
         to.set_velocity_y_px_s(bodies.velocity_y[*body]);
         to.set_health(island.living().health[*body]);
+        if (island.living().has_brains()) {
+            to.set_heading(island.living().heading[*body]);
+        }
         to.set_lived_s(static_cast<double>(world.moment().generation_tick - island.placed_tick(id)) *
                        parameters.tick_s);
     } else {

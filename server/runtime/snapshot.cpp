@@ -21,6 +21,11 @@ void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
     copy(bodies.y, to.y);
     copy(bodies.radius, to.radius_px);
     copy(island.living().health, to.health);
+    if (island.living().has_brains()) {
+        copy(island.living().heading, to.heading);
+    } else {
+        to.heading.clear(); // the memory may come from a snapshot of another world
+    }
     to.alive_count = island.alive_count();
 }
 

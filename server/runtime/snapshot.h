@@ -27,6 +27,7 @@ struct OrganismsSnapshot {
     base::Column<std::uint32_t> place_of;
     base::Column<physics::Coordinate> x, y;
     base::Column<float> radius_px, health;
+    base::Column<float> heading; // radians; empty if organisms have no heading
     std::uint32_t alive_count = 0;
 };
 

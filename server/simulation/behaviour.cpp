@@ -153,6 +153,27 @@ void live_and_steer(const OrganismColumns& columns, Living& living, const Steeri
 
 namespace {
 
+/// Copies of the networks of a few organisms, for BrainKernels::predict().
+class FewBrains {
+  public:
+    FewBrains(const Living& living, std::size_t count) : weights_(living.weight_count()) {
+        few_.clear(living.weight_count());
+        few_.resize(count);
+    }
+    void put(std::size_t k, const Living& living, std::uint32_t body) {
+        for (std::size_t w = 0; w < weights_.size(); ++w) {
+            weights_[w] = living.weights[living.first_weight(body) + w * physics::lanes_max];
+        }
+        few_.put_brain(k, weights_, living.heading[body]);
+        few_.base_health[k] = living.base_health[body];
+    }
+    BrainColumns columns() { return brain_columns(few_); }
+
+  private:
+    Living few_;
+    std::vector<float> weights_;
+};
+
 /// Copies organisms in groups, with what they see, and calls predict(few, first, count) for each group.
 template <class Predict>
 void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Living& living, const Items& food,
@@ -199,21 +220,13 @@ void predict_steering(const physics::Circles& bodies, const Living& living, cons
     EVOD_ASSERT(rules.weight_count == living.weight_count());
     FewOrganisms few;
     ChosenForces outcome;
-    Living few_living;
-    few_living.clear(living.weight_count());
-    few_living.resize(std::min(bodies_asked.size(), FewOrganisms::room));
-    std::vector<float> weights(living.weight_count());
+    FewBrains few_brains{living, std::min(bodies_asked.size(), FewOrganisms::room)};
     for_each_few(few, bodies, living, food, poison, bodies_asked, [&](std::size_t begin, std::size_t count) {
         for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t body = bodies_asked[begin + k];
-            for (std::size_t w = 0; w < weights.size(); ++w) {
-                weights[w] = living.weights[living.first_weight(body) + w * physics::lanes_max];
-            }
-            few_living.put_brain(k, weights, living.heading[body]);
-            few_living.base_health[k] = living.base_health[body];
+            few_brains.put(k, living, bodies_asked[begin + k]);
         }
-        brain_kernels().predict(few.columns(), brain_columns(few_living), 0, count, rules, outcome.x.data(),
-                                outcome.y.data());
+        brain_kernels().predict(few.columns(), few_brains.columns(), 0, count, rules, outcome.x.data(),
+                                outcome.y.data(), nullptr);
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t body = bodies_asked[begin + k];
             const float share = rules.is_kinematic ? 1 / (bodies.inverse_mass[body] * static_cast<float>(tick_s)) : 1;
@@ -224,6 +237,31 @@ void predict_steering(const physics::Circles& bodies, const Living& living, cons
                                      force(outcome.y[k], few.velocity_y[k]), few.x[k], few.y[k]};
         }
     });
+}
+
+Activations predict_activations(const physics::Circles& bodies, const Living& living, const Items& food,
+                                const Items& poison, const SteeringRules& rules, std::uint32_t body) {
+    EVOD_ASSERT(rules.weight_count == living.weight_count());
+    FewOrganisms few;
+    ChosenForces outcome;
+    FewBrains few_brains{living, 1};
+    std::array<float, (evolution::brain_inputs_max + evolution::brain_hidden_max + 2) * physics::lanes_max> neurons;
+    for_each_few(few, bodies, living, food, poison, {&body, 1}, [&](std::size_t, std::size_t) {
+        few_brains.put(0, living, body);
+        brain_kernels().predict(few.columns(), few_brains.columns(), 0, 1, rules, outcome.x.data(), outcome.y.data(),
+                                neurons.data());
+    });
+    Activations activations;
+    std::size_t next = 0;
+    const auto read = [&](std::size_t count, std::vector<float>& to) {
+        for (std::size_t n = 0; n < count; ++n) {
+            to.push_back(neurons[next++ * physics::lanes_max]);
+        }
+    };
+    read(rules.input_count, activations.inputs);
+    read(rules.hidden_count, activations.hidden);
+    read(2, activations.outputs);
+    return activations;
 }
 
 } // namespace evod::simulation

@@ -27,6 +27,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace evod::simulation {
 
@@ -82,5 +83,14 @@ void predict_intentions(const physics::Circles& bodies, const Living& living, co
 void predict_steering(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
                       const SteeringRules& rules, double tick_s, std::span<const std::uint32_t> bodies_asked,
                       std::span<Intention> intentions);
+
+/// The neurons of a network at the start of the next tick.
+struct Activations {
+    std::vector<float> inputs, hidden, outputs;
+};
+/// Computes the activations with which the network of an organism will steer it if no item reappears before the next
+/// tick. `body` must not be the placeholder of a dead organism.
+Activations predict_activations(const physics::Circles& bodies, const Living& living, const Items& food,
+                                const Items& poison, const SteeringRules& rules, std::uint32_t body);
 
 } // namespace evod::simulation

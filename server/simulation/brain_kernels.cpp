@@ -110,16 +110,18 @@ struct Outputs {
     Floats drive, turn; // −1 … 1
 };
 
-Outputs run_networks(const Floats* inputs, const float* weights, const SteeringRules& rules) {
-    Floats hidden[evolution::brain_hidden_max], outputs[2];
-    weights = compute_layer(weights, inputs, rules.input_count, rules.has_bias, hidden, rules.hidden_count);
+/// neurons  the inputs; receives the hidden neurons and then the outputs after them.
+Outputs run_networks(Floats* neurons, const float* weights, const SteeringRules& rules) {
+    Floats* const hidden = neurons + rules.input_count;
+    Floats* const outputs = hidden + rules.hidden_count;
+    weights = compute_layer(weights, neurons, rules.input_count, rules.has_bias, hidden, rules.hidden_count);
     compute_layer(weights, hidden, rules.hidden_count, rules.has_bias, outputs, 2);
     return {outputs[0], outputs[1]};
 }
 
 template <bool predicting>
 inline void steer_each(const OrganismColumns& columns, const BrainColumns& brains, std::size_t begin, std::size_t end,
-                       const SteeringRules& rules, float* out_x, float* out_y) {
+                       const SteeringRules& rules, float* out_x, float* out_y, float* neurons_seen = nullptr) {
     for (std::size_t i = begin; i < end; i += lanes) {
         if constexpr (!predicting) {
             store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
@@ -129,13 +131,13 @@ inline void steer_each(const OrganismColumns& columns, const BrainColumns& brain
         const Floats vx = load<Floats>(columns.velocity_x + i), vy = load<Floats>(columns.velocity_y + i);
         const Floats speed = square_root(vx * vx + vy * vy);
         const Surroundings around{x, y, directions_of(old_heading), load<Floats>(columns.food.radius + i)};
-        Floats inputs[evolution::brain_inputs_max];
+        Floats neurons[evolution::brain_inputs_max + evolution::brain_hidden_max + 2];
         for (std::uint32_t k = 0; k < rules.input_count; ++k) {
-            inputs[k] = input(rules.inputs[k], columns, brains, i, around, speed, rules);
+            neurons[k] = input(rules.inputs[k], columns, brains, i, around, speed, rules);
         }
         const float* weights =
             brains.weights + i / group_size * group_size * rules.weight_count + i % group_size; // of the first lane
-        const Outputs out = run_networks(inputs, weights, rules);
+        const Outputs out = run_networks(neurons, weights, rules);
 
         const Floats turned = old_heading + out.turn * rules.turn;
         const Floats heading = turned - to_floats(round_to_integers(turned * (1 / tau))) * tau;
@@ -149,6 +151,10 @@ inline void steer_each(const OrganismColumns& columns, const BrainColumns& brain
         store(out_y + (i - begin), there ? ahead.y * size : Floats{});
         if constexpr (!predicting) {
             store(brains.heading + i, heading);
+        } else if (neurons_seen != nullptr) {
+            for (std::uint32_t n = 0; n < rules.input_count + rules.hidden_count + 2; ++n) {
+                store(neurons_seen + n * group_size + (i - begin), neurons[n]);
+            }
         }
     }
 }
@@ -159,8 +165,8 @@ void steer(const OrganismColumns& columns, const BrainColumns& brains, std::size
 }
 
 void predict(const OrganismColumns& columns, const BrainColumns& brains, std::size_t begin, std::size_t end,
-             const SteeringRules& rules, float* out_x, float* out_y) {
-    steer_each<true>(columns, brains, begin, end, rules, out_x, out_y);
+             const SteeringRules& rules, float* out_x, float* out_y, float* neurons) {
+    steer_each<true>(columns, brains, begin, end, rules, out_x, out_y, neurons);
 }
 
 HashWords hash(const OrganismColumns& columns, const float* heading, std::uint32_t kind, std::size_t begin,

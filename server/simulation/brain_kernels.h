@@ -43,8 +43,11 @@ struct BrainKernels {
     void (*steer)(const OrganismColumns& columns, const BrainColumns& brains, std::size_t begin, std::size_t end,
                   const SteeringRules& rules, float* out_x, float* out_y);
     /// Computes the same as steer(), but does not change health and headings.
+    ///
+    /// neurons  receives the inputs, hidden neurons and outputs of the networks: neuron n of organism begin + k is
+    ///          element n · lanes_max + k. At most lanes_max organisms then. May be nullptr.
     void (*predict)(const OrganismColumns& columns, const BrainColumns& brains, std::size_t begin, std::size_t end,
-                    const SteeringRules& rules, float* out_x, float* out_y);
+                    const SteeringRules& rules, float* out_x, float* out_y, float* neurons);
     /// Returns the sum of hash_of_heading() over the organisms that are not void.
     HashWords (*hash)(const OrganismColumns& columns, const float* heading, std::uint32_t kind, std::size_t begin,
                       std::size_t end);

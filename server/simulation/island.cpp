@@ -557,6 +557,15 @@ std::vector<Intention> Island::intentions(const parameters::Parameters& paramete
     return intentions;
 }
 
+std::optional<Activations> Island::activations(const parameters::Parameters& parameters, std::uint32_t id) const {
+    const auto body = body_of(id);
+    if (!body || !living_.has_brains()) {
+        return std::nullopt;
+    }
+    return predict_activations(bodies_, living_, food_, poison_, steering_rules(brain_, parameters, area_),
+                               static_cast<std::uint32_t>(*body));
+}
+
 physics::MotionReport Island::motion_report(const parameters::Parameters& parameters) const {
     if (!has_bodies()) {
         return {};

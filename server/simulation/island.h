@@ -99,6 +99,11 @@ class Island {
     std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
                                       base::Range ids) const;
 
+    /// Predicts the activations of an organism's network in the next tick; nullopt if the organism is dead or has none.
+    std::optional<Activations> activations(const parameters::Parameters& parameters, std::uint32_t id) const;
+    /// The networks of the organisms; empty if they have none.
+    const evolution::BrainLayout& brain() const { return brain_; }
+
     /// Returns the index in bodies() of the organism with this id; nullopt if the organism is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
     /// The index in bodies() of every organism of this generation, by id; no_body for the dead. Empty if there are

@@ -173,12 +173,20 @@ std::vector<Intention> World::intentions(const Island& island, base::Range ids) 
     if (is_after_last_tick()) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
-    std::optional<parameters::Parameters> first; // the parameters that will be active in the generation's first tick
-    if (moment_.generation_tick == 0) {
-        first = parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+    return island.intentions(parameters_of_next_tick(), static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
+}
+
+std::optional<Activations> World::activations(const Island& island, std::uint32_t id) const {
+    if (is_after_last_tick()) {
+        return std::nullopt;
     }
-    return island.intentions(first ? *first : parameters_.active,
-                             static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
+    return island.activations(parameters_of_next_tick(), id);
+}
+
+parameters::Parameters World::parameters_of_next_tick() const {
+    return moment_.generation_tick == 0
+               ? parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick)
+               : parameters_.active;
 }
 
 std::uint64_t World::alive_count() const {

@@ -201,6 +201,9 @@ class World {
     /// Predicts what organisms [ids.begin, ids.end) of an island will do next, if no item reappears before that. The
     /// choice is None for dead organisms, at the end of a generation, and if there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
+    /// Predicts the activations of an organism's network in the next tick, in the same way; nullopt if the organism has
+    /// no network or does nothing.
+    std::optional<Activations> activations(const Island& island, std::uint32_t id) const;
     /// The number of living organisms on all islands.
     std::uint64_t alive_count() const;
 
@@ -222,6 +225,7 @@ class World {
     World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
           parameters::Schedule schedule);
     void begin_run();
+    parameters::Parameters parameters_of_next_tick() const;
     void make_islands();
     /// Adds the requested parameters that differ from `requested` to the changes of the run.
     void record_change(const parameters::Parameters& requested, const std::string& by);

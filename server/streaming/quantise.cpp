@@ -70,7 +70,8 @@ codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin,
             .height = sizes(boxes.half_height_px)};
 }
 
-codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
+codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes,
+                             bool with_headings) {
     codec::Entities to;
     Column indices;
     resize_columns(organisms.alive_count, to.id, indices);
@@ -89,6 +90,10 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
     fetch(organisms.y, unchanged, to.y);
     fetch(organisms.radius_px, codec::size_in_steps, to.width);
     fetch(organisms.health, codec::size_in_steps, to.height);
+    if (with_headings && !organisms.heading.empty()) {
+        to.heading.resize(kept);
+        fetch(organisms.heading, codec::heading_in_steps, to.heading);
+    }
     to_steps(to.x, position_bytes);
     to_steps(to.y, position_bytes);
     return to;
@@ -96,11 +101,11 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
 
 } // namespace
 
-codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island) {
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, bool with_headings) {
     const std::uint32_t position_bytes = codec::position_bytes_of(island.width_px, island.height_px);
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
     return {.position_bytes = position_bytes,
-            .organisms = organisms_of(island.organisms, position_bytes),
+            .organisms = organisms_of(island.organisms, position_bytes, with_headings),
             .food = items_of(island.food, position_bytes),
             .poison = items_of(island.poison, position_bytes),
             .crates = boxes_of(island.boxes, 0, crates, position_bytes),

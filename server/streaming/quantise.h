@@ -9,6 +9,7 @@
 
 namespace evod::streaming {
 
-codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island);
+/// with_headings  whether organisms that have a heading keep it.
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, bool with_headings = false);
 
 } // namespace evod::streaming

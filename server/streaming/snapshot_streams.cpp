@@ -3,6 +3,7 @@
 #include "server/streaming/quantise.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <utility>
 
@@ -133,7 +134,7 @@ void SnapshotStreams::each_newest(const SnapshotSubscription& subscription, cons
 }
 
 SnapshotStreams::GroupName SnapshotStreams::group_of(const SnapshotSubscription& subscription) {
-    return {subscription.world, subscription.rate_hz, subscription.form()};
+    return {subscription.world, subscription.rate_hz, subscription.form(), subscription.headings};
 }
 
 runtime::WorldDemands SnapshotStreams::demand() const {
@@ -242,16 +243,19 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
     }
     for (; steps_left > 0 && of.next_island < snapshot.islands.size(); ++of.next_island) {
         const runtime::IslandSnapshot& island = snapshot.islands[of.next_island];
-        std::shared_ptr<EncodedIsland> encoded; // shared by the viewers of all rates and forms
+        // Shared by the viewers of all rates and forms; index: whether with headings.
+        std::array<std::shared_ptr<EncodedIsland>, 2> encodings;
         std::size_t steps = 1;
         for (Viewer& viewer : viewers) {
             if (viewer.subscription->island && *viewer.subscription->island != island.island) {
                 continue;
             }
+            const bool headings = viewer.subscription->headings && !island.organisms.heading.empty();
+            std::shared_ptr<EncodedIsland>& encoded = encodings[headings];
             if (!encoded) {
                 v1::SnapshotFrame about = frame_without_entities(snapshot, island);
                 about.set_sequence(++sequence_);
-                encoded = std::make_shared<EncodedIsland>(std::move(about), quantise(island), compressor_);
+                encoded = std::make_shared<EncodedIsland>(std::move(about), quantise(island, headings), compressor_);
             }
             StreamedSnapshotPtr& newest = viewer.group->newest[island.island];
             if (!newest || newest->sequence() != encoded->sequence()) { // this viewer is the first of its group

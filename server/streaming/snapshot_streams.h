@@ -63,6 +63,7 @@ class SnapshotStreams {
         std::string world;
         double rate_hz;
         Form form;
+        bool headings;
         friend auto operator<=>(const GroupName&, const GroupName&) = default;
     };
     struct Group {

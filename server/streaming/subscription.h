@@ -31,6 +31,7 @@ struct SnapshotSubscription {
     v1::Compression compression = v1::COMPRESSION_NONE;
     // Limit of unacknowledged snapshots of one island; nullopt: no limit.
     std::optional<std::uint32_t> unacknowledged_max;
+    bool headings = false;              // whether snapshots contain headings
     std::optional<v1::View> view;       // CODEC_DELTA only: snapshots are sent in tiles
     std::optional<Bandwidth> bandwidth; // the bandwidth limit of the view
 

@@ -52,6 +52,8 @@ inline void require_valid(const codec::ReceivedSnapshot& snapshot) {
         for (const codec::Column* column : {&kind.width, &kind.height}) {
             require(column->size() == (items ? 0 : size));
         }
+        require(kind.heading.empty() || (part == &codec::QuantisedSnapshot::organisms && kind.heading.size() == size));
+        require(std::ranges::all_of(kind.heading, [](auto steps) { return steps < codec::heading_steps; }));
     }
     require(std::ranges::adjacent_find(snapshot.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
             snapshot.tiles.end());

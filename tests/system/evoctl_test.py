@@ -72,6 +72,17 @@ class Commands(WithServer):
         self.assertIn("food_radius", self.evoctl("organism", "3"))
         self.assertIn("organism", self.evoctl("organism", "5000", status=1))
 
+    def test_organism_shows_what_its_network_does(self):
+        self.evoctl("create", "networks", "--seed", "4", "--set", "controller=network", "brain_hidden=2")
+        self.assertRegex(self.evoctl("--world", "networks", "organism", "3"),
+                         r"px/s, heading -?[0-9.]+°\n  next tick: steers with its neural network\n"
+                         r"  inputs: food_bearing \S+, food_proximity \S+, poison_bearing \S+, poison_proximity \S+\n"
+                         r"  hidden: hidden1 \S+, hidden2 \S+\n  outputs: thrust \S+, turn \S+\n")
+        rules = self.evoctl("organism", "3")
+        self.assertNotIn("heading", rules)
+        self.assertRegex(rules, "next tick: (wanders|seeks food at|flees from poison at)")
+        self.evoctl("delete", "networks")
+
     def test_an_earlier_tick_is_refused(self):
         self.evoctl("step", "60")
         self.evoctl("run")

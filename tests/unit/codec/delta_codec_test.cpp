@@ -68,9 +68,10 @@ Sender::Sent two_snapshots(std::uint64_t seed, SnapshotDecoder& decoder) {
     return sender.send(island, 2);
 }
 
-RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly, (std::uint64_t seed, bool wide)) {
+RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly, (std::uint64_t seed, bool wide, bool headings)) {
     Random random{seed};
     LivingIsland island;
+    island.headings = headings;
     island.side_px = wide ? 500'000 : 4000;
     island.populate(random);
     Sender sender;
@@ -96,6 +97,57 @@ RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly, (std::uint64_t seed, b
         compress(sent.delta);
         same(compressed.decode(sent.delta), compressed);
     }
+}
+
+/// Organisms without radius and health, with these ids and headings.
+QuantisedSnapshot heading_to(Column ids, Column headings) {
+    QuantisedSnapshot snapshot;
+    Entities& organisms = snapshot.organisms;
+    organisms.x = organisms.y = organisms.width = organisms.height = Column(ids.size(), 0);
+    organisms.id = std::move(ids);
+    organisms.heading = std::move(headings);
+    return snapshot;
+}
+
+TEST(DeltaCodec, HeadingsTakeAByteAndTurnThroughZero) {
+    const auto base = std::make_shared<QuantisedSnapshot>(heading_to({1, 2, 5}, {250, 128, 0}));
+    const Baseline baseline = initial_baseline(base);
+    const QuantisedSnapshot next = heading_to({1, 3, 5}, {5, 77, 255});
+    const std::string body = encode_delta(baseline, next, 1);
+    const auto decoded = decode_body(body, {.counts = counts_of(next)}, &baseline);
+    ASSERT_TRUE(decoded) << decoded.error().what;
+    EXPECT_EQ(*decoded->snapshot, next);
+    const std::string still = encode_delta(baseline, *base, 1);
+    const QuantisedSnapshot turned = heading_to({1, 2, 5}, {122, 1, 129});
+    EXPECT_EQ(encode_delta(baseline, turned, 1).size(), still.size() + 3) << "a signed byte for each organism";
+}
+
+TEST(DeltaCodec, ABodyWithoutHeadingsDoesNotMentionThem) {
+    QuantisedSnapshot headless = heading_to({1, 2}, {});
+    const std::string without = encode_keyframe(initial_baseline(std::make_shared<QuantisedSnapshot>(headless)));
+    const std::string with =
+        encode_keyframe(initial_baseline(std::make_shared<QuantisedSnapshot>(heading_to({1, 2}, {3, 4}))));
+    EXPECT_EQ(without[2], 2) << "the parts of the organisms: some have come";
+    EXPECT_EQ(with[2], 2 + 4);
+    EXPECT_EQ(with.size(), without.size() + 2);
+}
+
+TEST(DeltaCodec, HeadingsMustNotVanishOrAppear) {
+    const auto with = std::make_shared<QuantisedSnapshot>(heading_to({1, 2}, {3, 4}));
+    const auto without = std::make_shared<QuantisedSnapshot>(heading_to({1, 2}, {}));
+    for (const auto& [base, next] : {std::pair{with, without}, std::pair{without, with}}) {
+        EXPECT_FALSE(follows(*next, *base));
+        const Baseline right = initial_baseline(next), wrong = initial_baseline(base);
+        const auto refused =
+            decode_body(encode_delta(right, *next, 1), {.counts = counts_of(*next)}, &wrong); // of another base
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().what, testing::HasSubstr("headings, unlike its base"));
+    }
+    std::string of_food = encode_keyframe(initial_baseline(std::make_shared<QuantisedSnapshot>()));
+    of_food[3] = 4; // the parts of the food
+    const auto refused = decode_body(of_food, {}, nullptr);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, testing::HasSubstr("has parts 4, not 0 to 3"));
 }
 
 RC_GTEST_PROP(DeltaCodec, BothEndsPredictTheSame, (std::uint64_t seed)) {

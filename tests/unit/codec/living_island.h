@@ -24,6 +24,7 @@ inline std::uint64_t below(Random& random, std::uint64_t end) {
 
 struct LivingIsland {
     double side_px = 4000; // of a square
+    bool headings = false; // whether organisms have headings
     struct Organism {
         std::uint32_t id;
         std::int64_t x, y, dx, dy;
@@ -122,6 +123,9 @@ struct LivingIsland {
             snapshot.organisms.id.push_back(organism.id);
             place(snapshot.organisms, organism);
             size(snapshot.organisms, organism.radius, organism.health);
+            if (headings) {
+                snapshot.organisms.heading.push_back(static_cast<std::uint32_t>(organism.dx >> 6 & 0xff));
+            }
         }
         for (const auto& [items, entities] : {std::pair{&food, &snapshot.food}, std::pair{&poison, &snapshot.poison}}) {
             for (const Item& item : *items) {

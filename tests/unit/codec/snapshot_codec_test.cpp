@@ -57,6 +57,24 @@ TEST(PlainCodec, DecodingRestoresTheSnapshot) {
     EXPECT_EQ(*snapshot->entities, small_snapshot());
 }
 
+TEST(PlainCodec, HeadingsAreRadians) {
+    QuantisedSnapshot snapshot = small_snapshot();
+    EXPECT_TRUE(frame_of(snapshot).plain().organisms().heading().empty());
+    snapshot.organisms.heading = {64, 128};
+    auto frame = frame_of(snapshot);
+    const auto& headings = frame.plain().organisms().heading();
+    ASSERT_EQ(headings.size(), 2);
+    EXPECT_FLOAT_EQ(headings.Get(0), 1.5707964F);
+    EXPECT_FLOAT_EQ(headings.Get(1), -3.1415927F);
+    EXPECT_EQ(*decode_plain(frame).value().entities, snapshot);
+    frame.mutable_plain()->mutable_organisms()->set_heading(1, 3.2F);
+    EXPECT_THAT(decode_plain(frame).error().what, HasSubstr("plain.organisms.heading is 3.2"));
+    frame.mutable_plain()->mutable_organisms()->set_heading(1, std::nanf(""));
+    EXPECT_THAT(decode_plain(frame).error().what, HasSubstr("not -pi to pi"));
+    frame.mutable_plain()->mutable_organisms()->add_heading(0);
+    EXPECT_THAT(decode_plain(frame).error().what, HasSubstr("heading is 3 numbers long, not 2 as the count says"));
+}
+
 TEST(PlainCodec, TheAccessorsConvertToPx) {
     const QuantisedSnapshot snapshot = small_snapshot();
     EXPECT_EQ(snapshot.organisms.x_px(1), 1280.F);

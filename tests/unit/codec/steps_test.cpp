@@ -53,6 +53,18 @@ RC_GTEST_PROP(Steps, RoundingMovesAPositionByHalfAStepAtMost, (bool wide)) {
     RC_ASSERT(std::abs(in_steps(position) / 16.0 - position / double{px}) <= 1.0 / 32);
 }
 
+TEST(Steps, HeadingsAreRoundedToTheNearestStep) {
+    for (std::uint32_t steps = 0; steps < heading_steps; ++steps) {
+        EXPECT_EQ(heading_in_steps(radians_of(steps)), steps);
+        EXPECT_LE(std::abs(radians_of(steps)), 3.1415928F);
+    }
+    EXPECT_EQ(heading_in_steps(0.0122F), 0U);
+    EXPECT_EQ(heading_in_steps(0.0124F), 1U);
+    EXPECT_EQ(heading_in_steps(-0.0124F), 255U);
+    EXPECT_EQ(heading_in_steps(3.1416F), 128U);
+    EXPECT_EQ(heading_in_steps(-3.1416F), 128U);
+}
+
 TEST(Steps, PxAndStepsConvertBothWays) {
     for (const std::uint32_t steps : {0U, 1U, 17U, 0xffffU, (1U << 24) - 1, 1U << 30}) {
         EXPECT_EQ(steps_of(px_of(steps)), steps);

@@ -80,7 +80,8 @@ QuantisedSnapshot copy_of(const QuantisedView& view) {
                         .x = {of.x.begin(), of.x.end()},
                         .y = {of.y.begin(), of.y.end()},
                         .width = {of.width.begin(), of.width.end()},
-                        .height = {of.height.begin(), of.height.end()}};
+                        .height = {of.height.begin(), of.height.end()},
+                        .heading = {of.heading.begin(), of.heading.end()}};
     };
     return {.position_bytes = view.position_bytes,
             .of_tile = view.of_tile,
@@ -94,10 +95,23 @@ QuantisedSnapshot copy_of(const QuantisedView& view) {
 LivingIsland random_island(std::uint64_t seed) {
     Random random{seed};
     LivingIsland island;
+    island.headings = below(random, 2) == 0;
     island.side_px = std::array{400.0, 1024.0, 4000.0, 60'000.0}[below(random, 4)];
     island.populate(random);
     island.live(random, 1); // some are on the walls
     return island;
+}
+
+TEST(SnapshotTiles, HeadingsInSomeTilesOnlyAreRefused) {
+    QuantisedSnapshot with{.of_tile = true}, without{.of_tile = true};
+    with.organisms = {.id = {1}, .x = {1}, .y = {1}, .width = {1}, .height = {1}, .heading = {9}};
+    without.organisms = {.id = {2}, .x = {2}, .y = {2}, .width = {2}, .height = {2}};
+    const QuantisedSnapshot empty{.of_tile = true};
+    EXPECT_THAT(merged(2, std::array<const QuantisedSnapshot*, 2>{&with, &empty}).value().organisms.heading,
+                ElementsAre(9));
+    const auto refused = merged(2, std::array<const QuantisedSnapshot*, 2>{&with, &without});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("headings only in some tiles"));
 }
 
 RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheSnapshot, (std::uint64_t seed)) {

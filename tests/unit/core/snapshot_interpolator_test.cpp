@@ -49,6 +49,20 @@ std::vector<float> x_px(const Positions& positions) {
 
 const SnapshotInterpolator::Clock::time_point start{};
 
+TEST(Positions, HeadingsTurnByTheSmallerAngle) {
+    const codec::Entities before{
+        .id = {1, 2}, .x = {0, 0}, .y = {0, 0}, .width = {}, .height = {}, .heading = {250, 0}};
+    const codec::Entities now{.id = {1, 2}, .x = {0, 0}, .y = {0, 0}, .width = {}, .height = {}, .heading = {6, 64}};
+    const std::vector<std::uint32_t> match{0, Positions::no_match};
+    constexpr float step = 6.2831853f / 256;
+    const Positions half{.entities = &now, .previous = &before, .match = match, .blend = 0.5};
+    EXPECT_FLOAT_EQ(half.heading_radians(0), 0) << "halfway between -6 and 6 steps";
+    EXPECT_FLOAT_EQ(half.heading_radians(1), 64 * step) << "not in the previous snapshot";
+    const Positions begin{.entities = &now, .previous = &before, .match = match, .blend = 0};
+    EXPECT_FLOAT_EQ(begin.heading_radians(0), -6 * step);
+    EXPECT_FLOAT_EQ(Positions{.entities = &now}.heading_radians(0), 6 * step);
+}
+
 TEST(SnapshotInterpolator, InterpolatesOrganismsInBothSnapshots) {
     SnapshotInterpolator view;
     view.add(snapshot(10, {{1, 0, 0}, {2, 50, 50}, {4, 10, 20}}), start);

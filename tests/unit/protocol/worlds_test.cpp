@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -83,7 +84,40 @@ TEST_F(Lived, AnOrganismIsConvertedCompletely) {
     // not every organism eats or dies in a quarter of a second
     never.erase("poison_eaten"), never.erase("cause_of_death");
     never.erase("placed_tick"); // no command has placed an organism
-    EXPECT_THAT(never, testing::IsEmpty());
+    EXPECT_THAT(never, testing::UnorderedElementsAre("brain", "heading")) << "of organisms with a network";
+}
+
+TEST(OrganismMessage, ContainsTheActivationsOfItsNetwork) {
+    parameters::Parameters parameters;
+    parameters.controller = evolution::Controller::Network;
+    parameters.sense_poison = false;
+    parameters.brain_hidden = 3;
+    simulation::World world{parameters, base::Seed{4}};
+    base::InlineExecutor executor;
+    for (int tick = 0; tick < 30; ++tick) {
+        world.advance_tick(executor);
+    }
+    const simulation::Island& island = world.islands()[0];
+    const v1::OrganismInfo info = organism_info(world, island, 7);
+    EXPECT_EQ(info.heading(), double{island.living().heading[*island.body_of(7)]});
+    EXPECT_EQ(info.choice(), v1::CHOICE_STEER);
+    EXPECT_THAT(unset_in(info.brain()), testing::IsEmpty());
+    EXPECT_THAT(info.brain().input_names(), testing::ElementsAre("food_bearing", "food_proximity"));
+    EXPECT_THAT(info.brain().output_names(), testing::ElementsAre("thrust", "turn"));
+    const auto& genes = info.genes();
+    ASSERT_EQ(genes.size(), 6 + 3 * 3 + 2 * 4);
+    int next = 6;
+    const auto expect_layer = [&](const auto& before, const auto& layer) {
+        for (const float activation : layer) {
+            double sum = 0;
+            for (const float input : before) {
+                sum += double{genes.Get(next++)} * double{input};
+            }
+            EXPECT_NEAR(activation, std::tanh(sum + double{genes.Get(next++)}), 2e-6); // the last weight is the bias
+        }
+    };
+    expect_layer(info.brain().inputs(), info.brain().hidden());
+    expect_layer(info.brain().hidden(), info.brain().outputs());
 }
 
 } // namespace

@@ -84,7 +84,9 @@ struct Organisms {
     }
     BrainColumns brains() { return {weights.data(), heading.data(), base_health.data()}; }
     void steer() { brain_kernels().steer(columns(), brains(), 0, count, rules, out_x.data(), out_y.data()); }
-    void predict() { brain_kernels().predict(columns(), brains(), 0, count, rules, out_x.data(), out_y.data()); }
+    void predict() {
+        brain_kernels().predict(columns(), brains(), 0, count, rules, out_x.data(), out_y.data(), nullptr);
+    }
 };
 
 /// A crowd with random values. The last organisms are void, and some genes are 0.

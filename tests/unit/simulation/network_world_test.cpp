@@ -1,5 +1,6 @@
 // Worlds whose organisms are steered by networks: the state does not depend on threads or instructions, and organisms do
 // what is predicted.
+#include "server/base/elementary.h"
 #include "server/base/inline_executor.h"
 #include "server/base/instructions.h"
 #include "server/simulation/world.h"
@@ -85,6 +86,35 @@ TEST(NetworkWorld, BreedingNeedsNoMemoryForWeights) {
         living.free_weights();
         EXPECT_EQ(living.weights.capacity(), 0u);
     }
+}
+
+TEST_P(NetworkWorlds, TurnAsTheirActivationsSay) {
+    base::InlineExecutor executor;
+    parameters::Parameters parameters = network(GetParam(), 5);
+    parameters.food_count = parameters.poison_count = 0; // no item reappears
+    World world{parameters, base::Seed{2}};
+    const auto heading = [&] { return world.islands()[0].living().heading[*world.islands()[0].body_of(3)]; };
+    const double turn_max = parameters.turn_rate_max_deg_s / 180 * base::pi * parameters.tick_s;
+    for (int tick = 0; tick < 20; ++tick) {
+        const double before = double{heading()};
+        const auto activations = world.activations(world.islands()[0], 3);
+        ASSERT_TRUE(activations);
+        ASSERT_EQ(activations->inputs.size(), 7u);
+        ASSERT_EQ(activations->hidden.size(), 8u);
+        ASSERT_EQ(activations->outputs.size(), 2u);
+        world.advance_tick(executor);
+        const double turned = std::remainder(double{heading()} - before, 2 * base::pi);
+        EXPECT_NEAR(turned, double{activations->outputs[1]} * turn_max, 1e-5) << tick;
+    }
+}
+
+TEST(NetworkWorld, OnlyOrganismsWithANetworkHaveActivations) {
+    base::InlineExecutor executor;
+    World of_rules{parameters::Parameters{}, base::Seed{2}};
+    EXPECT_FALSE(of_rules.activations(of_rules.islands()[0], 0));
+    World world{network("newtonian", 5), base::Seed{2}};
+    EXPECT_TRUE(world.activations(world.islands()[0], 4));
+    EXPECT_FALSE(world.activations(world.islands()[0], 5)) << "there is no such organism";
 }
 
 TEST(NetworkWorld, HeadingsArePartOfTheHash) {

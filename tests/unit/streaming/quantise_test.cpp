@@ -54,6 +54,16 @@ TEST(Quantise, LivingOrganismsAreSortedById) {
     EXPECT_THAT(quantise(island).organisms.id, IsEmpty());
 }
 
+TEST(Quantise, HeadingsAreKeptOnlyIfWanted) {
+    constexpr std::int32_t away = physics::void_position;
+    runtime::IslandSnapshot island;
+    island.organisms = lying(5, {{4, step, step, 1, 1}, {3, away, away, 0, -1}, {0, step, step, 1, 1}});
+    EXPECT_THAT(quantise(island, true).organisms.heading, IsEmpty()) << "of a world without headings";
+    island.organisms.heading.assign({1.5707964F, 9.F, -0.1F});
+    EXPECT_THAT(quantise(island, false).organisms.heading, IsEmpty());
+    EXPECT_THAT(quantise(island, true).organisms.heading, ElementsAre(252, 64));
+}
+
 TEST(Quantise, AbsentItemsAreOmitted) {
     runtime::IslandSnapshot island;
     island.food.all = {{1 * step, 2 * step, 0}, {3, 4, 9}, {5 * step, 6 * step, 0}, {7, 8, 1}};

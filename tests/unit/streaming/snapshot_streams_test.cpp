@@ -27,12 +27,14 @@ struct Session final : SnapshotSender {
 class SnapshotStreamsTest : public testing::Test {
   protected:
     /// A session with one subscription, of id 1.
-    Session& subscribed(const std::string& world, v1::Codec codec = v1::CODEC_UNSPECIFIED, double rate_hz = 60) {
+    Session& subscribed(const std::string& world, v1::Codec codec = v1::CODEC_UNSPECIFIED, double rate_hz = 60,
+                        bool headings = false) {
         Session& session = *sessions.emplace_back(std::make_unique<Session>(clock, dropped));
         session.number = sessions.size();
         SnapshotSubscription subscription;
         subscription.world = world;
         subscription.rate_hz = rate_hz;
+        subscription.headings = headings;
         if (codec != v1::CODEC_UNSPECIFIED) {
             subscription.codec = codec;
         }
@@ -88,6 +90,34 @@ TEST_F(SnapshotStreamsTest, OneTurnDistributesAFewIslands) {
     EXPECT_FALSE(distribute());
     EXPECT_EQ(viewer.sends, 1);
     EXPECT_EQ(ticks(viewer), std::vector<std::uint64_t>(4, 7));
+}
+
+TEST_F(SnapshotStreamsTest, OnlyViewersThatWantHeadingsGetThem) {
+    Session &with = subscribed("w", v1::CODEC_PLAIN, 60, true), &without = subscribed("w");
+    auto snapshot = std::make_shared<runtime::Snapshot>();
+    snapshot->world = "w";
+    snapshot->island_count = 1;
+    snapshot->islands.resize(1);
+    runtime::OrganismsSnapshot& organisms = snapshot->islands[0].organisms;
+    organisms.place_of.assign(1, 0U);
+    organisms.x.assign(1, 0);
+    organisms.y.assign(1, 0);
+    for (auto* column : {&organisms.radius_px, &organisms.health, &organisms.heading}) {
+        column->assign(1, 0.F);
+    }
+    organisms.alive_count = 1;
+    std::vector<runtime::Outbox::NewestSnapshot> taken;
+    taken.push_back({.snapshot = std::move(snapshot), .after_change = true});
+    streams.deliver(std::move(taken));
+    distribute_all();
+    const auto heading_count = [](Session& session) {
+        v1::SnapshotFrame frame;
+        EXPECT_TRUE(frame.ParseFromString(*session.queue.next()->parts.front()->get()));
+        EXPECT_EQ(frame.plain().organisms().id_size(), 1);
+        return frame.plain().organisms().heading_size();
+    };
+    EXPECT_EQ(heading_count(with), 1);
+    EXPECT_EQ(heading_count(without), 0);
 }
 
 TEST_F(SnapshotStreamsTest, OtherWorldsAreServedBetweenTurns) {

@@ -18,6 +18,13 @@ TEST(Subscription, WithoutFieldsIsPlainAndOfAllIslands) {
     EXPECT_FALSE(subscription.bandwidth);
 }
 
+TEST(Subscription, GetsHeadingsOnlyOnRequest) {
+    v1::SubscribeSnapshots request;
+    EXPECT_FALSE(to_subscription(request, "w", 1, 60).headings);
+    request.set_headings(true);
+    EXPECT_TRUE(to_subscription(request, "w", 1, 60).headings);
+}
+
 TEST(Subscription, OfOneIslandCountsOne) {
     v1::SubscribeSnapshots request;
     request.set_island(0);
