@@ -42,6 +42,7 @@ from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, conne
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
 from evod.results import (
     AwaitedFitness,
+    Brain,
     Breeding,
     CauseOfDeath,
     Choice,
@@ -77,7 +78,7 @@ from evod.version import __version__
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
 
 __all__ = [
-    "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",

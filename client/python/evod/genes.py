@@ -84,10 +84,13 @@ class ByGene(tuple[T, ...]):
 
     names: tuple[str, ...]  #: the names of the genes
 
-    def __new__(cls, items: Iterable[T], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
-        made = super().__new__(cls, items)  # type: ignore[arg-type]
+    def __new__(cls, items: Iterable[Any], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
+        made = super().__new__(cls, items)
         made.names = tuple(names)
         return made
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return tuple(self), self.names
 
     @overload
     def __getitem__(self, key: SupportsIndex | str) -> T: ...

@@ -307,6 +307,7 @@ class LabPlans:
             codec=stream_pb2.CODEC_DELTA,
             compression=stream_pb2.COMPRESSION_ZSTD if snapshot_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
             unacknowledged_max=UNACKNOWLEDGED_MAX,
+            headings=True,
             view=view,
         )
         return (yield from self._subscribe(c.Request(subscribe_snapshots=snapshots)))

@@ -104,6 +104,14 @@ class DescendantKind(_State):
     CHILD = commands_pb2.DESCENDANT_KIND_CHILD
 
 
+class GeneGroup(_State):
+    """What a gene describes."""
+
+    BODY = world_pb2.GENE_GROUP_BODY  #: the six genes that every chromosome begins with
+    BRAIN = world_pb2.GENE_GROUP_BRAIN  #: a weight of the neural network that steers the organism
+    FREE = world_pb2.GENE_GROUP_FREE  #: nothing: the simulation does not read it
+
+
 class MutationKind(_State):
     """How a gene was changed."""
 
@@ -280,6 +288,22 @@ class Motion(_Result):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Brain(_Result):
+    """The neural network that steers an organism, at the start of the next tick.
+
+    Its weights are the genes of the group ``brain``: for each hidden neuron the weights of its inputs, then its bias; then for
+    each output the weights of the hidden neurons, then its bias. A neuron is tanh of the sum of its weighted inputs.
+    """
+
+    input_names: tuple[str, ...]
+    inputs: Any  #: shape (inputs,), in the order of input_names
+    hidden: Any  #: shape (hidden neurons,)
+    output_names: tuple[str, ...]
+    outputs: Any  #: shape (outputs,), in the order of output_names
+    has_bias: bool  #: whether every neuron has a bias
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class OrganismInfo(_Result):
     """The current state of one organism, returned by `World.organism`."""
 
@@ -306,6 +330,9 @@ class OrganismInfo(_Result):
     target_x_px: float  #: position of the food or poison that it seeks or flees; its own position otherwise
     target_y_px: float
     placed_tick: int | None  #: the tick of its generation after which it was placed; None: it was bred
+    heading: float | None  #: radians, -pi to pi, from +x (right) toward +y (down); None: it is dead or has no heading
+    #: Its neural network; None: it is dead, its generation has ended, or the controller of the world is not ``network``.
+    brain: Brain | None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -414,9 +441,13 @@ def _genes(values: Sequence[float], names: Sequence[str]) -> Genes:
     return Genes(numpy.array(values or [numpy.nan] * len(names), numpy.float32), names)
 
 
+def _activations(values: Sequence[float]) -> Any:
+    return numpy.array(values, numpy.float32)
+
+
 _CLASSES: Mapping[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (AwaitedFitness, Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
+    for kind in (AwaitedFitness, Brain, Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
 } | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {
@@ -432,6 +463,9 @@ _OF_GENES: Mapping[str, Callable[[Any, Sequence[str]], Any]] = {
 }
 _SPECIAL: Mapping[str, Callable[[Any], Any]] = {
     "Speed": lambda speed: "max" if speed.max else speed.real_time_factor,
+    "Brain.inputs": _activations,
+    "Brain.hidden": _activations,
+    "Brain.outputs": _activations,
     "Breeding.parameters": lambda assigned: {assignment.name: value_of(assignment.value) for assignment in assigned},
 }
 
@@ -456,6 +490,13 @@ def _from_second(descendant: Any, names: Sequence[str]) -> int:
     return sum(word << 32 * index for index, word in enumerate(words))
 
 
+def _of_message(name: str) -> _Converter:
+    if name not in _SPECIAL:
+        return result
+    special = _SPECIAL[name]
+    return lambda message, names: special(message)
+
+
 def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     name = field.name
     full_name = f"{field.containing_type.name}.{name}"
@@ -471,14 +512,11 @@ def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     if field.enum_type is not None:
         state = _STATES[field.enum_type.name]
         if is_repeated:
-            return lambda message, names: tuple(state(number) for number in getattr(message, name))
-        convert = lambda number: state(number) if number else None
+            convert = lambda numbers: tuple(state(number) for number in numbers)
+        else:
+            convert = lambda number: state(number) if number else None
     elif convert is None and field.message_type is not None:
-        special = _SPECIAL.get(field.message_type.name)
-
-        def of_item(item: Any, names: Sequence[str]) -> Any:
-            return special(item) if special is not None else result(item, names)
-
+        of_item: _Converter = _of_message(field.message_type.name)
         if is_repeated:
             return lambda message, names: tuple(of_item(item, names) for item in getattr(message, name))
         if is_optional:

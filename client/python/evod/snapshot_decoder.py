@@ -10,7 +10,7 @@ import numpy
 
 from evod.errors import DamagedData
 from evod.results import Detail, RunState, result
-from evod.snapshots import STEPS_PER_PX, Array, Boxes, Columns, Items, Organisms, Snapshot, Tile
+from evod.snapshots import HEADING_STEPS, STEPS_PER_PX, Array, Boxes, Columns, Items, Organisms, Snapshot, Tile
 from evod.v1 import stream_pb2
 
 try:
@@ -253,8 +253,20 @@ def _plain(message: stream_pb2.SnapshotFrame) -> Content:
                 raise DamagedData(f"a snapshot's plain.{name} has a number in {field} that is not finite")
             if field != "id":
                 kind[field] = numpy.rint(column * STEPS_PER_PX).astype(_kind_of(field))
+        if name == "organisms" and len(columns.heading):
+            kind["heading"] = _plain_headings(columns.heading, count)
         content[name] = kind
     return content
+
+
+def _plain_headings(radians: Sequence[float], count: int) -> Array:
+    headings = numpy.array(radians, numpy.float64)
+    if len(headings) != count:
+        raise DamagedData(f"a snapshot's plain.organisms has {len(headings)} of heading, not {count} as its count says")
+    if not numpy.all(numpy.abs(headings) < 3.1416):
+        raise DamagedData("a snapshot's plain.organisms has a heading that is not -pi to pi")
+    steps: Array = numpy.rint(headings * (HEADING_STEPS / (2 * numpy.pi))).astype(numpy.int32) % HEADING_STEPS
+    return steps
 
 
 def _position_kind(position_bytes: int) -> str:
@@ -305,6 +317,13 @@ class _Deltas:
         fields = ("id",) * has_ids + ("x", "y", *sizes) + ("dx", "dy") * moves
         stayed = dict(base) if base is not None else {field: numpy.zeros(0, _kind_of(field)) for field in fields}
         parts = body.number("<u1")
+        has_headings = bool(parts & 4)
+        if len(stayed["x"]) and has_headings != ("heading" in stayed):
+            raise DamagedData("only one of a snapshot and its base has headings")
+        if has_headings and name != "organisms":
+            raise DamagedData(f"a snapshot has headings of {name}")
+        if has_headings:
+            stayed.setdefault("heading", numpy.zeros(0, numpy.int32))
         if parts & 1:
             gone_count = body.number("<u4")
             if gone_count > len(stayed["x"]):
@@ -322,6 +341,8 @@ class _Deltas:
                 come["id"] = body.rising_column(count)
             come |= {field: body.planes(count, position_bytes) for field in ("x", "y")}
             come |= {field: body.planes(count, 2).astype(numpy.int32) for field in sizes}
+            if has_headings:
+                come["heading"] = body.planes(count, 1).astype(numpy.int32)
             if moves:
                 come |= {field: body.column(count) for field in ("dx", "dy")}
         count = len(stayed["x"])
@@ -336,6 +357,8 @@ class _Deltas:
                     stayed["d" + field] = way
         if count and name == "organisms":
             stayed["health"] = stayed["health"] + body.column(count)
+        if count and has_headings:
+            stayed["heading"] = (stayed["heading"] + body.column(count)) % HEADING_STEPS
         columns = _merged(stayed, come, has_ids) if come else stayed
         if has_ids and columns["id"].flags.writeable:
             columns["id"].flags.writeable = False
@@ -390,10 +413,15 @@ def _merged_tiles(contents: Sequence[Content]) -> Content:
     """Returns the entities of several tiles, in ascending order of ids."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():
-        fields = ("id", "x", "y", *sizes)
+        # Tiles without organisms have no headings.
+        with_headings = {"heading" in content[name] for content in contents if name == "organisms" and len(content[name]["x"])}
+        if len(with_headings) == 2:
+            raise DamagedData("only some tiles of a snapshot have headings")
+        parts = [content for content in contents if not with_headings or len(content[name]["x"])]
+        fields = ("id", "x", "y", *sizes) + ("heading",) * any(with_headings)
         columns = {
-            field: numpy.concatenate([content[name][field] for content in contents])
-            if contents
+            field: numpy.concatenate([content[name][field] for content in parts])
+            if parts
             else numpy.zeros(0, _kind_of(field))
             for field in fields
         }

@@ -22,6 +22,7 @@ Array = numpy.typing.NDArray[Any]
 Columns = Mapping[str, Array]  # the fields of one kind of entity: integers, in the order of the ids
 
 STEPS_PER_PX = 16
+HEADING_STEPS = 256  # of a full turn
 
 
 class Item(NamedTuple):
@@ -165,7 +166,8 @@ class Organisms(_Entities[Organism]):
 
     def _table(self) -> dict[str, Any]:
         genes = {} if self._genes is None else self._genes.to_dict()
-        return super()._table() | {"velocity_x_px_s": self.velocities[:, 0], "velocity_y_px_s": self.velocities[:, 1]} | genes
+        headings = {"heading": self.headings} if "heading" in self._columns else {}
+        return super()._table() | headings | {"velocity_x_px_s": self.velocities[:, 0], "velocity_y_px_s": self.velocities[:, 1]} | genes
 
     @property
     def genes(self) -> Genes:
@@ -190,6 +192,18 @@ class Organisms(_Entities[Organism]):
         if not self._interval_s or "dx" not in self._columns:
             return numpy.full((len(self), 2), numpy.nan)
         return numpy.stack((self._px("dx"), self._px("dy")), axis=1) / self._interval_s
+
+    @functools.cached_property
+    def headings(self) -> Array:
+        """The direction in which each organism heads: radians, -pi to pi, from +x (right) toward +y (down).
+
+        Multiples of 1/256 of a full turn; ``world.organism()`` has the exact heading of one organism. nan if organisms have
+        no heading, that is, unless the parameter ``controller`` of the world is ``network``.
+        """
+        if "heading" not in self._columns:
+            return numpy.full(len(self), numpy.nan)
+        headings: Array = self._columns["heading"].astype(numpy.int8) * (2 * numpy.pi / HEADING_STEPS)
+        return headings
 
     @functools.cached_property
     def radius_px(self) -> Array:

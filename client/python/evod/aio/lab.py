@@ -753,7 +753,7 @@ class World(ParameterAttributes):
         return await self._link.perform(plans.history(self.name, first, last, island))
 
     async def organism(self, organism: int, island: int = 0) -> OrganismInfo:
-        """Returns the genes, position, health, parents and next choice of the organism with this id.
+        """Returns the genes, position, health, parents, next choice and neural network of the organism with this id.
 
         Raises
         ------

@@ -18,7 +18,8 @@ TEST(Presets, AreTheExperimentFiles) {
         EXPECT_EQ(preset.json, text) << preset.name;
         EXPECT_THAT(text, testing::HasSubstr("\"description\": \"" + std::string{preset.description} + "\""));
     }
-    EXPECT_THAT(names, testing::ElementsAre("default", "annealing", "brains", "classic", "islands", "rooy", "trade_offs"));
+    EXPECT_THAT(names,
+                testing::ElementsAre("default", "annealing", "brains", "classic", "islands", "rooy", "trade_offs"));
 }
 
 } // namespace
