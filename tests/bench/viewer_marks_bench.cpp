@@ -33,6 +33,9 @@ std::shared_ptr<const codec::ReceivedSnapshot> snapshot(std::size_t count, std::
     }
     all.width.assign(count, codec::steps_of(10));
     all.height.assign(count, codec::steps_of(87));
+    for (std::size_t i = 0; i < count; ++i) {
+        all.heading.push_back(static_cast<std::uint32_t>((i * 31 + tick) % codec::heading_steps));
+    }
     made->entities = std::make_shared<const codec::QuantisedSnapshot>(std::move(entities));
     return made;
 }
@@ -83,6 +86,18 @@ void bodies(benchmark::State& state) {
     });
 }
 
+/// Organisms that are steered by networks.
+void headings(benchmark::State& state) {
+    std::vector<Shape> shapes;
+    std::vector<Line> lines;
+    frames(state, [&](Setting& setting, const Positions& at) {
+        shapes.clear(), lines.clear();
+        add_discs(at, shapes);
+        add_headings(at, shapes, setting.camera.visible(), 10, lines);
+        benchmark::DoNotOptimize(lines.data());
+    });
+}
+
 /// All options together: coloured by a gene, with radii, forces and trails.
 void everything(benchmark::State& state) {
     std::vector<Shape> shapes, rings;
@@ -118,6 +133,7 @@ void density(benchmark::State& state) {
 
 BENCHMARK(plain)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(bodies)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(headings)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(everything)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 BENCHMARK(density)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 

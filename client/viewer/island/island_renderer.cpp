@@ -233,6 +233,7 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
             draw_flashes(snapshot->about.simulated_s() - (1 - blend) * behind_s, island_view);
             painter_.clip_to_viewport();
             draw_organisms(*organisms.entities, camera, island_view);
+            draw_headings(organisms, camera, styles);
             painter_.clip(on_screen(camera, snapshot->about));
             draw_forces(*organisms.entities, camera, island_view, chosen(island_view.options.forces));
             painter_.clip_to_viewport();
@@ -295,6 +296,20 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
         style.edge_pixels = 0;
     }
     painter_.draw(organisms_, style);
+}
+
+/// Draws the headings of organisms that are large enough for them to be seen.
+void IslandRenderer::draw_headings(const Positions& organisms, const Camera& camera, const Styles& styles) {
+    constexpr double radius_pixels_min = 4;
+    if (organisms.size() == 0 || !organisms.entities->has_headings() ||
+        typical_radius_px * camera.zoom() < radius_pixels_min * camera.scale()) {
+        return;
+    }
+    lines_.clear();
+    const double beyond_px = static_cast<double>(styles.heading_pixels) * camera.scale() / camera.zoom();
+    add_headings(organisms, discs_, camera.visible(), static_cast<float>(beyond_px), lines_);
+    headings_.set(lines_);
+    painter_.draw(headings_, styles.heading);
 }
 
 void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,

@@ -76,6 +76,7 @@ class IslandRenderer {
     void draw_walls(const codec::ReceivedSnapshot& snapshot, const Camera& camera, Look look);
     void draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles);
     void draw_organisms(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_headings(const Positions& organisms, const Camera& camera, const Styles& styles);
     void draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
                       const IslandView& island_view);
     void draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
@@ -90,7 +91,7 @@ class IslandRenderer {
     void set_boxes(Layer& layer, const Positions& boxes);
 
     ShapePainter painter_;
-    Layer shadow_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
+    Layer shadow_, food_, poison_, obstacles_, crates_, organisms_, headings_, pointed_at_, selected_;
     Layer few_food_, few_poison_; // shares of the items, for dots
     // Tiles streamed as dots contain only positions.
     Layer organism_dots_, crate_dots_, obstacle_dots_;

@@ -149,6 +149,9 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
     organism_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
         if (response != nullptr && organism_history_) {
             organism_history_->add(response->organism());
+            if (response->organism().has_brain()) {
+                organism_poll_.wait(brain_interval);
+            }
         }
     });
 }
@@ -268,6 +271,7 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     }
     if (gene_names_ != world.feed.gene_names()) {
         gene_names_ = world.feed.gene_names();
+        gene_groups_ = world.feed.gene_groups();
     }
     keep_selection(world);
     if (const auto selected = world.feed.selected();
@@ -296,6 +300,12 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     update_stream(world, camera, now);
 }
 
+/// The number of genes in the cycle of colourings: those of the body, which come first. Weights of a brain are too many.
+std::size_t IslandView::cycled_genes() const {
+    const std::size_t body = genes_of(gene_groups_, evod::v1::GENE_GROUP_BODY).count;
+    return body > 0 ? std::min(body, gene_names_.size()) : gene_names_.size();
+}
+
 void IslandView::next_colouring() {
     switch (options.colour_by) {
     case ColourBy::Nothing:
@@ -303,7 +313,7 @@ void IslandView::next_colouring() {
         options.gene = 0;
         break;
     case ColourBy::Gene:
-        if (++options.gene >= gene_names_.size()) {
+        if (++options.gene >= cycled_genes()) {
             options.gene = 0;
             options.colour_by = ColourBy::Health;
         }

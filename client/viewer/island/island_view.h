@@ -113,6 +113,7 @@ class IslandView {
 
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
+    const GeneGroups& gene_groups() const { return gene_groups_; }
     /// Returns the population of the newest snapshot's island and generation; null until it has been received.
     const Population* population() const {
         const Population* complete = population_poll_.complete();
@@ -149,6 +150,7 @@ class IslandView {
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
+    static constexpr std::chrono::milliseconds brain_interval{40}; // for the activations of the selected organism
 
     /// The place (world and island) and the run that are shown. When one changes, all older data are cleared.
     struct Shown {
@@ -157,6 +159,7 @@ class IslandView {
         friend bool operator==(const Shown&, const Shown&) = default;
     };
     PopulationPoll::Of population_of(const ViewedWorld& world) const;
+    std::size_t cycled_genes() const;
     bool needs_population(bool points_at) const;
     void forget();
     void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
@@ -174,6 +177,7 @@ class IslandView {
     std::shared_ptr<const codec::ReceivedSnapshot> snapshot_; // the newest snapshot
 
     std::vector<std::string> gene_names_;
+    GeneGroups gene_groups_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
     Poll picks_poll_;

@@ -53,7 +53,9 @@ void add_families(const IslandView& island_view, const Population& population, L
 } // namespace
 
 std::string gene_title(const std::string& name) {
-    return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
+    return name + (name == "food_radius" || name == "poison_radius" ? ", px"
+                   : name.find('<') != std::string::npos            ? "" // a weight
+                                                                    : ", gene units");
 }
 
 Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& snapshot,
@@ -95,9 +97,14 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
     }
     if (island_view.options.forces != Which::None && population != nullptr) {
         const palette::IslandColours& colours = palette::of(island_view.options.look);
-        legend.entries.push_back({colours.seeks, "seeks food", &Styles::arrow});
-        legend.entries.push_back({colours.flees, "flees from poison", &Styles::arrow});
-        legend.entries.push_back({colours.wanders, "wanders; an arrow of 30 px is 100 kg px/s²", &Styles::arrow});
+        const std::string length = "; an arrow of 30 px is 100 kg px/s²";
+        if (snapshot.entities->organisms.has_headings()) {
+            legend.entries.push_back({colours.wanders, "steered by its network" + length, &Styles::arrow});
+        } else {
+            legend.entries.push_back({colours.seeks, "seeks food", &Styles::arrow});
+            legend.entries.push_back({colours.flees, "flees from poison", &Styles::arrow});
+            legend.entries.push_back({colours.wanders, "wanders" + length, &Styles::arrow});
+        }
     }
     return legend;
 }

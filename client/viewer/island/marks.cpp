@@ -113,6 +113,20 @@ void add_discs(const Positions& organisms, std::vector<Shape>& discs) {
     }
 }
 
+void add_headings(const Positions& organisms, std::span<const Shape> discs, const Rectangle& visible, float beyond_px,
+                  std::vector<Line>& lines) {
+    constexpr float begin = 0.35f; // of the radius
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        const float x = discs[i].x, y = discs[i].y, radius = discs[i].half_width, end = radius + beyond_px;
+        if (may_touch(visible, x, y, end)) {
+            const float heading = organisms.heading_radians(i);
+            const float ahead_x = std::cos(heading), ahead_y = std::sin(heading);
+            lines.push_back(
+                {x + begin * radius * ahead_x, y + begin * radius * ahead_y, x + end * ahead_x, y + end * ahead_y});
+        }
+    }
+}
+
 void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs) {
     const auto share_per_step = static_cast<float>(1 / (codec::steps_per_px * full_health));
     for (std::size_t i = 0; i < discs.size(); ++i) {

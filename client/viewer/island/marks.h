@@ -58,6 +58,12 @@ class FamilyColours {
 /// Adds the disc of each organism. The functions below read positions from these discs, so that each position is
 /// computed once per frame.
 void add_discs(const Positions& organisms, std::vector<Shape>& discs);
+/// Adds a short line across the edge of each organism, which shows its heading. Organisms outside of `visible` are left
+/// out.
+///
+/// beyond_px  from the edge to the end of the line
+void add_headings(const Positions& organisms, std::span<const Shape> discs, const Rectangle& visible, float beyond_px,
+                  std::vector<Line>& lines);
 /// Replaces the half height of each disc by the organism's health, as a share of `full_health`.
 void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs);
 

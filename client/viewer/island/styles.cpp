@@ -10,6 +10,7 @@ constexpr Colour transparent{0, 0, 0, 0};
 Styles common(const palette::IslandColours& of) {
     Styles styles{};
     styles.selected = {.fill = transparent, .edge = of.selected, .edge_pixels = 3, .half_pixels_min = 6};
+    styles.heading = {.form = Form::Line, .fill = of.label, .line_pixels = 2};
     styles.crate = {
         .form = Form::Rectangle, .fill = of.crate, .edge = of.crate_edge, .edge_pixels = 2, .half_pixels_min = 1};
     styles.obstacle = {.form = Form::Rectangle, .fill = of.obstacle, .half_pixels_min = 1};
@@ -40,6 +41,7 @@ Styles vivid(const palette::IslandColours& of, std::uint8_t shadow) {
     styles.trail = {.form = Form::SoftLine, .fill = of.trail, .line_pixels = 5};
     styles.shadow = {.form = Form::SoftLine, .fill = {0, 0, 0, shadow}, .line_pixels = 48};
     styles.highlight_pixels = 8;
+    styles.heading_pixels = 10;
     styles.label_zoom_min = 1.4f;
     return styles;
 }
@@ -55,6 +57,7 @@ Styles classic(const palette::IslandColours& of) {
     styles.trail = {.form = Form::Line, .fill = of.trail, .line_pixels = 1.5f};
     styles.shadow = {.form = Form::SoftLine, .fill = transparent};
     styles.highlight_pixels = 0;
+    styles.heading_pixels = 6;
     styles.label_zoom_min = 0.45f;
     return styles;
 }

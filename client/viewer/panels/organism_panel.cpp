@@ -3,6 +3,7 @@
 #include "client/core/duration.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/panels/brain_diagram.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/world/freezer.h"
 #include "client/viewer/world/healthiest.h"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace evod::viewer {
@@ -122,7 +124,7 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
     case evod::v1::CHOICE_FLEE:
         return "about to flee from poison" + place;
     case evod::v1::CHOICE_STEER:
-        return "about to do what its network says";
+        return "steered by its network";
     default:
         return "";
     }
@@ -221,11 +223,24 @@ void OrganismPanel::build_choice(Context& context) {
     }
 }
 
+/// Builds the network of an organism. Returns false if it has none.
+bool OrganismPanel::build_brain_of(const Context& context, const evod::v1::OrganismInfo& info) {
+    const GeneRange weights = genes_of(context.island_view.gene_groups(), evod::v1::GENE_GROUP_BRAIN);
+    const std::span genes{info.genes().data(), static_cast<std::size_t>(info.genes_size())};
+    if (!info.has_brain() || weights.first + weights.count > genes.size()) {
+        return false;
+    }
+    build_brain(info.brain(), genes.subspan(weights.first, weights.count), context.gui);
+    return true;
+}
+
 void OrganismPanel::build_life(Context& context, const OrganismHistory& history) {
     const evod::v1::OrganismInfo& info = *history.info();
     widgets::small_text(shown_fate(history), palette::text);
     if (!history.dead() && !history.ended()) {
-        widgets::small_text(shown_choice(info), palette::text);
+        if (!build_brain_of(context, info)) {
+            widgets::small_text(shown_choice(info), palette::text);
+        }
         bool following = context.island_view.following();
         if (widgets::checkbox("keep it centred (L)", following)) {
             context.island_view.toggle_following(context.world);
@@ -291,7 +306,11 @@ void OrganismPanel::build_parent(Context& context, const OrganismHistory& histor
 void OrganismPanel::build_genes(Context& context, const OrganismHistory& history) {
     const evod::v1::OrganismInfo& info = *history.info();
     const auto& names = context.island_view.gene_names();
+    const GeneRange weights = genes_of(context.island_view.gene_groups(), evod::v1::GENE_GROUP_BRAIN);
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
+        if (weights.contains(gene)) {
+            continue; // the diagram of the network shows them
+        }
         const float value = info.genes(static_cast<int>(gene));
         if (gene < history.ranges().size()) {
             build_gene(names[gene], value, history.ranges()[gene], context.gui.scale());

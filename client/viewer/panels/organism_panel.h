@@ -25,6 +25,7 @@ class OrganismPanel : public Panel {
     void build_own_picks(Context& context, const OrganismHistory& history);
     void build_choice(Context& context);
     void build_life(Context& context, const OrganismHistory& history);
+    bool build_brain_of(const Context& context, const evod::v1::OrganismInfo& info);
     void build_picks(Context& context, const OrganismHistory& history);
     void build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent);
     void build_genes(Context& context, const OrganismHistory& history);

@@ -66,10 +66,15 @@ void WorldFeed::begin_place() {
     selected_.reset();
 }
 
+void WorldFeed::forget_genes() {
+    gene_names_.clear();
+    gene_groups_.clear();
+}
+
 void WorldFeed::show(std::string world, std::uint32_t island) {
     if (world != world_) {
         control_.forget();
-        gene_names_.clear();
+        forget_genes();
         last_generation_.clear();
         server_.drop_answers(); // answers about the old world are obsolete
         replay_.reset();
@@ -144,6 +149,10 @@ void WorldFeed::request_statistics(const std::string& world) {
 void WorldFeed::take_info(const evod::v1::WorldInfo& world) {
     control_.update(world);
     gene_names_.assign(world.gene_names().begin(), world.gene_names().end());
+    gene_groups_.clear();
+    for (int i = 0; i < world.gene_groups_size(); ++i) {
+        gene_groups_.push_back(world.gene_groups(i));
+    }
     replay_.reset();
     if (world.has_replay()) {
         replay_ = world.replay();
@@ -206,7 +215,7 @@ bool WorldFeed::take_snapshots(Clock::time_point now) {
     for (auto& snapshot : snapshots) {
         if (control_.known() && snapshot->about.run_id() != control_.run_id()) {
             request_statistics(); // another run has another last generation and other genes
-            gene_names_.clear();
+            forget_genes();
         }
         if (servers_choice_) { // later requests must name it, because there may then be other worlds
             world_ = snapshot->about.world();

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "client/core/snapshot_interpolator.h"
+#include "client/viewer/world/gene_groups.h"
 #include "client/viewer/world/run_control.h"
 #include "client/viewer/world/server_connection.h"
 
@@ -87,6 +88,8 @@ class WorldFeed {
     /// Returns the names of the genes of the viewed run, in the order in which all gene lists are sent. Empty until the
     /// server has reported them.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
+    /// Returns the group of each gene, in the same order.
+    const GeneGroups& gene_groups() const { return gene_groups_; }
     /// Returns statistics of the last finished generation on the chosen island; null in the first generation.
     const evod::v1::GenerationStatistics* last_generation() const;
     /// Returns the state of the server's run files; unspecified if the server stores none or the world is a replay.
@@ -115,6 +118,7 @@ class WorldFeed {
     void subscribe();
     void subscribe_overview();
     void begin_place();
+    void forget_genes();
 
     ServerConnection& server_;
     std::string world_;
@@ -133,6 +137,7 @@ class WorldFeed {
     RunControl control_;
     std::optional<evod::v1::Replay> replay_;
     std::vector<std::string> gene_names_;
+    GeneGroups gene_groups_;
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
     evod::v1::Storage storage_;
     std::vector<evod::v1::Event> events_;

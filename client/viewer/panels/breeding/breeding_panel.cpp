@@ -437,7 +437,8 @@ void BreedingPanel::build_stage(const Context& context) {
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
             widgets::small_text("blue: genes of the first parent, orange: genes of the second parent, "
                                 "grey: blended, dashed: cuts, framed: mutated or clamped");
-            const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names());
+            const float used = draw_family(sheet_of(gui, 1), *descendant, context.world.feed.gene_names(),
+                                           genes_of(context.world.feed.gene_groups(), evod::v1::GENE_GROUP_BODY).count);
             ImGui::Dummy({1, used}); // reserves the height of the family drawing, so that the panel can scroll
         }
         break;

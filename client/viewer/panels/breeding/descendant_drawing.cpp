@@ -29,11 +29,12 @@ Colour gene_colour(const GeneOrigin& gene) {
 class FamilyDrawing {
   public:
     FamilyDrawing(const Sheet& sheet, const evod::v1::Descendant& descendant, const Family& family,
-                  const std::vector<std::string>& gene_names)
+                  const std::vector<std::string>& gene_names, std::size_t column_count)
         : sheet_{sheet}
         , descendant_{descendant}
         , family_{family}
-        , count_{family.genes.size()}
+        , gene_names_{gene_names}
+        , count_{column_count}
         , label_width_{std::min(8 * sheet.font.FontSize, sheet.size.x / 4)}
         , cell_{(sheet.size.x - label_width_) / static_cast<float>(count_)}
         , line_{sheet.line_height()}
@@ -49,8 +50,10 @@ class FamilyDrawing {
             fit(names_.back()[1]);
         }
         for (const GeneChange& change : family_.changes) {
-            for (const std::string& text : texts_of(change)) {
-                fit(text);
+            if (change.gene < count_) {
+                for (const std::string& text : texts_of(change)) {
+                    fit(text);
+                }
             }
         }
     }
@@ -60,6 +63,7 @@ class FamilyDrawing {
     void draw_order_mutation();
     void draw_mutations();
     void draw_organism();
+    void draw_other_genes();
     float height() const { return y_ - sheet_.corner.y; }
 
   private:
@@ -81,11 +85,14 @@ class FamilyDrawing {
     void draw_gene(std::size_t gene, Colour colour, float value) const;
     void draw_parent(bool second, const char* role);
     void draw_change(const GeneChange& change, float top) const;
+    void draw_block(const GeneBlock& block, ImVec2 corner, float label_width, float cell) const;
+    std::string other_genes_text() const;
 
     const Sheet& sheet_;
     const evod::v1::Descendant& descendant_;
     const Family& family_;
-    std::size_t count_;
+    const std::vector<std::string>& gene_names_;
+    std::size_t count_; // genes that are drawn as columns; the others follow as small cells
     float label_width_, cell_, line_, bar_;
     float y_;                                       // top edge of the next part
     std::vector<std::array<std::string, 2>> names_; // of the genes, in two lines
@@ -132,6 +139,9 @@ void FamilyDrawing::draw_parents() {
     }
     y_ += bar_;
     for (const std::uint32_t cut : family_.cuts) {
+        if (cut > count_) {
+            continue;
+        }
         for (float dash = top - 4; dash < y_ + 4; dash += 8) {
             sheet_.list.AddLine({left_of(cut) - 1, dash}, {left_of(cut) - 1, std::min(dash + 5, y_ + 4)},
                                 ink(palette::glass_current), 2);
@@ -147,6 +157,9 @@ void FamilyDrawing::draw_order_mutation() {
     const float from_y = y_, to_y = y_ + 34;
     draw_label(descendant_.order_mutation().method());
     for (const GeneMove& move : family_.moves) {
+        if (move.from >= count_ || move.to >= count_) {
+            continue;
+        }
         const ImVec2 from{middle_of(move.from), from_y}, to{middle_of(move.to), to_y};
         sheet_.list.AddBezierCubic(from, {from.x, from.y + 18}, {to.x, to.y - 18}, {to.x, to.y - 5}, ink(palette::text),
                                    1.5f);
@@ -179,13 +192,16 @@ void FamilyDrawing::draw_change(const GeneChange& change, float top) const {
 
 /// Draws the changes of every gene below each other, in the order in which they happened.
 void FamilyDrawing::draw_mutations() {
-    if (family_.changes.empty()) {
+    if (std::ranges::none_of(family_.changes, [&](const GeneChange& change) { return change.gene < count_; })) {
         return;
     }
     y_ += 4;
     draw_label("mutations");
     std::vector<float> next_top(count_, y_ + 3);
     for (const GeneChange& change : family_.changes) {
+        if (change.gene >= count_) {
+            continue;
+        }
         draw_change(change, next_top[change.gene]);
         next_top[change.gene] += 3 * line_ + 4;
     }
@@ -195,10 +211,7 @@ void FamilyDrawing::draw_mutations() {
 void FamilyDrawing::draw_organism() {
     y_ += 4;
     draw_label(print("organism %u", descendant_.id()));
-    std::vector<bool> changed(count_);
-    for (const GeneChange& change : family_.changes) {
-        changed[change.gene] = true;
-    }
+    const std::vector<bool> changed = family_.changed();
     for (std::size_t gene = 0; gene < count_; ++gene) {
         const float value = gene < static_cast<std::size_t>(descendant_.genes_size())
                                 ? descendant_.genes(static_cast<int>(gene))
@@ -210,6 +223,70 @@ void FamilyDrawing::draw_organism() {
         }
     }
     y_ += bar_ + 4;
+}
+
+/// "66 other genes: 35 of parent 12, 31 of parent 45, 4 mutated"
+std::string FamilyDrawing::other_genes_text() const {
+    const std::vector<bool> changed = family_.changed();
+    std::size_t first = 0, second = 0, blended = 0, mutated = 0;
+    for (std::size_t gene = count_; gene < family_.genes.size(); ++gene) {
+        const GeneOrigin& origin = family_.arranged[gene];
+        ++(origin.blended ? blended : origin.from_second ? second : first);
+        mutated += changed[gene];
+    }
+    std::string text = with_separators(family_.genes.size() - count_) + " other genes: ";
+    text += blended > 0 ? print("means of parents %u and %u", descendant_.first_parent(), descendant_.second_parent())
+                        : with_separators(first) + print(" of parent %u", descendant_.first_parent());
+    if (second > 0) {
+        text += ", " + with_separators(second) + print(" of parent %u", descendant_.second_parent());
+    }
+    return text + (mutated > 0 ? ", " + with_separators(mutated) + " mutated" : "");
+}
+
+void FamilyDrawing::draw_block(const GeneBlock& block, ImVec2 corner, float label_width, float cell) const {
+    sheet_.write({corner.x, corner.y - 1}, palette::text_quiet, block.label);
+    const std::vector<bool> changed = family_.changed();
+    for (std::size_t i = 0; i < block.count; ++i) {
+        const std::size_t gene = block.first + i;
+        const float left = corner.x + label_width + static_cast<float>(i) * cell;
+        const ImVec2 end{left + cell - 1, corner.y + line_ - 3};
+        sheet_.list.AddRectFilled({left, corner.y}, end, ink(gene_colour(family_.arranged[gene])));
+        if (changed[gene]) {
+            sheet_.list.AddRect({left, corner.y}, end, ink(palette::glass_mutated), 0, 0, 3);
+        }
+        if (pointed_at({left, corner.y}, end)) {
+            ImGui::SetTooltip("%s", gene_text(family_, gene, gene_names_[gene], descendant_).c_str());
+        }
+    }
+}
+
+/// Draws the genes that are not columns as small cells in the colours of their parents, neuron by neuron.
+void FamilyDrawing::draw_other_genes() {
+    if (family_.genes.size() <= count_ || gene_names_.size() != family_.genes.size()) {
+        return;
+    }
+    y_ += 8;
+    const std::string text = other_genes_text();
+    write(sheet_.list, sheet_.font, {sheet_.corner.x, y_}, palette::text, text, sheet_.size.x);
+    y_ += size_of(text, sheet_.font, sheet_.size.x).y + 6;
+    const std::vector<GeneBlock> blocks = gene_blocks(gene_names_, count_);
+    float label_width = 0, most = 1;
+    for (const GeneBlock& block : blocks) {
+        label_width = std::max(label_width, size_of(block.label, sheet_.font).x + 6);
+        most = std::max(most, static_cast<float>(block.count));
+    }
+    const float cell = std::min((sheet_.size.x - label_width) / most, 0.8f * sheet_.font.FontSize);
+    float x = 0;
+    for (const GeneBlock& block : blocks) {
+        const float width = label_width + static_cast<float>(block.count) * cell;
+        if (x > 0 && x + width > sheet_.size.x) {
+            x = 0;
+            y_ += line_ + 1;
+        }
+        draw_block(block, {sheet_.corner.x + x, y_}, label_width, cell);
+        x += width + 14;
+    }
+    y_ += line_ + 6;
 }
 
 } // namespace
@@ -242,17 +319,21 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
 }
 
 float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
-                  const std::vector<std::string>& gene_names) {
+                  const std::vector<std::string>& gene_names, std::size_t body_count) {
+    constexpr std::size_t columns_max = 12; // more are too narrow for their numbers
     const Family family = family_of(descendant);
     if (family.genes.empty()) {
         return 0;
     }
-    FamilyDrawing drawing{sheet, descendant, family, gene_names};
+    const std::size_t count = family.genes.size();
+    FamilyDrawing drawing{sheet, descendant, family, gene_names,
+                          count > columns_max && body_count > 0 ? std::min(body_count, count) : count};
     drawing.draw_gene_names();
     drawing.draw_parents();
     drawing.draw_order_mutation();
     drawing.draw_mutations();
     drawing.draw_organism();
+    drawing.draw_other_genes();
     return drawing.height();
 }
 

@@ -12,11 +12,17 @@ Family family_of(const evod::v1::Descendant& descendant) {
     // The only parent of a survivor is the survivor itself.
     const bool alone = descendant.second_genes_size() == 0;
     const bool ordered = descendant.has_order_mutation();
-    if (count == 0 || count > 32 || (!alone && descendant.second_genes_size() != count) ||
-        (alone && descendant.from_second() != 0) || (ordered && descendant.order_mutation().order_size() != count)) {
+    if (count == 0 || (!alone && descendant.second_genes_size() != count) || (alone && descendant.from_second() != 0) ||
+        (ordered && descendant.order_mutation().order_size() != count)) {
         return family;
     }
-    const auto from_second = [&](int gene) { return (descendant.from_second() >> gene & 1) != 0; };
+    const auto from_second = [&](int gene) {
+        const int more = gene / 32 - 1;
+        const std::uint32_t word = more < 0                                    ? descendant.from_second()
+                                   : more < descendant.more_from_second_size() ? descendant.more_from_second(more)
+                                                                               : 0;
+        return (word >> (gene % 32) & 1) != 0;
+    };
     for (int gene = 0; gene < count; ++gene) {
         if (!alone && descendant.second_share() > 0) {
             const double first = double{descendant.first_genes(gene)}, second = double{descendant.second_genes(gene)};
@@ -53,6 +59,40 @@ Family family_of(const evod::v1::Descendant& descendant) {
         family.genes[mutation.gene()] = mutation.after();
     }
     return family;
+}
+
+std::vector<GeneBlock> gene_blocks(const std::vector<std::string>& names, std::size_t first) {
+    constexpr std::size_t unnamed_max = 16;
+    std::vector<GeneBlock> blocks;
+    for (std::size_t gene = first; gene < names.size(); ++gene) {
+        const std::size_t cut = names[gene].find('<');
+        const std::string neuron = cut == std::string::npos ? "" : names[gene].substr(0, cut);
+        const bool same =
+            !blocks.empty() && (neuron.empty() ? blocks.back().neuron.empty() && blocks.back().count < unnamed_max
+                                               : blocks.back().neuron == neuron);
+        if (same) {
+            ++blocks.back().count;
+        } else {
+            blocks.push_back({neuron.empty() ? names[gene] : neuron, neuron, gene, 1});
+        }
+    }
+    return blocks;
+}
+
+std::string gene_text(const Family& family, std::size_t gene, const std::string& name,
+                      const evod::v1::Descendant& descendant) {
+    const GeneOrigin& origin = family.arranged[gene];
+    std::string text =
+        name + ": " +
+        (origin.blended ? print("%.4g, a mean of both parents", double{origin.value})
+                        : print("%.4g of parent %u", double{origin.value},
+                                origin.from_second ? descendant.second_parent() : descendant.first_parent()));
+    for (const GeneChange& change : family.changes) {
+        if (change.gene == gene) {
+            text += print(", %s to %.4g", shown_mutation(change.kind), double{change.after});
+        }
+    }
+    return text;
 }
 
 const char* shown_mutation(evod::v1::MutationKind kind) {

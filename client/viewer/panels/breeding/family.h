@@ -41,10 +41,34 @@ struct Family {
     std::vector<GeneOrigin> arranged; // by gene, after the order mutation
     std::vector<GeneChange> changes;  // in the order in which they happened
     std::vector<float> genes;         // after all changes; computed here, not received
+
+    /// Returns for each gene whether it was changed.
+    std::vector<bool> changed() const {
+        std::vector<bool> is_changed(genes.size());
+        for (const GeneChange& change : changes) {
+            is_changed[change.gene] = true;
+        }
+        return is_changed;
+    }
 };
 
 /// Computes the family of a descendant. Returns a family without genes if the lists in `descendant` are malformed.
 Family family_of(const evod::v1::Descendant& descendant);
+
+/// Neighbouring genes of a long chromosome that are drawn side by side: the weights of one neuron, or a few genes that are
+/// no weights.
+struct GeneBlock {
+    std::string label;  // the neuron, or the first gene
+    std::string neuron; // empty: the genes are no weights
+    std::size_t first = 0, count = 0;
+    friend bool operator==(const GeneBlock&, const GeneBlock&) = default;
+};
+/// Divides the genes from `first` on into blocks.
+std::vector<GeneBlock> gene_blocks(const std::vector<std::string>& names, std::size_t first);
+
+/// Describes where a gene comes from: "hidden3<bias: 0.42 of parent 12, creep to 0.5".
+std::string gene_text(const Family& family, std::size_t gene, const std::string& name,
+                      const evod::v1::Descendant& descendant);
 
 /// Returns the kind as text: "creep", "reset", "scale", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -11,6 +13,17 @@ namespace {
 
 constexpr Colour gene_colours[] = {palette::series_blue,   palette::series_orange,    palette::series_green,
                                    palette::series_purple, palette::series_vermilion, palette::series_sky};
+/// Returns a colour for the gene with this index in a plot; the colours after the first six are darker.
+Colour gene_colour(std::size_t index) {
+    Colour colour = gene_colours[index % std::size(gene_colours)];
+    if (index / std::size(gene_colours) % 2 == 1) {
+        for (std::uint8_t* part : {&colour.red, &colour.green, &colour.blue}) {
+            *part = static_cast<std::uint8_t>(*part * 0.55);
+        }
+    }
+    return colour;
+}
+
 constexpr std::uint8_t band_alpha = 60;
 constexpr std::size_t bins_min = 8, bins_max = 60;
 
@@ -113,6 +126,12 @@ class FigureBuilder {
     Figure figure_;
 };
 
+/// Returns whether the plotted genes are weights of a network.
+bool is_weight(const std::string& gene, const Subject& subject) {
+    const std::string& first = !gene.empty() || subject.genes.empty() ? gene : subject.genes.front();
+    return first.find('<') != std::string::npos;
+}
+
 /// Returns whether an axis from 0 leaves the curves of fitness at least half of its height.
 bool starts_at_zero(const Subject& subject) {
     const auto worst = range_of(FigureBuilder::column(subject, "fitness_worst"));
@@ -143,12 +162,12 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         make.band("fitness", "fitness_worst", "fitness_best", palette::series_blue);
         break;
     case Quantity::Genes:
-        make.plot().y_label = "gene units";
+        make.plot().y_label = is_weight(gene, subject) ? "weight" : "gene units";
         if (gene.empty()) {
             make.plot().title = "Means of the genes";
-            const auto& names = subject.table.gene_names();
+            const auto& names = subject.genes.empty() ? subject.table.gene_names() : subject.genes;
             for (std::size_t i = 0; i < names.size(); ++i) {
-                make.line(names[i] + "_mean", names[i], gene_colours[i % std::size(gene_colours)], true);
+                make.line(names[i] + "_mean", names[i], gene_colour(i), true);
             }
         } else {
             make.plot().title = "Gene " + gene;
@@ -159,12 +178,12 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         }
         break;
     case Quantity::Selection:
-        make.plot().y_label = "gene units per generation";
+        make.plot().y_label = is_weight(gene, subject) ? "weight per generation" : "gene units per generation";
         if (gene.empty()) {
             make.plot().title = "Selection of the genes";
-            const auto& names = subject.table.gene_names();
+            const auto& names = subject.genes.empty() ? subject.table.gene_names() : subject.genes;
             for (std::size_t i = 0; i < names.size(); ++i) {
-                make.line(names[i] + "_selection", names[i], gene_colours[i % std::size(gene_colours)], true);
+                make.line(names[i] + "_selection", names[i], gene_colour(i), true);
             }
         } else { // the change is the sum of the other series
             make.plot().title = "Causes of change in the mean of " + gene;
@@ -198,6 +217,34 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
         break;
     }
     return make.take();
+}
+
+std::vector<std::string> most_changed(Quantity quantity, const Subject& subject, std::vector<std::string> genes,
+                                      std::size_t count_max) {
+    if (genes.size() <= count_max) {
+        return genes;
+    }
+    const auto change_of = [&](const std::string& gene) {
+        if (quantity == Quantity::Selection) {
+            const auto selection = FigureBuilder::column(subject, gene + "_selection");
+            return std::accumulate(selection.begin(), selection.end(), 0.0, [](double sum, double number) {
+                return std::isfinite(number) ? sum + number : sum; // the first generation has none
+            });
+        }
+        const auto mean = FigureBuilder::column(subject, gene + "_mean");
+        return mean.empty() ? 0.0 : mean.back() - mean.front();
+    };
+    std::vector<std::pair<double, std::size_t>> ranked; // the negative change, so that ties keep their order
+    for (std::size_t i = 0; i < genes.size(); ++i) {
+        const double change = change_of(genes[i]);
+        ranked.push_back({std::isfinite(change) ? -std::abs(change) : 0, i});
+    }
+    std::ranges::sort(ranked);
+    std::vector<std::string> most;
+    for (std::size_t i = 0; i < count_max; ++i) {
+        most.push_back(genes[ranked[i].second]);
+    }
+    return most;
 }
 
 Figure fitness_curves(const Subject& subject) {

@@ -36,7 +36,17 @@ struct Subject {
     HistoryTable::Island island;
     std::string name;                // name in the legend of a comparison
     std::span<const Mark> changes{}; // changes of parameters
+    // The genes whose means, or whose selection, are plotted together; empty: all genes of the table.
+    std::vector<std::string> genes{};
 };
+
+/// The maximum number of genes in one plot.
+constexpr std::size_t genes_in_plot_max = 12;
+
+/// Returns those of the genes that have changed most in the history of `subject`, the most changed first: in their mean, or,
+/// for Quantity::Selection, by selection. If there are at most `count_max`, returns all of them in their order.
+std::vector<std::string> most_changed(Quantity quantity, const Subject& subject, std::vector<std::string> genes,
+                                      std::size_t count_max = genes_in_plot_max);
 
 /// Builds the plot of a quantity for `subject`.
 ///

@@ -106,7 +106,8 @@ void PlotsPanel::update(Context& context) {
 
 Subject PlotsPanel::subject() const {
     const History& history = own_->history();
-    return {history.table(), island_, history.world().empty() ? "this world" : history.world(), history.changes()};
+    return {history.table(), island_, history.world().empty() ? "this world" : history.world(), history.changes(),
+            genes_};
 }
 
 // ---- widgets ---------------------------------------------------------------------------------------------------
@@ -255,10 +256,10 @@ void PlotsPanel::build_comparison() {
 void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     quantity_ = quantity;
     if (quantity == Quantity::Genes) {
-        build_gene_choice("means of all genes");
+        build_gene_choice(context, "means of");
         update_histogram(context);
     } else if (quantity == Quantity::Selection) {
-        build_gene_choice("selection of all genes");
+        build_gene_choice(context, "selection of");
         widgets::small_text(gene_.empty() ? selection_of_all : selection_of_one);
     }
     const auto* other_table = other_world_ ? &other_world_->history().table() : file_ ? &*file_ : nullptr;
@@ -306,13 +307,53 @@ void PlotsPanel::build_plots(Context& context) {
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(rest * 0.45f, plot_height_min));
 }
 
-void PlotsPanel::build_gene_choice(const char* all) {
-    const auto& names = own_->history().table().gene_names();
+/// Builds the drop-down of the gene groups of a world that has several.
+void PlotsPanel::build_group_choice(const GeneGroups& groups) {
+    const std::vector<evod::v1::GeneGroup> distinct = distinct_groups(groups);
+    if (std::ranges::find(distinct, group_) == distinct.end()) {
+        group_ = distinct.front();
+    }
+    const auto named = [](evod::v1::GeneGroup group) { return "genes: " + std::string{name_of(group)}; };
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
+    if (widgets::begin_drop_down("##group", named(group_).c_str(), "group")) {
+        for (const evod::v1::GeneGroup group : distinct) {
+            if (widgets::choice("group", named(group), group == group_) && group != group_) {
+                group_ = group;
+                gene_.clear();
+                view_ = {};
+            }
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+}
+
+void PlotsPanel::build_gene_choice(Context& context, const std::string& quantity) {
+    std::vector<std::string> names = own_->history().table().gene_names();
+    const GeneGroups& groups = context.world.feed.gene_groups();
+    const bool grouped = groups.size() == names.size() && distinct_groups(groups).size() > 1;
+    if (grouped) {
+        build_group_choice(groups);
+        const GeneRange range = genes_of(groups, group_);
+        const auto first = names.begin() + static_cast<std::ptrdiff_t>(range.first);
+        names = {first, first + static_cast<std::ptrdiff_t>(range.count)};
+    }
+    const bool low = ImGui::GetContentRegionAvail().y < 24 * ImGui::GetFontSize(); // no room for a long legend
+    const std::size_t most = low ? genes_in_plot_max / 2 : genes_in_plot_max;
+    const GenesOf of{quantity_, group_, island_, own_->history().revision(), names.size(), most};
+    if (of != genes_of_) { // update only after a change, because histories may be long
+        genes_of_ = of;
+        genes_ = most_changed(quantity_, subject(), names, most);
+    }
     if (std::ranges::find(names, gene_) == names.end()) {
         gene_.clear();
     }
+    const std::string all =
+        quantity + (genes_.size() < names.size() ? " the " + std::to_string(genes_.size()) + " most changed"
+                    : grouped                    ? " all of the group"
+                                                 : " all genes");
     ImGui::SetNextItemWidth(-1);
-    if (widgets::begin_drop_down("##gene", gene_.empty() ? all : gene_.c_str(), "gene")) {
+    if (widgets::begin_drop_down("##gene", gene_.empty() ? all.c_str() : gene_.c_str(), "gene")) {
         if (widgets::choice("gene", all, gene_.empty())) {
             gene_.clear();
         }

@@ -38,8 +38,9 @@ class PlotsPanel : public Panel {
     void build_quantity(Context& context, Quantity quantity);
     /// Builds the plot and, for one gene, the histogram. They fill the panel above the row of build_export().
     void build_plots(Context& context);
-    /// all  the label of the choice that selects all genes.
-    void build_gene_choice(const char* all);
+    void build_group_choice(const GeneGroups& groups);
+    /// quantity  the begin of the choice that selects several genes: "means of".
+    void build_gene_choice(Context& context, const std::string& quantity);
     /// Computes the histogram of the chosen gene.
     void update_histogram(Context& context);
     void build_export();
@@ -64,6 +65,16 @@ class PlotsPanel : public Panel {
 
     Quantity quantity_ = Quantity::Fitness;
     HistoryTable::Island island_;
+    evod::v1::GeneGroup group_ = evod::v1::GENE_GROUP_BODY;
+    std::vector<std::string> genes_; // plotted together if no gene is chosen
+    struct GenesOf {
+        Quantity quantity{};
+        evod::v1::GeneGroup group{};
+        HistoryTable::Island island{};
+        std::uint64_t revision = 0;
+        std::size_t count = 0, most = 0;
+        bool operator==(const GenesOf&) const = default;
+    } genes_of_;
     std::string gene_;
     std::size_t window_ = running_mean_default; // generations of the running mean; 1: none
     bool living_only_ = true;

@@ -53,6 +53,7 @@ TEST(Legend, ExplainsRadiiOnlyIfTheyAreShownOfAll) {
 TEST(Legend, NamesGenesWithTheirUnits) {
     EXPECT_EQ(gene_title("food_radius"), "food_radius, px");
     EXPECT_EQ(gene_title("impulse"), "impulse, gene units");
+    EXPECT_EQ(gene_title("hidden3<food_bearing"), "hidden3<food_bearing") << "weights have no unit";
 }
 
 } // namespace

@@ -41,6 +41,23 @@ struct MarksTest : testing::Test {
     const Rectangle everything{0, 0, 1000, 1000};
 };
 
+TEST_F(MarksTest, HeadingsCrossTheEdgesOfVisibleOrganisms) {
+    organisms.heading = {0, 64, 128};
+    std::vector<Line> lines;
+    add_headings({.entities = &organisms}, discs, {0, 0, 1000, 25}, 5.5f, lines);
+    ASSERT_EQ(lines.size(), 3u) << "the third one reaches into the visible part";
+    const Shape& first = discs[0];
+    EXPECT_FLOAT_EQ(lines[0].x, first.x + 3.5f);
+    EXPECT_FLOAT_EQ(lines[0].end_x, first.x + 15.5f);
+    EXPECT_FLOAT_EQ(lines[0].end_y, first.y);
+    EXPECT_NEAR(lines[1].end_x, discs[1].x, 1e-4);
+    EXPECT_FLOAT_EQ(lines[1].end_y, discs[1].y + 16.5f) << "y grows downward";
+    EXPECT_FLOAT_EQ(lines[2].end_x, discs[2].x - 17.5f);
+    lines.clear();
+    add_headings({.entities = &organisms}, discs, {500, 500, 10, 10}, 5.5f, lines);
+    EXPECT_TRUE(lines.empty());
+}
+
 TEST_F(MarksTest, HealthScalesFromZeroToTheRoundedMaximum) {
     const ColourScale scale = health_scale(organisms, ramp);
     EXPECT_EQ(scale.low, 0);

@@ -39,6 +39,17 @@ TEST(ExperimentText, SaysWhatTheOrganismsTryToDo) {
         "(roulette selection).");
 }
 
+TEST(ExperimentText, SaysThatNetworksSteerTheOrganisms) {
+    evod::v1::ParameterSet set = parameters("life", "roulette");
+    evod::v1::ParameterState& controller = *set.add_parameters();
+    controller.set_name("controller");
+    controller.mutable_value()->set_choice("network");
+    EXPECT_THAT(
+        experiment_text(set),
+        testing::StartsWith("50 organisms, each steered by an evolving neural network, eat food (+25 health) and "
+                            "poison (−40); a line shows where each heads. Each loses 6 health"));
+}
+
 /// The sentence about fitness with these weights of seconds, health, food and poison.
 std::string fitness_text(double second, double health, double food, double poison) {
     evod::v1::ParameterSet set = parameters("life", "roulette");

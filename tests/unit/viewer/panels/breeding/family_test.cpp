@@ -28,6 +28,44 @@ TEST(Family, BlendedGenesAreWeightedMeans) {
     EXPECT_FALSE(family_of(made_up::child(1)).crossed[0].blended);
 }
 
+TEST(Family, LongMasksHaveFurtherWords) {
+    evod::v1::Descendant child;
+    for (int gene = 0; gene < 70; ++gene) {
+        child.add_first_genes(1);
+        child.add_second_genes(2);
+    }
+    child.set_from_second(0x8000'0000);
+    child.add_more_from_second(1);
+    const Family family = family_of(child); // the word of the last six genes is absent: they are from the first parent
+    ASSERT_EQ(family.genes.size(), 70u);
+    EXPECT_THAT(family.cuts, ElementsAre(31, 33));
+    EXPECT_EQ(family.genes[31], 2);
+    EXPECT_EQ(family.genes[32], 2);
+    EXPECT_EQ(family.genes[69], 1);
+}
+
+TEST(Family, WeightsAreGroupedByTheirNeuron) {
+    const std::vector<std::string> names{"impulse", "hidden1<food_bearing", "hidden1<bias", "turn<hidden1", "free1",
+                                         "free2"};
+    EXPECT_THAT(gene_blocks(names, 1), ElementsAre(GeneBlock{"hidden1", "hidden1", 1, 2},
+                                                   GeneBlock{"turn", "turn", 3, 1}, GeneBlock{"free1", "", 4, 2}));
+    EXPECT_EQ(gene_blocks(std::vector<std::string>(33, "free"), 0).size(), 3u) << "blocks of 16";
+    EXPECT_THAT(gene_blocks(names, names.size()), IsEmpty());
+}
+
+TEST(Family, AGeneIsDescribedByItsOriginAndChanges) {
+    evod::v1::Descendant child = made_up::child(0b000010);
+    child.set_first_parent(12);
+    child.set_second_parent(45);
+    made_up::mutate(child, evod::v1::MUTATION_KIND_CREEP, 1, 12, 12.5f);
+    const Family family = family_of(child);
+    EXPECT_EQ(gene_text(family, 0, "a<b", child), "a<b: 1 of parent 12");
+    EXPECT_EQ(gene_text(family, 1, "a<c", child), "a<c: 12 of parent 45, creep to 12.5");
+    child.set_from_second(0);
+    child.set_second_share(0.5);
+    EXPECT_EQ(gene_text(family_of(child), 0, "a<b", child), "a<b: 6, a mean of both parents");
+}
+
 TEST(Family, ACopyOfOneParentHasNoCuts) {
     EXPECT_THAT(family_of(made_up::child(0)).cuts, IsEmpty());
     const Family second = family_of(made_up::child(0xffff'ffff)); // a complement may have bits beyond the genes

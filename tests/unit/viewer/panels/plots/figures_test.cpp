@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 
 namespace evod::viewer {
@@ -72,6 +73,53 @@ TEST(Figures, TheCurvesOfTheSidebarHaveRunningMeans) {
     EXPECT_EQ(best.y[11], 75) << "the mean of 30 to 120";
     EXPECT_EQ(best.newest, "120");
     EXPECT_EQ(figure.plot.smoothed, "mean of 10");
+}
+
+/// A table of genes a, b, …, whose means change by these numbers from the first generation to the second.
+HistoryTable table_of_changes(const std::vector<double>& changes) {
+    HistoryTable table;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        names.push_back({static_cast<char>('a' + i)});
+    }
+    table.set_gene_names(names);
+    for (std::uint64_t generation = 1; generation <= 2; ++generation) {
+        v1::GenerationStatistics statistics;
+        statistics.set_generation(generation);
+        statistics.set_organism_count(10);
+        for (std::size_t i = 0; i < changes.size(); ++i) {
+            v1::GeneStatistics& gene = *statistics.add_genes();
+            gene.set_mean(generation == 1 ? 1 : 1 + changes[i]);
+            if (generation > 1) {
+                gene.mutable_account()->set_selection(-changes[changes.size() - 1 - i]);
+            }
+        }
+        table.add(std::array{core::history_numbers(statistics)});
+    }
+    return table;
+}
+
+TEST(Figures, AFewGenesArePlottedTheMostChangedFirst) {
+    const HistoryTable table = table_of_changes({0, -3, 1, 2});
+    Subject subject{table, std::nullopt, "lab"};
+    const std::vector<std::string> all = table.gene_names();
+    EXPECT_EQ(most_changed(Quantity::Genes, subject, all, 4), all) << "few enough to keep their order";
+    EXPECT_THAT(most_changed(Quantity::Genes, subject, all, 3), ElementsAre("b", "d", "c"));
+    EXPECT_THAT(most_changed(Quantity::Selection, subject, all, 3), ElementsAre("c", "a", "b"));
+    EXPECT_THAT(names_of(figure_of(Quantity::Genes, subject, nullptr, "", 1)), ElementsAre("a", "b", "c", "d"));
+    subject.genes = {"b", "d"};
+    EXPECT_THAT(names_of(figure_of(Quantity::Genes, subject, nullptr, "", 1)), ElementsAre("b", "d"));
+    EXPECT_THAT(names_of(figure_of(Quantity::Selection, subject, nullptr, "", 1)), ElementsAre("b", "d"));
+}
+
+TEST(Figures, TwelveCurvesHaveTwelveColours) {
+    const HistoryTable table = table_of_changes(std::vector<double>(12, 1.0));
+    std::vector<Colour> colours;
+    for (const Series& series : figure_of(Quantity::Genes, {table, std::nullopt, "lab"}, nullptr, "", 1).plot.series) {
+        EXPECT_EQ(std::ranges::count(colours, series.colour), 0) << series.name;
+        colours.push_back(series.colour);
+    }
+    EXPECT_EQ(colours.size(), genes_in_plot_max);
 }
 
 TEST(Figures, FitnessIsFourLinesAndABand) {
