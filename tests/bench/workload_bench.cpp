@@ -27,15 +27,24 @@ namespace evod::bench {
 namespace {
 
 struct Options {
-    std::string program = "evod";
+    std::string program = "evod", steering = "rules";
     std::uint32_t organisms = 2000, islands = 1;
     std::size_t threads = 1;
     bool spatial_order = false;
     Window window;
 };
 
+using Steering = parameters::Parameters (*)(std::uint32_t organisms);
+
+/// What steers the organisms of evod: the rules, or networks with one of the locomotions.
+const std::map<std::string, Steering> steerings = {
+    {"rules", [](std::uint32_t organisms) { return bench_world(organisms); }},
+    {"newtonian", [](std::uint32_t organisms) { return bench_world(organisms, evolution::Locomotion::Newtonian); }},
+    {"kinematic", [](std::uint32_t organisms) { return bench_world(organisms, evolution::Locomotion::Kinematic); }},
+};
+
 Measured run_evod(const Options& options) {
-    parameters::Parameters parameters = bench_world(options.organisms);
+    parameters::Parameters parameters = steerings.at(options.steering)(options.organisms);
     parameters.island_count = options.islands;
     const auto executor = runtime::make_executor(options.threads);
     return measure(
@@ -84,6 +93,7 @@ boost::json::object report(const Options& options, const Measured& measured) {
     const double organism_s = organism_ticks / 60; // simulated
     boost::json::object line{
         {"program", options.program},
+        {"steering", options.steering},
         {"organisms", options.organisms},
         {"islands", options.islands},
         {"threads", options.threads},
@@ -115,6 +125,9 @@ int run(int argc, char** argv) {
     CLI::App app{"One program on the benchmark world; prints one line of JSON."};
     app.add_flag("--list", list, "print the programs that were built, and nothing else");
     app.add_option("--program", options.program)->check(CLI::IsMember(&programs()))->capture_default_str();
+    app.add_option("--steering", options.steering, "by rules, or by networks of 5-8-2; evod only")
+        ->check(CLI::IsMember(&steerings))
+        ->capture_default_str();
     app.add_option("--organisms", options.organisms, "on each island")->capture_default_str();
     app.add_option("--islands", options.islands, "evod only")->capture_default_str();
     app.add_option("--threads", options.threads, "evod only")->capture_default_str();

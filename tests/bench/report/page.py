@@ -160,6 +160,14 @@ class Page:
                        digits(row["ns"]["median"] / rows["as it is"]["ns"]["median"]),
                        digits(row["tick_us"]["median"])] for name in names if (row := rows.get(name))])
 
+    def networks(self):
+        names = {"rules": "rules", "newtonian": "networks, newtonian", "kinematic": "networks, kinematic"}
+        rows, key = self.results.get("networks", []), "organism_ticks_per_processor_s"
+        rules = {row["organisms"]: row[key]["median"] for row in rows if row["steering"] == "rules"}
+        return table(["organisms", "steered by", "M organism-ticks/s", "× rules"],
+                     [[count(row["organisms"]), names[row["steering"]], with_spread(row[key], 1e-6),
+                       digits(row[key]["median"] / rules[row["organisms"]])] for row in rows])
+
     def instruction_sets(self):
         names = {"baseline": "evod, baseline instructions", "avx2": "evod, AVX2", "avx512": "evod, AVX-512"}
         rows = self.results.get("instruction_sets", [])
@@ -267,14 +275,16 @@ class Page:
     # Whole programs
 
     def runs(self):
-        default, large = self.results["runs"]["default"], self.results["runs"]["large"]
+        default, large, networks = (self.results["runs"][name] for name in ("default", "large", "networks"))
         return table(["", ""], [
             ["`evod run`, default world, one thread, × real time", with_spread(default["real_time_factor"])],
             ["the same, M organism-ticks/s", with_spread(default["m_organism_ticks_per_s"])],
             [f"`evod run`, benchmark world of {count(large['organisms'])}: start-up, s", digits(large["start_up_s"])],
             ["the same: from one generation to the next, s", digits(large["turnover_s"])],
             ["the same: peak memory (`VmHWM`), MB", megabytes(large["memory_bytes"])],
-            ["the same: bytes of memory per organism", digits(large["memory_bytes"] / large["organisms"])]])
+            ["the same: bytes of memory per organism", digits(large["memory_bytes"] / large["organisms"])],
+            [f"the same with networks of 5-8-2, {count(networks['organisms'])} organisms: peak memory (`VmHWM`), MB",
+             megabytes(networks["memory_bytes"])]])
 
     def server(self):
         figures = self.results["server"]

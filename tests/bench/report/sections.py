@@ -27,11 +27,11 @@ class Bench:
 
 
 def workload_command(bench, program, organisms, scenes, *, threads=1, islands=1, spatial_order=False,
-                     instructions=None):
+                     instructions=None, steering=None):
     return [bench.program("workload_bench"), "--program", program, "--organisms", organisms, "--scenes", scenes,
             "--threads", threads, "--islands", islands, "--warm-up-ticks", warm_up_ticks, "--ticks", measured_ticks,
             "--least-s", 0.1 if bench.quick else 0.5, *(["--spatial-order"] if spatial_order else []),
-            *(["--instructions", instructions] if instructions else [])]
+            *(["--instructions", instructions] if instructions else []), *(["--steering", steering] if steering else [])]
 
 
 def engines_of(bench):
@@ -70,6 +70,14 @@ def instruction_sets(bench):
     listed = subprocess.run([bench.program("instruction_count"), "--list"], capture_output=True, text=True, check=True)
     commands = [workload_command(bench, "evod", 20_000, 1, instructions=name)
                 for name in sorted(listed.stdout.split(), key="baseline".__ne__)]
+    return [programs.merged(runs, rates) for runs in programs.by_turns(commands, bench.repeats)]
+
+
+def networks(bench):
+    """evod with rules and with networks, by turns; the rules first."""
+    commands = [workload_command(bench, "evod", organisms, scenes, steering=steering)
+                for organisms, scenes in ([(20_000, 1)] if bench.quick else [(1_000, 4), (20_000, 1), (200_000, 1)])
+                for steering in ("rules", "newtonian", "kinematic")]
     return [programs.merged(runs, rates) for runs in programs.by_turns(commands, bench.repeats)]
 
 
@@ -234,7 +242,7 @@ def evod_run(bench, *arguments):
         process.returncode = os.waitstatus_to_exitcode(status)
         text.seek(0)
         said = text.read()
-    speed = re.search(r"([\d.]+) M organism-ticks/s, (\d+) × real time", said)
+    speed = re.search(r"([\d.]+) M organism-ticks/s, ([\d.]+) × real time", said)
     start = re.search(r"start-up ([\d.]+) s, turnover of generations ([\d.]+) s", said)
     if process.returncode != 0 or not speed or not start:
         sys.exit(f"evod run {arguments} failed:\n{said}")
@@ -247,15 +255,17 @@ def whole_program(bench):
     default = [evod_run(bench, "--seed", 1, "--threads", 1, "--generations", 20 if bench.quick else 100)
                for _ in range(bench.repeats)]
     organisms = 100_000 if bench.quick else 1_000_000
-    large = evod_run(bench, bench.root / "experiments/bench.json", "--seed", 1, "--generations", 2, "--set",
-                     f"population_size={organisms}", "--set", "generation_s=1")
-    return {"default": programs.merged(default, tuple(default[0])), "large": large | {"organisms": organisms},
+    large = [bench.root / "experiments/bench.json", "--seed", 1, "--generations", 2, "--set",
+             f"population_size={organisms}", "--set", "generation_s=1"]
+    networks = evod_run(bench, *large, "--set", "controller=network", "--set", "brain_hidden=8")
+    return {"default": programs.merged(default, tuple(default[0])),
+            "large": evod_run(bench, *large) | {"organisms": organisms}, "networks": networks | {"organisms": organisms},
             "disk_bytes": {name: bench.program(name).stat().st_size for name in ("evod", "evoctl", "evoview")
                            if bench.program(name).exists()}}
 
 
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
-              "agreement": agreement, "instruction_sets": instruction_sets, "instructions": instructions,
+              "agreement": agreement, "networks": networks, "instruction_sets": instruction_sets, "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
               "server": server, "clients": clients, "run_files": run_files, "stream": stream, "sweeps": sweeps, "package": package, "drawing": drawing}
 
