@@ -13,8 +13,8 @@ struct Sentence {
 
 constexpr Sentence sentences[] = {
     {"fitness", "life", "Seconds lived plus the health at the end of the generation."},
-    {"fitness", "gene_sum", "The sum of the genes."},
-    {"fitness", "rastrigin", "The Rastrigin function of the genes, a test problem with many local optima."},
+    {"fitness", "gene_sum", "The sum of the genes of the body."},
+    {"fitness", "rastrigin", "The Rastrigin function of the genes of the body, a test problem with many local optima."},
     {"fitness", "external", "Numbers that a client sends at the end of each generation, for any function."},
     {"flee_rule", "nearer", "An organism flees only if the poison is nearer than all food that it sees."},
     {"flee_rule", "always", "An organism flees from poison that it sees, regardless of food."},
