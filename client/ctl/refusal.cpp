@@ -13,13 +13,14 @@ namespace evod::ctl {
 namespace {
 
 /// Fields that no option of the same name sets.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 13> options_of_fields{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> options_of_fields{{
     {"at.generation", "--at-generation"},
     {"at.tick", "--at-tick"},
     {"to.generation", "--generation"},
     {"to.tick", "--tick"},
     {"expected_revision", "--if-revision"},
     {"experiment_json", "--experiment"},
+    {"population_gene_names", "--population"},
     {"first_generation", "--from"},
     {"last_generation", "--to"},
     {"table", "--what"},

@@ -49,9 +49,11 @@ void add_experiment(const std::string& path, v1::CreateWorld& command) {
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
-    for (const std::vector<float>& genes : population_in(path).islands) {
+    const codec::Population population = population_in(path);
+    for (const std::vector<float>& genes : population.islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
+    command.mutable_population_gene_names()->Assign(population.gene_names.begin(), population.gene_names.end());
     // This many bytes are reserved for the other fields of the request, which need much less.
     constexpr std::size_t rest_bytes_max = 32 << 10;
     if (command.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {

@@ -3,9 +3,7 @@
 #include "proto/codec/population_csv.h"
 #include "server/files/regular_file.h"
 
-#include <algorithm>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -17,21 +15,6 @@ using base::RefusalCode;
 namespace {
 
 constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take about 70 MB
-
-/// Returns a violation if a file has other columns than the world has genes.
-std::optional<base::Violation> other_genes(const std::vector<std::string>& in_file,
-                                           const std::vector<std::string>& in_world) {
-    const auto [file, world] = std::ranges::mismatch(in_file, in_world);
-    if (file == in_file.end() && world == in_world.end()) {
-        return std::nullopt;
-    }
-    const auto column = [](auto name, const std::vector<std::string>& names) {
-        return name == names.end() ? "no column" : "the column " + *name;
-    };
-    return base::Violation{"population: gene " + std::to_string(file - in_file.begin() + 1) + " of " +
-                               std::to_string(in_world.size()),
-                           column(world, in_world), column(file, in_file)};
-}
 
 } // namespace
 
@@ -49,7 +32,7 @@ base::Result<simulation::FirstPopulation> load_population(const std::string& pat
     if (!read) {
         return refusal(RefusalCode::InvalidArgument, path + ": " + read.error().what);
     }
-    if (auto wrong = other_genes(read->gene_names, evolution::gene_layout(parameters).names)) {
+    if (auto wrong = simulation::other_gene(read->gene_names, parameters, "population.gene_names")) {
         return base::Refusal{.code = RefusalCode::InvalidArgument,
                              .message = path + ": does not match the parameters of the world",
                              .violations = {*std::move(wrong)}};

@@ -56,7 +56,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
             command.seed = *experiment.seed;
         }
         if (found.empty()) {
-            command.first_population = first_population_of(request, evolution::gene_count(command.parameters), found);
+            command.first_population = first_population_of(request, command.parameters, found);
             const auto faults =
                 simulation::faults_of(command.first_population, command.parameters, "create_world.population");
             found.insert(found.end(), faults.begin(), faults.end());

@@ -5,11 +5,21 @@
 
 namespace evod::protocol {
 
-simulation::FirstPopulation first_population_of(const v1::CreateWorld& request, unsigned gene_count,
+simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
+                                                const parameters::Parameters& parameters,
                                                 std::vector<base::Violation>& violations) {
     if (request.population().empty()) {
         return nullptr;
     }
+    if (!request.population_gene_names().empty()) {
+        const std::vector<std::string> names{request.population_gene_names().begin(),
+                                             request.population_gene_names().end()};
+        if (auto other = simulation::other_gene(names, parameters, "create_world.population_gene_names")) {
+            violations.push_back(*std::move(other));
+            return nullptr;
+        }
+    }
+    const unsigned gene_count = evolution::gene_count(parameters);
     std::vector<evolution::GeneMatrix> islands;
     bool whole = true;
     for (int island = 0; island < request.population_size(); ++island) {

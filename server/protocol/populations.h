@@ -8,11 +8,12 @@
 
 namespace evod::protocol {
 
-/// gene_count  number of genes of an organism in the world.
+/// parameters  of the world.
 ///
-/// Returns nullptr if the request has no population. Also returns nullptr, and adds a violation, if the genes of an
-/// island are not a whole number of chromosomes.
-simulation::FirstPopulation first_population_of(const v1::CreateWorld& request, unsigned gene_count,
+/// Returns nullptr if the request has no population. Also returns nullptr, and adds a violation, if the population has
+/// other genes than the world, or if the genes of an island are not a whole number of chromosomes.
+simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
+                                                const parameters::Parameters& parameters,
                                                 std::vector<base::Violation>& violations);
 
 void add_population(v1::CreateWorld& request, const simulation::FirstPopulation& population);

@@ -33,6 +33,20 @@ bool same(const FirstPopulation& a, const FirstPopulation& b) {
     });
 }
 
+std::optional<base::Violation> other_gene(std::span<const std::string> gene_names,
+                                          const parameters::Parameters& parameters, const std::string& field) {
+    const std::vector<std::string> of_world = evolution::gene_layout(parameters).names;
+    const auto [given, wanted] = std::ranges::mismatch(gene_names, of_world);
+    if (given == gene_names.end() && wanted == of_world.end()) {
+        return std::nullopt;
+    }
+    const auto gene = [](auto name, const auto& names) {
+        return name == names.end() ? std::string{"no gene"} : "the gene " + *name;
+    };
+    return base::Violation{field + "[" + std::to_string(given - gene_names.begin()) + "]", gene(wanted, of_world),
+                           gene(given, gene_names)};
+}
+
 std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field) {
     std::vector<base::Violation> faults;

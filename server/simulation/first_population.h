@@ -6,6 +6,8 @@
 #include "server/parameters/parameters.h"
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,13 @@ bool same(const FirstPopulation& a, const FirstPopulation& b);
 std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field);
 constexpr std::size_t faults_max = 20;
+
+/// Returns the first gene of a population that the world does not have at this place, or lacks.
+///
+/// gene_names  the names of the genes in the population, in order.
+/// field       name of `gene_names` as the sender spells it. The field of the violation is then "`field`[6]".
+std::optional<base::Violation> other_gene(std::span<const std::string> gene_names,
+                                          const parameters::Parameters& parameters, const std::string& field);
 
 /// Adds a violation for every gene outside its bounds, until there are faults_max; the field of a gene is then
 /// "`organism`.body_size". A wrong number of genes is one violation of the field "`organism`.genes".

@@ -274,6 +274,7 @@ class LabPlans:
             schedule=later,
             seed=seed,
             population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
+            population_gene_names=_gene_names_in(population),
         )
         world = info.name
         if requested is not None:
@@ -727,6 +728,12 @@ def view_message(
         part = build(c.Region, "region.", **dict(zip(names, region)))
     wanted = None if detail is None else _choice("detail", detail, DETAILS)
     return build(c.View, "", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
+
+
+def _gene_names_in(population: Sequence[numpy.typing.ArrayLike] | None) -> Sequence[str]:
+    """The names of the genes of an initial population; () if its arrays have no names."""
+    first = population[0] if population else None
+    return first.names or () if isinstance(first, Genes) else ()
 
 
 def _positions(field: str, positions: numpy.typing.ArrayLike) -> list[tuple[float, float]]:

@@ -116,6 +116,7 @@ core::Result<evod::v1::Request> create_request(const NewWorldForm& wanted) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
     if (!population.islands.empty()) {
+        command.mutable_population_gene_names()->Assign(population.gene_names.begin(), population.gene_names.end());
         assign_count(command, "population_size", population.organism_count(0));
         assign_count(command, "island_count", population.islands.size());
     }

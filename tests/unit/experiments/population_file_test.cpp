@@ -20,8 +20,9 @@ class PopulationFile : public testing::Test {
         parameters.population_size = 2;
         parameters.island_count = 1;
     }
-    base::Result<simulation::FirstPopulation> load(const std::string& rows) const {
-        std::ofstream{path} << codec::population_heading << '\n' << rows;
+    /// further  the names of genes beyond those of the body, each after a comma.
+    base::Result<simulation::FirstPopulation> load(const std::string& rows, const std::string& further = "") const {
+        std::ofstream{path} << codec::population_heading << further << '\n' << rows;
         return load_population(path, parameters);
     }
     std::string refusal_of(const std::string& rows) const {
@@ -59,6 +60,24 @@ TEST_F(PopulationFile, MustFitTheWorld) {
     EXPECT_THAT(refusal_of(two + "1,0,100,101,102,103,104,105\n"), HasSubstr("population"));
     EXPECT_THAT(refusal_of("0,0,100,101,1e9,103,104,105\n0,1,110,111,112,113,114,115\n"),
                 HasSubstr("population[0].organism[0].body_size"));
+}
+
+TEST_F(PopulationFile, HasTheGenesOfTheWorld) {
+    const std::string six = "0,0,100,101,102,103,104,105\n0,1,110,111,112,113,114,115\n",
+                      eight = "0,0,100,101,102,103,104,105,0,1\n0,1,110,111,112,113,114,115,1,0\n";
+    const auto fault = [&](const std::string& rows, const std::string& further) {
+        const auto loaded = load(rows, further);
+        return loaded ? "none" : to_text(loaded.error().violations.at(0));
+    };
+    EXPECT_EQ(fault(eight, ",free0,free1"), "population.gene_names[6]: got the gene free0, allowed no gene");
+    parameters.free_genes = 2;
+    EXPECT_EQ(fault(eight, ",free0,free1"), "none");
+    EXPECT_EQ((**load(eight, ",free0,free1"))[0](7, 0), 1);
+    EXPECT_EQ(fault(eight, ",free0,free2"), "population.gene_names[7]: got the gene free2, allowed the gene free1");
+    EXPECT_EQ(fault(six, ""), "population.gene_names[6]: got no gene, allowed the gene free0");
+    const std::string outside = "0,0,100,101,102,103,104,105,0,2\n0,1,110,111,112,113,114,115,1,0\n";
+    EXPECT_EQ(fault(outside, ",free0,free1"),
+              "population[0].organism[0].free1: got 2, allowed 0 to 1 (free_gene_min, free_gene_max)");
 }
 
 TEST_F(PopulationFile, NamesTheFileAndTheLine) {

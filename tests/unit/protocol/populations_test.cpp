@@ -48,6 +48,23 @@ TEST(Populations, RefuseAPopulationThatDoesNotFitTheWorld) {
     add_population(again, population);
     EXPECT_EQ(again.population(0).SerializeAsString(), create.population(0).SerializeAsString());
 
+    create.add_population_gene_names("normal_speed");
+    create.add_population_gene_names("turn");
+    EXPECT_THAT(fields(), testing::ElementsAre("create_world.population_gene_names[1]: got the gene turn, allowed the "
+                                               "gene impulse"));
+    create.mutable_population_gene_names()->RemoveLast();
+    EXPECT_THAT(fields(), testing::ElementsAre("create_world.population_gene_names[1]: got no gene, allowed the gene "
+                                               "impulse"));
+    create.clear_population_gene_names();
+    for (const std::string_view name : evolution::body_gene_names) {
+        create.add_population_gene_names(std::string{name});
+    }
+    EXPECT_THAT(fields(), testing::IsEmpty());
+    create.add_population_gene_names("free0");
+    EXPECT_THAT(fields(), testing::ElementsAre("create_world.population_gene_names[6]: got the gene free0, allowed no "
+                                               "gene"));
+    create.clear_population_gene_names();
+
     genes.Set(8, 300);
     genes.Set(11, std::numeric_limits<float>::quiet_NaN());
     EXPECT_THAT(fields(),
