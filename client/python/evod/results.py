@@ -104,14 +104,6 @@ class DescendantKind(_State):
     CHILD = commands_pb2.DESCENDANT_KIND_CHILD
 
 
-class GeneGroup(_State):
-    """What a gene describes."""
-
-    BODY = world_pb2.GENE_GROUP_BODY  #: the six genes that every chromosome begins with
-    BRAIN = world_pb2.GENE_GROUP_BRAIN  #: a weight of the neural network that steers the organism
-    FREE = world_pb2.GENE_GROUP_FREE  #: nothing: the simulation does not read it
-
-
 class MutationKind(_State):
     """How a gene was changed."""
 

@@ -65,14 +65,20 @@ std::string experiment_text(const evod::v1::ParameterSet& set) {
     const bool has_gene_costs = std::ranges::any_of(
         values, [](const auto& value) { return value.first.ends_with("_cost") && number_of(value.second) != 0; });
     const bool has_networks = choice("controller") == "network";
-    return number("population_size") +
-           (has_networks ? " organisms, each steered by an evolving neural network, eat food (+"
-                         : " organisms seek food (+") +
-           number("food_health") + " health) and " + (has_networks ? "poison (−" : "avoid poison (−") +
-           number("poison_harm") + ")" + (has_networks ? "; a line shows where each heads" : "") + ". Each loses " +
-           number("health_loss_per_s") + " health per second" +
-           (has_gene_costs ? ", more or less with its genes," : "") + " and dies at 0. " + "Fitness " + fitness + ". " +
-           selection_text(choice("selection"), values["shuffle_fitness"].flag());
+    const auto is_zero = [&](const char* name) { return values.contains(name) && number_of(values[name]) == 0; };
+    std::string text =
+        number("population_size") +
+        (has_networks ? " organisms, each steered by an evolving neural network, eat" : " organisms seek") +
+        " food (+" + number("food_health") + " health)";
+    if (!is_zero("poison_count")) {
+        text += std::string{has_networks ? " and poison (−" : " and avoid poison (−"} + number("poison_harm") + ")";
+    }
+    text += has_networks ? "; a line shows where each heads. " : ". ";
+    text += is_zero("health_loss_per_s") && !has_gene_costs
+                ? "They lose no health over time."
+                : "Each loses " + number("health_loss_per_s") + " health per second" +
+                      (has_gene_costs ? ", more or less with its genes," : "") + " and dies at 0.";
+    return text + " Fitness " + fitness + ". " + selection_text(choice("selection"), values["shuffle_fitness"].flag());
 }
 
 void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {

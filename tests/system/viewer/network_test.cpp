@@ -5,14 +5,17 @@
 #include "client/viewer/island/styles.h"
 #include "client/viewer/panels/brain_diagram.h"
 #include "tests/system/viewer/support/expected_frame.h"
+#include "tests/system/viewer/support/panel_host.h"
 #include "tests/system/viewer/support/pixels.h"
 #include "tests/system/viewer/support/replay_of_world.h"
 
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 #include <cmath>
 #include <fstream>
-#include <map>
+#include <utility>
+#include <vector>
 
 namespace evod::viewer {
 namespace {
@@ -99,6 +102,42 @@ TEST_F(NetworkTest, ThePanelShowsTheActivationsOfTheSelected) {
             EXPECT_GT(count(image, activation_colour(activation)), 60u) << activation;
         }
     }
+}
+
+TEST(NetworkDiagram, ShowsOnlyTheLinesOfTheNeuronAtTheMouse) {
+    evod::v1::Brain brain;
+    brain.add_inputs(0);
+    brain.add_hidden(0.37f);
+    brain.add_hidden(-0.61f);
+    brain.add_outputs(0);
+    const std::vector<float> weights{1, -1, 1, -1}; // those of the first hidden neuron are positive
+    PanelHost host{400, 300, [&](Gui& gui) {
+                       ImGui::SetNextWindowPos({0, 0});
+                       ImGui::SetNextWindowSize({400, 300});
+                       ImGui::Begin("network");
+                       build_brain(brain, weights, gui);
+                       ImGui::End();
+                   }};
+    host.draw();
+    sf::Image image = host.draw();
+    EXPECT_GT(count(image, palette::series_blue), 50u);
+    EXPECT_GT(count(image, palette::series_orange), 50u);
+    const auto at = [&image](Colour colour) { // the first pixel from the top is at the upper edge of the neuron
+        for (unsigned y = 0; y < image.getSize().y; ++y) {
+            for (unsigned x = 0; x < image.getSize().x; ++x) {
+                if (pixel_at(image, x, y) == colour) {
+                    return std::pair{static_cast<int>(x), static_cast<int>(y) + 4};
+                }
+            }
+        }
+        return std::pair{0, 0};
+    };
+    const auto [x, y] = at(activation_colour(0.37f));
+    ASSERT_GT(x, 0);
+    host.move(x, y);
+    image = host.draw();
+    EXPECT_EQ(count(image, palette::series_blue), 0u);
+    EXPECT_GT(count(image, palette::series_orange), 50u);
 }
 
 TEST_F(NetworkTest, LongChromosomesAreShownByGroup) {

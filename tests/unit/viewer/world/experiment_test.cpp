@@ -50,6 +50,18 @@ TEST(ExperimentText, SaysThatNetworksSteerTheOrganisms) {
                             "poison (−40); a line shows where each heads. Each loses 6 health"));
 }
 
+TEST(ExperimentText, LeavesOutWhatTheExperimentLacks) {
+    evod::v1::ParameterSet set = parameters("life", "roulette");
+    add(set, "poison_count", 0);
+    for (evod::v1::ParameterState& state : *set.mutable_parameters()) {
+        if (state.name() == "health_loss_per_s") {
+            state.mutable_value()->set_real(0);
+        }
+    }
+    EXPECT_THAT(experiment_text(set),
+                testing::StartsWith("50 organisms seek food (+25 health). They lose no health over time. Fitness is"));
+}
+
 /// The sentence about fitness with these weights of seconds, health, food and poison.
 std::string fitness_text(double second, double health, double food, double poison) {
     evod::v1::ParameterSet set = parameters("life", "roulette");
