@@ -300,13 +300,15 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
 
 /// Draws the headings of organisms that are large enough for them to be seen.
 void IslandRenderer::draw_headings(const Positions& organisms, const Camera& camera, const Styles& styles) {
-    constexpr double radius_pixels_min = 4;
-    if (organisms.size() == 0 || !organisms.entities->has_headings() ||
-        typical_radius_px * camera.zoom() < radius_pixels_min * camera.scale()) {
+    constexpr double radius_pixels_min = 2;
+    const double radius_pixels = typical_radius_px * camera.zoom() / camera.scale();
+    if (organisms.size() == 0 || !organisms.entities->has_headings() || radius_pixels < radius_pixels_min) {
         return;
     }
     lines_.clear();
-    const double beyond_px = static_cast<double>(styles.heading_pixels) * camera.scale() / camera.zoom();
+    // Lines of small organisms are shorter.
+    const double beyond_pixels = std::min(static_cast<double>(styles.heading_pixels), radius_pixels + 4);
+    const double beyond_px = beyond_pixels * camera.scale() / camera.zoom();
     add_headings(organisms, discs_, camera.visible(), static_cast<float>(beyond_px), lines_);
     headings_.set(lines_);
     painter_.draw(headings_, styles.heading);
