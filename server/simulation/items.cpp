@@ -123,9 +123,12 @@ void Items::restore(std::span<const Item> items, base::Executor& executor) {
 }
 
 void Items::choose_cells(std::uint32_t count) {
-    // About four items per cell. Few buckets then overflow, and a query whose radius is at most the side of a cell
-    // reads at most four cells.
-    const double share = 4 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
+    // About four items per cell where items are placed. Few buckets then overflow, and a query whose radius is at most
+    // the side of a cell reads at most four cells. There are at most 16 cells for one in which items are placed.
+    const double margin = 2.0 * physics::to_units(rules_.margin_px);
+    const double area = static_cast<double>(area_.width) * area_.height;
+    const double share =
+        4 * std::max((area_.width - margin) * (area_.height - margin), area / 16) / std::max(count, 1u);
     side_ = static_cast<std::int64_t>(std::clamp(std::sqrt(share), 4096.0, 1073741824.0));
     scale_ = (std::uint64_t{1} << ItemGrid::scale_bits) / static_cast<std::uint64_t>(side_);
     const auto cells = [this](Coordinate size) {

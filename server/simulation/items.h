@@ -134,11 +134,8 @@ class Items {
         }
     }
 
-    /// Changes since forget_changes(), in order: items that disappeared or reappeared.
-    struct Change {
-        physics::Coordinate x, y;
-        bool came; // true: the item reappeared; false: it disappeared
-    };
+    /// Changes since forget_changes(), in order.
+    using Change = ItemChange;
     const std::vector<Change>& changes() const { return changes_; }
     void forget_changes() { changes_.clear(); }
 

@@ -192,7 +192,8 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
         search.look_at_cells(cells.top, cells.bottom, cells.left, cells.right);
         return search.result(radius);
     }
-    // Searches rings of cells around the first cell, until the next ring is further away than the two nearest items.
+    // Searches the first cell and the ring around it, which usually contain the two nearest items, and then further
+    // rings, until the next ring is further away than the two nearest items.
     const std::int64_t column = cell_at(x, grid.scale, grid.columns), row = cell_at(y, grid.scale, grid.rows);
     // The distance from (x, y) to the nearest edge of its cell, slightly reduced, because cell edges are rounded.
     const std::int64_t from_left = x - column * grid.side, from_top = y - row * grid.side;
@@ -200,8 +201,8 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
         least(least(from_left, grid.side - from_left), least(from_top, grid.side - from_top)) - (grid.side >> 12) - 1;
     const std::int64_t rings =
         greatest(greatest(column - cells.left, cells.right - column), greatest(row - cells.top, cells.bottom - row));
-    search.look_at_cells(row, row, column, column);
-    for (std::int64_t ring = 1; ring <= rings; ++ring) {
+    search.look_at_cells(row - 1, row + 1, column - 1, column + 1);
+    for (std::int64_t ring = 2; ring <= rings; ++ring) {
         const auto distance = static_cast<float>(greatest<std::int64_t>((ring - 1) * grid.side + to_edge, 0));
         if (distance * distance * (1 - 1e-5f) > search.others_square()) {
             break;

@@ -38,6 +38,12 @@ struct TwoNearest {
     float others_square; // lower bound on the squared distance of all other items, px²; at most radius²
 };
 
+/// An item that disappeared or reappeared.
+struct ItemChange {
+    std::int32_t x, y;
+    bool came; // true: it reappeared; false: it disappeared
+};
+
 /// A search for items at most `radius` px from (x, y); a distance equal to the radius is included.
 struct ItemQuery {
     std::int32_t x, y;

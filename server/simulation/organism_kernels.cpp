@@ -43,6 +43,30 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
     return {dx, dy, dx * dx + dy * dy};
 }
 
+void notice(const std::int32_t* x, const std::int32_t* y, const ViewColumns& view, const ItemChange* changes,
+            std::size_t change_count, std::size_t end) {
+    for (std::size_t i = 0; i < end; i += lanes) {
+        const Integers own_x = load<Integers>(x + i), own_y = load<Integers>(y + i);
+        const Integers nearest_x = load<Integers>(view.x + i), nearest_y = load<Integers>(view.y + i);
+        const Floats radius = load<Floats>(view.radius + i), old_others = load<Floats>(view.others + i);
+        const Floats known = lesser(offset_to_nearest(view, i, own_x, own_y).square, radius * radius);
+        Floats others = old_others;
+        for (std::size_t k = 0; k < change_count; ++k) {
+            const Integers item_x = Integers{} + changes[k].x, item_y = Integers{} + changes[k].y;
+            if (!changes[k].came) {
+                others = (nearest_x == item_x) & (nearest_y == item_y) ? all_lanes(-1.0f) : others;
+                continue;
+            }
+            const Floats dx = distances(own_x, item_x), dy = distances(own_y, item_y), square = dx * dx + dy * dy;
+            Floats distance = square_root(square);
+            distance -= distance * 1e-6f + 0.002f; // slightly less, to allow for rounding of distances and positions
+            const Floats bound = (distance > 0.0f) & (known < distance * distance) ? distance : all_lanes(-1.0f);
+            others = distance < others ? bound : others;
+        }
+        store(view.others + i, own_x != physics::void_position ? others : old_others);
+    }
+}
+
 /// Chooses the forces of organisms. If `predicting` is true, health is not subtracted, and `choices` receives the
 /// choices.
 template <bool predicting>
@@ -151,6 +175,6 @@ HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t b
 } // namespace
 
 extern const OrganismKernels EVOD_KERNEL(organism_kernels);
-const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, predict, follow, hash};
+const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, notice, choose, predict, follow, hash};
 
 } // namespace evod::simulation

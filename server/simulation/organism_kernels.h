@@ -4,6 +4,8 @@
 //              which give the same bits (base/instructions.h).
 #pragma once
 
+#include "server/simulation/items_kernels.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -57,6 +59,10 @@ struct OrganismKernels {
 
     /// Finds the organisms whose view is stale, which means that their element of `others` is negative.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
+    /// Updates the views of the organisms of [0, end), which are at x, y, after items have changed. A view becomes stale
+    /// if another item may now be the nearest.
+    void (*notice)(const std::int32_t* x, const std::int32_t* y, const ViewColumns& view, const ItemChange* changes,
+                   std::size_t change_count, std::size_t end);
     /// Subtracts the health that a tick costs, and chooses forces by the rules of behaviour.h. Views must not be stale.
     /// force_x, force_y  forces on the organisms from `begin` on, padded; kg px/s². Element 0 is for organism `begin`.
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,

@@ -25,6 +25,8 @@ namespace {
 // search again soon. A wider search costs more, but is needed less often.
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
+// Up to this number of bodies, it takes less time to compare each change with all bodies than to find the bodies near it.
+constexpr std::size_t few_bodies = 64;
 constexpr float needs_search = -1;
 // The view of a void body, the placeholder of a dead organism: the body has void_position, and the stored item is at 0.
 // Their distance is finite, so arithmetic with it is harmless.
@@ -112,6 +114,13 @@ void Perception::notice_poison(const Circles& bodies, const physics::NearPairs& 
 void Perception::notice(View& view, const Circles& bodies, const physics::NearPairs& near,
                         const base::Column<float>& radius, Items& items, base::Executor& executor) {
     const std::vector<Items::Change>& changes = items.changes();
+    if (bodies.size() <= few_bodies) {
+        organism_kernels().notice(bodies.x.data(), bodies.y.data(),
+                                  {view.others.data(), view.x.data(), view.y.data(), radius.data(), items.radius_px()},
+                                  changes.data(), changes.size(), bodies.size());
+        items.forget_changes();
+        return;
+    }
     // If changes affect very many organisms, as in a crowd, it is cheaper to let all of them search.
     const std::size_t affected_max =
         8 * bodies.size() * changes_per_piece / std::max(changes.size(), changes_per_piece) + 64;

@@ -231,6 +231,7 @@ INSTANTIATE_TEST_SUITE_P(Conditions, AMeadow,
                                                     10},
                                          Conditions{"long_and_thin", 20'000, 60, 150, 400, 200, 150, 20'000, 600, 2, 4},
                                          Conditions{"items_everywhere", 700, 700, 10, 9000, 300, 250, 700, 600, 2, 4},
+                                         Conditions{"few", 900, 700, 60, 100, 150, 10'000, 900, 600, 1, 4},
                                          Conditions{"hardly_an_item", 5000, 5000, 100, 40, 2, 500, 5000, 600, 20, 60}),
                          testing::PrintToStringParamName());
 

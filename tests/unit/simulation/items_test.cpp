@@ -133,6 +133,20 @@ TEST(Items, AreFoundAsByTestingAll) {
     }
 }
 
+TEST(Items, AreFoundInsideAndOutsideTheirMargin) {
+    base::RandomStream random = stream(7);
+    const Area area{to_units(2160.0), to_units(1500.0)};
+    for (const float margin_px : {1.0f, 300.0f, 740.0f}) {
+        ItemRules of_margin = rules(100);
+        of_margin.margin_px = margin_px;
+        Items items;
+        items.begin_generation(of_margin, base::Seed{1}, 0, 1, area, BoxGrid{area, {}}, executor);
+        items.add({to_units(5.0), to_units(5.0)});
+        items.add({to_units(2150.0), to_units(700.0)});
+        expect_queries_agree(items, area, random, 400);
+    }
+}
+
 TEST(Items, AreFoundWhenThousandsShareACell) {
     // Only a corner is free of obstacles, so all items are in a few cells, far more than fit into a bucket.
     const Area area{to_units(2000.0), to_units(2000.0)};
