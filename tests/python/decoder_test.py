@@ -136,6 +136,74 @@ class Decoder(CoreTestCase):
         with self.assertRaises(ValueError):
             snapshots[0].organisms.id[0] = 7
 
+    # ---- headings ----------------------------------------------------------------------------------------------------
+
+    def of_one_organism(self, sequence, count, organisms):
+        """A delta (if sequence is 1, a keyframe) of an island, and the same of its only tile. `organisms`: their section."""
+        part = {"sequence": sequence, "base_sequence": sequence - 1, "organism_count": count,
+                "body": b"\1\0" + organisms + b"\0\0\0\0"}
+        frame = {"codec": stream_pb2.CODEC_DELTA, "position_bytes": 2, "width_px": 100, "height_px": 100}
+        tile = stream_pb2.SnapshotTile(detail=stream_pb2.DETAIL_FULL, **part)
+        head = struct.pack("<QQ6I", sequence, sequence - 1, count, 0, 0, 0, 0, 2) + part["body"]
+        tile.checksum = zlib.crc32(struct.pack("<III", 512, 0, tile.detail) + head)
+        return (stream_pb2.SnapshotFrame(checksum=zlib.crc32(head), **frame, **part),
+                stream_pb2.SnapshotFrame(tile_px=512, sequence=sequence, tiles=[tile], **frame))
+
+    def test_sections_without_organisms_have_no_headings(self):
+        def comes(heading):  # id 0, at (0, 0), with radius and health 0
+            return b"\6\1\0\0\0\0" + bytes(8) + bytes((heading,)) + b"\0\0"
+
+        leaves, stays, turns_by_3 = b"\1\1\0\0\0\0", b"\0\0\0\0", b"\4\0\0\0\1\3"
+        moments = ((1, comes(254)), (1, turns_by_3), (0, leaves), (0, b"\0"), (1, comes(5)), (1, turns_by_3))
+        for form in (0, 1):
+            messages = [self.of_one_organism(sequence, *moment)[form] for sequence, moment in enumerate(moments, 1)]
+            decoder = snapshot_decoder.SnapshotDecoder()
+            reference = (delta_decoder.TilesDecoder if form else delta_decoder.Decoder)(unpack)
+            for message, headings in zip(messages, ([254], [1], [], [], [5], [8])):
+                organisms, content = decoder.decode(message).organisms, reference.decode(message)
+                organisms_there = (content[0] if form else content)["organisms"]
+                steps = numpy.rint(organisms.headings * 128 / numpy.pi) % 256
+                self.assertEqual((len(organisms), steps.tolist()), (len(headings), headings))
+                self.assertEqual(organisms_there.get("heading", numpy.zeros(0)).tolist(), headings)
+            for wrong in (stays, leaves + b"\0\0\0"):
+                decoder = snapshot_decoder.SnapshotDecoder()
+                decoder.decode(messages[0])
+                with self.assertRaisesRegex(evod.DamagedData, "only one of a snapshot and its base has headings"):
+                    decoder.decode(self.of_one_organism(2, 1, wrong)[form])
+        of_food = bytearray(self.of_one_organism(1, 0, b"\0")[0].body)
+        of_food[3] = 4
+        with self.assertRaisesRegex(evod.DamagedData, "parts of food are 4, allowed: 0 to 3"):
+            snapshot_decoder.SnapshotDecoder().decode(self.resealed(self.of_one_organism(1, 0, b"\0")[0], bytes(of_food)))
+
+    def test_headings_decode_as_in_the_reference_decoder(self):
+        few = {"controller": "network", "brain_hidden": 1, "population_size": 12, "generation_s": 30,
+               "island_width_px": 1500, "island_height_px": 1500}
+        emptied = filled = 0
+        with evod.local(seed=3, experiment=few) as lab:
+            world = lab.world()
+            messages, take = [], lab._link.core._take_snapshot
+            lab._link.core._take_snapshot = lambda message: (messages.append(copy.deepcopy(message)), take(message))
+            with world.snapshots(120, region=(0, 0, 1500, 1500)) as snapshots:
+                next(snapshots)
+                for _ in range(60):
+                    world.step(30)
+                    next(snapshots)
+            self.assertEqual(lab._link.core.damaged_snapshot_count, 0)
+        decoder, reference, counts = snapshot_decoder.SnapshotDecoder(), delta_decoder.TilesDecoder(unpack), {}
+        for message in messages:
+            snapshot, seen = decoder.decode(message), reference.decode(message)
+            for tile in message.tiles:
+                if tile.base_sequence:
+                    emptied += counts[tile.tile] > 0 and tile.organism_count == 0
+                    filled += counts[tile.tile] == 0 and tile.organism_count > 0
+                counts[tile.tile] = tile.organism_count
+            there = [content["organisms"] for content in seen.values() if len(content["organisms"]["id"])]
+            if there:
+                ids, headings = (numpy.concatenate([organisms[field] for organisms in there]) for field in ("id", "heading"))
+                steps = numpy.rint(snapshot.organisms.headings * 128 / numpy.pi) % 256
+                numpy.testing.assert_array_equal(steps, headings[numpy.argsort(ids)])
+        self.assertGreater(min(emptied, filled), 0)
+
     # ---- damaged snapshots -------------------------------------------------------------------------------------------
 
     def resealed(self, message, body):

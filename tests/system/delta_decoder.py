@@ -85,9 +85,10 @@ class Decoder:
         return entities
 
     def section(self, body, name, sizes, base, ticks, position_bytes):
-        fields = [*(["id"] if name in self.have_ids else []), "x", "y", *sizes, *(["dx", "dy"] if name in MOVE else [])]
-        stayed = dict(base) if base else {field: numpy.zeros(0, numpy.int64) for field in fields}
         parts, come = body.number("<u1"), {}
+        fields = [*(["id"] if name in self.have_ids else []), "x", "y", *sizes, *(["heading"] if parts & 4 else []),
+                  *(["dx", "dy"] if name in MOVE else [])]
+        stayed = {field: base[field] if base and len(base["x"]) else numpy.zeros(0, numpy.int64) for field in fields}
         if parts & 1:
             gone = body.rising_column(body.number("<u4"))
             stayed = {field: numpy.delete(column, gone) for field, column in stayed.items()}
@@ -99,6 +100,8 @@ class Decoder:
                 come[field] = body.planes(count, position_bytes)
             for field in sizes:
                 come[field] = body.planes(count, 2)
+            if parts & 4:
+                come["heading"] = body.planes(count, 1)
             for field in ("dx", "dy") if name in MOVE else ():
                 come[field] = body.column(count)
         count = len(stayed["x"])
@@ -110,6 +113,8 @@ class Decoder:
                     stayed["d" + field] = way.astype(numpy.int32).astype(numpy.int64)
         if count and name == "organisms":
             stayed["health"] = stayed["health"] + body.column(count)
+        if count and parts & 4:
+            stayed["heading"] = (stayed["heading"] + body.column(count)) % 256
         if come:
             stayed = {field: numpy.concatenate((stayed[field], come[field])) for field in fields}
             if name in self.have_ids:

@@ -301,7 +301,7 @@ class _Deltas:
         ticks = body.number("<u2")
         content = {}
         for (name, sizes), count in zip(_SIZES.items(), counts):
-            section = self._section(body, name, sizes, content_before.get(name), ticks, position_bytes)
+            section = self._section(body, name, sizes, content_before.get(name, {}), count, ticks, position_bytes)
             if len(section["x"]) != count:
                 raise DamagedData(f"a snapshot has {len(section['x'])} {name}, not {count} as its count says")
             content[name] = section
@@ -311,54 +311,57 @@ class _Deltas:
         return content
 
     def _section(
-        self, body: _Body, name: str, sizes: Sequence[str], base: Columns | None, ticks: int, position_bytes: int
+        self, body: _Body, name: str, sizes: Sequence[str], base: Columns, count: int, ticks: int, position_bytes: int
     ) -> Columns:
+        """Decodes the section of one kind of entity.
+
+        base   the entities of this kind in the base; empty for a keyframe.
+        count  the number of entities of this kind in the snapshot, as its message states it.
+        """
+        parts, parts_max = body.number("<u1"), 7 if name == "organisms" else 3  # only organisms have headings
+        if parts > parts_max:
+            raise DamagedData(f"a snapshot's parts of {name} are {parts}, allowed: 0 to {parts_max}")
         has_ids, moves = name in self._have_ids, name in _MOVE
-        fields = ("id",) * has_ids + ("x", "y", *sizes) + ("dx", "dy") * moves
-        stayed = dict(base) if base is not None else {field: numpy.zeros(0, _kind_of(field)) for field in fields}
-        parts = body.number("<u1")
-        has_headings = bool(parts & 4)
-        if len(stayed["x"]) and has_headings != ("heading" in stayed):
+        base_count, has_headings = len(base.get("x", ())), parts & 4 != 0 and count > 0
+        if base_count and count and has_headings != ("heading" in base):
             raise DamagedData("only one of a snapshot and its base has headings")
-        if has_headings and name != "organisms":
-            raise DamagedData(f"a snapshot has headings of {name}")
-        if has_headings:
-            stayed.setdefault("heading", numpy.zeros(0, numpy.int32))
+        fields = ("id",) * has_ids + ("x", "y", *sizes) + ("heading",) * has_headings + ("dx", "dy") * moves
+        stayed = {field: base[field] if base_count else numpy.zeros(0, _kind_of(field)) for field in fields}
         if parts & 1:
             gone_count = body.number("<u4")
-            if gone_count > len(stayed["x"]):
-                raise DamagedData(f"a snapshot removes {gone_count} entities of")
+            if gone_count > base_count:
+                raise DamagedData(f"a snapshot removes {gone_count} {name}, but its base has {base_count}")
             gone = body.rising_column(gone_count)
-            if len(gone) and int(gone[-1]) >= len(stayed["x"]):
+            if len(gone) and int(gone[-1]) >= base_count:
                 raise DamagedData("a snapshot removes an entity that is not in its base")
-            stays = numpy.ones(len(stayed["x"]), bool)
+            stays = numpy.ones(base_count, bool)
             stays[gone] = False
             stayed = {field: column[stays] for field, column in stayed.items()}
         come: dict[str, Array] = {}
         if parts & 2:
-            count = body.count(2 * position_bytes + 2 * len(sizes))
+            come_count = body.count(2 * position_bytes + 2 * len(sizes))
             if has_ids:
-                come["id"] = body.rising_column(count)
-            come |= {field: body.planes(count, position_bytes) for field in ("x", "y")}
-            come |= {field: body.planes(count, 2).astype(numpy.int32) for field in sizes}
+                come["id"] = body.rising_column(come_count)
+            come |= {field: body.planes(come_count, position_bytes) for field in ("x", "y")}
+            come |= {field: body.planes(come_count, 2).astype(numpy.int32) for field in sizes}
             if has_headings:
-                come["heading"] = body.planes(count, 1).astype(numpy.int32)
+                come["heading"] = body.planes(come_count, 1).astype(numpy.int32)
             if moves:
-                come |= {field: body.column(count) for field in ("dx", "dy")}
-        count = len(stayed["x"])
-        if count and moves:
+                come |= {field: body.column(come_count) for field in ("dx", "dy")}
+        stayed_count = len(stayed["x"])
+        if stayed_count and moves:
             for field in ("x", "y"):
                 before = stayed["d" + field]
                 if ticks != max(self.ticks, 1):
                     before = (before.astype(numpy.int64) * ticks // max(self.ticks, 1)).astype(numpy.int32)
-                way = body.column(count) + before  # all these numbers are modulo 2^32
+                way = body.column(stayed_count) + before  # all these numbers are modulo 2^32
                 stayed[field] = stayed[field] + way.view(numpy.uint32)
                 if ticks:
                     stayed["d" + field] = way
-        if count and name == "organisms":
-            stayed["health"] = stayed["health"] + body.column(count)
-        if count and has_headings:
-            stayed["heading"] = (stayed["heading"] + body.column(count)) % HEADING_STEPS
+        if stayed_count and name == "organisms":
+            stayed["health"] = stayed["health"] + body.column(stayed_count)
+        if stayed_count and has_headings:
+            stayed["heading"] = (stayed["heading"] + body.column(stayed_count)) % HEADING_STEPS
         columns = _merged(stayed, come, has_ids) if come else stayed
         if has_ids and columns["id"].flags.writeable:
             columns["id"].flags.writeable = False

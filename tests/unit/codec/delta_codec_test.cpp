@@ -150,6 +150,21 @@ TEST(DeltaCodec, HeadingsMustNotVanishOrAppear) {
     EXPECT_THAT(refused.error().what, testing::HasSubstr("has parts 4, not 0 to 3"));
 }
 
+TEST(DeltaCodec, SnapshotsWithoutOrganismsHaveNoHeadings) {
+    const auto some = std::make_shared<QuantisedSnapshot>(heading_to({1, 2}, {3, 4}));
+    const auto none = std::make_shared<QuantisedSnapshot>(heading_to({}, {}));
+    const auto delta = [](const auto& base, const auto& next) {
+        EXPECT_TRUE(follows(*next, *base));
+        const Baseline baseline = initial_baseline(base);
+        std::string body = encode_delta(baseline, *next, 1);
+        const auto decoded = decode_body(body, {.counts = counts_of(*next)}, &baseline);
+        EXPECT_TRUE(decoded && *decoded->snapshot == *next);
+        return body;
+    };
+    EXPECT_EQ(delta(some, none)[2], 1) << "the parts of the organisms: some are gone";
+    EXPECT_EQ(delta(none, some)[2], 2 + 4);
+}
+
 RC_GTEST_PROP(DeltaCodec, BothEndsPredictTheSame, (std::uint64_t seed)) {
     Random random{seed};
     const auto any = [&](std::uint64_t bits) {
