@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -22,19 +23,21 @@ inline base::RandomStream stream_of(std::uint64_t seed, std::uint32_t entity = 0
     return {key_of(seed), entity};
 }
 
+/// The number of events in all cells.
+inline double total_of(std::span<const std::uint64_t> counts) {
+    return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+}
+
 /// Pearson's test of `counts` against a law: the probabilities of the same cells, with sum 1. Cells of probability 0
 /// must be empty and do not count.
 inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<const double> law) {
-    std::uint64_t total = 0;
-    for (const std::uint64_t count : counts) {
-        total += count;
-    }
+    const double total = total_of(counts);
     std::vector<std::uint64_t> observed;
     std::vector<double> expected;
     for (std::size_t i = 0; i < law.size(); ++i) {
         if (law[i] > 0) {
             observed.push_back(counts[i]);
-            expected.push_back(law[i] * static_cast<double>(total));
+            expected.push_back(law[i] * total);
         } else if (counts[i] > 0) {
             return 0;
         }
@@ -46,13 +49,10 @@ inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<co
 inline double p_value_of_rows(std::span<const std::vector<std::uint64_t>> rows, std::span<const double> law) {
     double statistic = 0;
     for (const std::vector<std::uint64_t>& counts : rows) {
-        std::uint64_t total = 0;
-        for (const std::uint64_t count : counts) {
-            total += count;
-        }
+        const double total = total_of(counts);
         std::vector<double> expected;
         for (const double probability : law) {
-            expected.push_back(probability * static_cast<double>(total));
+            expected.push_back(probability * total);
         }
         statistic += support::chi_square(counts, expected);
     }
@@ -72,16 +72,12 @@ inline std::vector<double> binomial_law(unsigned trials, double chance) {
 
 /// Pearson's test as p_value_of_law(), with neighbouring cells joined until at least ten events are expected in each.
 inline double p_value_of_joined_cells(std::span<const std::uint64_t> counts, std::span<const double> law) {
-    std::uint64_t total = 0;
-    for (const std::uint64_t count : counts) {
-        total += count;
-    }
+    const double total = total_of(counts);
     std::vector<std::uint64_t> joined;
     std::vector<double> probabilities;
     double left = 1;
     for (std::size_t i = 0; i < law.size(); ++i) {
-        if (probabilities.empty() ||
-            (probabilities.back() * static_cast<double>(total) >= 10 && left * static_cast<double>(total) >= 10)) {
+        if (probabilities.empty() || (probabilities.back() * total >= 10 && left * total >= 10)) {
             joined.push_back(0);
             probabilities.push_back(0);
         }
