@@ -1,6 +1,7 @@
 #include "server/run_file/generations.h"
 
 #include "server/run_file/rows.h"
+#include "server/run_file/schema.h"
 
 #include <algorithm>
 #include <utility>
@@ -58,14 +59,14 @@ constexpr const char* from_generation_to = "generation >= ? AND generation < ? O
 } // namespace
 
 struct Generations::Writers {
-    Writers(Database& database, bool has_more_genes)
+    Writers(Database& database, bool with_more_genes)
         : generation{database}
         , population{database}
         , founders{database}
         , account{database}
         , outcome{database}
         , statistics{database} {
-        if (has_more_genes) {
+        if (with_more_genes) {
             more_genes.emplace(database);
         }
     }
@@ -87,7 +88,7 @@ Generations::~Generations() = default;
 
 Generations::Writers& Generations::writers() {
     if (!writers_) {
-        writers_ = std::make_unique<Writers>(database_.database, has_more_genes());
+        writers_ = std::make_unique<Writers>(database_.database, has_more_genes(identity_.parameters));
     }
     return *writers_;
 }
@@ -112,10 +113,6 @@ Result<std::optional<simulation::Opening>> Generations::opening_of(std::uint64_t
         return set.error();
     }
     return std::optional{simulation::Opening{.moment = row.moment, .parameters = *set, .progress = row.progress}};
-}
-
-bool Generations::has_more_genes() const {
-    return evolution::gene_count(identity_.parameters) > evolution::body_gene_count;
 }
 
 Result<std::vector<evolution::NextGeneration>> Generations::read_populations(const simulation::Opening& opening) {
@@ -187,7 +184,7 @@ Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation,
     if (database_.failed() || islands.size() != island_count) {
         return database_.damaged(accounts_text(generation));
     }
-    if (has_more_genes()) {
+    if (has_more_genes(identity_.parameters)) {
         const auto more = more_genes_of(generation, island_count);
         if (!more) {
             return more.error();
@@ -299,7 +296,7 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
     for (std::size_t i = 0; i < statistics.size(); ++i) {
         statistics[i].account = (*accounts)[i];
     }
-    if (has_more_genes()) {
+    if (has_more_genes(identity_.parameters)) {
         const auto more = more_genes_of(generation, statistics.size());
         if (!more) {
             return more.error();
@@ -342,7 +339,7 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
     // Reads the selection accounts of the same generations, and of one more if the last generation has not ended.
     TableReader<SelectionAccountTable> accounts{database_.database, from_generation_to, range};
     std::optional<TableReader<MoreGenesTable>> more_genes;
-    if (has_more_genes()) {
+    if (has_more_genes(identity_.parameters)) {
         more_genes.emplace(database_.database, from_generation_to, range);
     }
     std::uint64_t expected = first;

@@ -60,9 +60,7 @@ class Generations {
     /// `end`.
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
                                     simulation::World::History& history);
-    /// Whether the chromosomes have genes beyond those of the body, so the file has the table of their statistics.
-    bool has_more_genes() const;
-    /// The numbers of these genes in a generation, one row per island.
+    /// The numbers of the genes beyond those of the body in a generation, one row per island.
     base::Result<std::vector<MoreGenesTable::Row>> more_genes_of(std::uint64_t generation, std::size_t island_count);
     void write_more_genes(std::uint64_t generation, std::uint64_t island,
                           const std::vector<simulation::GeneStatistics>& statistics,

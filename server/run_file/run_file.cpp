@@ -48,11 +48,6 @@ Result<void> expect_whole_pages(RunDatabase& database) {
     return {};
 }
 
-/// Whether the chromosomes have genes beyond those of the body.
-bool has_genes_beyond_body(const parameters::Parameters& parameters) {
-    return evolution::gene_count(parameters) > evolution::body_gene_count;
-}
-
 } // namespace
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
@@ -73,7 +68,7 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
     }
     file->identity_ = {identity, options.keep_every};
     file->begin();
-    create_schema(file->database_, has_genes_beyond_body(identity.parameters));
+    create_schema(file->database_, has_more_genes(identity.parameters));
     write_identity(file->database_, file->identity_);
     return file;
 }
@@ -175,7 +170,7 @@ Result<void> RunFile::read_beginning() {
         return identity.error();
     }
     identity_ = *std::move(identity);
-    if (has_genes_beyond_body(identity_.run.parameters)) {
+    if (has_more_genes(identity_.run.parameters)) {
         if (auto whole = check_more_genes(database_); !whole) {
             return whole;
         }

@@ -1,5 +1,6 @@
 #include "server/run_file/schema.h"
 
+#include "server/evolution/gene_layout.h"
 #include "server/run_file/rows.h"
 
 #include <algorithm>
@@ -89,6 +90,10 @@ Result<void> check_tables(RunDatabase& database) {
 }
 
 } // namespace
+
+bool has_more_genes(const parameters::Parameters& parameters) {
+    return evolution::gene_count(parameters) > evolution::body_gene_count;
+}
 
 void create_schema(RunDatabase& database, bool more_genes) {
     database.run("PRAGMA application_id = " + std::to_string(application_id));

@@ -1,6 +1,7 @@
 // Schema: creates the tables of a run file, and checks that a file has these tables and nothing else.
 #pragma once
 
+#include "server/parameters/parameters.h"
 #include "server/run_file/run_database.h"
 
 namespace evod::run_file {
@@ -10,9 +11,12 @@ constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the
 /// this format.
 constexpr std::int64_t format_version = 4;
 
+/// Returns whether the chromosomes have genes beyond those of the body. If so, the file has the table of their numbers.
+bool has_more_genes(const parameters::Parameters& parameters);
+
 /// Marks a new database as a run file and creates its tables.
 ///
-/// more_genes  whether the chromosomes have genes beyond those of the body.
+/// more_genes  has_more_genes() of the run's parameters.
 void create_schema(RunDatabase& database, bool more_genes);
 
 /// Refuses the database unless it is a run file of this format, contains the tables of this format, and contains no
