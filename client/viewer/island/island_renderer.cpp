@@ -1,7 +1,6 @@
 #include "client/viewer/island/island_renderer.h"
 
 #include "client/viewer/drawing/ink.h"
-#include "client/viewer/world/healthiest.h"
 
 #include <imgui.h>
 
@@ -15,9 +14,8 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::size_t named_count = 3;   // the labels of this many of the healthiest organisms contain their ids
-constexpr std::size_t ranked_max = 2000; // larger populations are not ranked in each frame
-constexpr float label_pixels = 14;       // height of the health numbers, at scale 1
+constexpr std::size_t with_names_max = 2000; // the healthiest organisms of larger populations are not named
+constexpr float label_pixels = 14;           // height of the health numbers, at scale 1
 constexpr double density_cell_pixels = 5;
 
 constexpr double outline_zoom_min = 0.3; // smaller coloured organisms have neither outline nor arc
@@ -425,7 +423,8 @@ void IslandRenderer::draw_flashes(double now_s, const IslandView& island_view) {
 }
 
 void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, Look look,
-                                 const Highlighted& highlighted, ImDrawList& list, ImFont& font) {
+                                 const Highlighted& highlighted, std::span<const std::size_t> healthiest,
+                                 ImDrawList& list, ImFont& font) {
     const auto& snapshot = view.latest();
     if (!snapshot) {
         return;
@@ -443,8 +442,8 @@ void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double 
         }
     }
     named_.clear();
-    if (organisms.size() <= ranked_max) {
-        named_ = healthiest(*organisms.entities, named_count);
+    if (organisms.size() <= with_names_max) {
+        named_.assign(healthiest.begin(), healthiest.end());
     }
     for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
         if (index && *index < organisms.size() && std::ranges::find(named_, *index) == named_.end()) {

@@ -21,6 +21,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 struct ImDrawList;
@@ -68,8 +69,11 @@ class IslandRenderer {
 
     /// Draws the health of the visible organisms as numbers, or of the highlighted ones only if the organisms are small
     /// in this skin. Call after draw(), with the same arguments.
+    ///
+    /// healthiest  indices of organisms that are named, as the highlighted ones, if the population is small
     void draw_labels(const core::SnapshotInterpolator& view, double blend, const Camera& camera, Look look,
-                     const Highlighted& highlighted, ImDrawList& list, ImFont& font);
+                     const Highlighted& highlighted, std::span<const std::size_t> healthiest, ImDrawList& list,
+                     ImFont& font);
 
   private:
     void upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);

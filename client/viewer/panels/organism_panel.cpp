@@ -6,7 +6,6 @@
 #include "client/viewer/panels/brain_diagram.h"
 #include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/world/freezer.h"
-#include "client/viewer/world/healthiest.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
@@ -208,11 +207,11 @@ void OrganismPanel::build_choice(Context& context) {
     if (snapshot == nullptr || snapshot->entities->organisms.id.empty()) {
         return;
     }
-    constexpr std::size_t offered = 5;
     const codec::Entities& organisms = snapshot->entities->organisms;
     ImGui::Separator();
     widgets::small_text("The healthiest organisms now:", palette::text);
-    for (const std::size_t index : healthiest(organisms, offered)) {
+    WorldFeed& feed = context.world.feed;
+    for (const std::size_t index : feed.healthiest(feed.island(), HealthRanking::ranked_count)) {
         const std::string label = "Organism " + std::to_string(organisms.id[index]) + ", health " +
                                   three_digits(double{organisms.health(index)});
         if (ImGui::Button((label + "###" + std::to_string(organisms.id[index])).c_str(),

@@ -7,7 +7,6 @@
 #include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/plots/figures.h"
 #include "client/viewer/panels/plots/run_history.h"
-#include "client/viewer/world/healthiest.h"
 #include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
@@ -93,10 +92,10 @@ void Summary::build_marks(const Panel::Context& context) {
     add(styles.poison, "poison");
     ImGui::Dummy({width, height});
     std::string text;
-    if (const codec::ReceivedSnapshot* snapshot = context.world.feed.snapshot()) {
+    WorldFeed& feed = context.world.feed;
+    if (const codec::ReceivedSnapshot* snapshot = feed.snapshot()) {
         const codec::Entities& organisms = snapshot->entities->organisms;
-        constexpr std::size_t named = 3;
-        for (const std::size_t i : healthiest(organisms, named)) {
+        for (const std::size_t i : feed.healthiest(feed.island(), HealthRanking::named_count)) {
             text += (text.empty() ? "Healthiest now: #" : ", #") + std::to_string(organisms.id[i]) + " (" +
                     std::to_string(shown_health(organisms.health(i))) + ")";
         }

@@ -186,7 +186,8 @@ void WindowRenderer::draw_tile(Pane& pane, const Tile& tile, IslandRenderer& ren
         list.PushClipRect(
             {static_cast<float>(viewport.left), static_cast<float>(viewport.top)},
             {static_cast<float>(viewport.left + viewport.width), static_cast<float>(viewport.top + viewport.height)});
-        renderer.draw_labels(tile.view, blend, tile.camera, look, highlighted, list, gui_.label());
+        const auto healthiest = pane.world.feed.healthiest(tile.island, HealthRanking::named_count);
+        renderer.draw_labels(tile.view, blend, tile.camera, look, highlighted, healthiest, list, gui_.label());
         list.PopClipRect();
     }
     if (pane.world.feed.all_islands()) {

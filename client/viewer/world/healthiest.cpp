@@ -17,4 +17,13 @@ std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_
     return indices;
 }
 
+std::span<const std::size_t> HealthRanking::of(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
+                                               std::size_t count) {
+    if (snapshot != ranked_) {
+        ranked_ = snapshot;
+        indices_ = snapshot ? healthiest(snapshot->entities->organisms, ranked_count) : std::vector<std::size_t>{};
+    }
+    return std::span{indices_}.first(std::min(count, indices_.size()));
+}
+
 } // namespace evod::viewer

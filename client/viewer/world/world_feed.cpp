@@ -86,6 +86,7 @@ void WorldFeed::show(std::string world, std::uint32_t island) {
     streamed_view_.reset();
     subscribe_overview();
     views_.clear();
+    rankings_.clear();
     server_.connection().unsubscribe(snapshot_subscription_);
     subscribe();
     request_statistics();

@@ -10,6 +10,7 @@
 
 #include "client/core/snapshot_interpolator.h"
 #include "client/viewer/world/gene_groups.h"
+#include "client/viewer/world/healthiest.h"
 #include "client/viewer/world/run_control.h"
 #include "client/viewer/world/server_connection.h"
 
@@ -17,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +79,10 @@ class WorldFeed {
     /// Returns the newest snapshot of the chosen island; null until one has arrived.
     const codec::ReceivedSnapshot* snapshot() const { return snapshot_of(island_); }
     const codec::ReceivedSnapshot* snapshot_of(std::uint32_t island) const;
+    /// Returns the indices of the healthiest organisms in the newest snapshot of an island, as HealthRanking::of().
+    std::span<const std::size_t> healthiest(std::uint32_t island, std::size_t count) {
+        return rankings_[island].of(views_[island].latest(), count);
+    }
     /// Returns the number of islands of the world; 1 until a snapshot has arrived.
     std::uint32_t island_count() const;
     /// Returns densities of the whole island, updated about once a second while a view is set; otherwise null.
@@ -133,6 +139,7 @@ class WorldFeed {
     std::optional<core::SubscriptionHandle> overview_subscription_;
     std::optional<evod::v1::View> streamed_view_;
     std::map<std::uint32_t, core::SnapshotInterpolator> views_; // one view per island number
+    std::map<std::uint32_t, HealthRanking> rankings_;           // of the latest snapshot in each view
     std::shared_ptr<const codec::ReceivedSnapshot> overview_snapshot_;
     RunControl control_;
     std::optional<evod::v1::Replay> replay_;
