@@ -31,8 +31,7 @@ BrainColumns brain_columns(Living& living) {
         .weights = living.weights.data(), .heading = living.heading.data(), .base_health = living.base_health.data()};
 }
 
-/// Copies of the columns of a few organisms, for OrganismKernels::predict() and BrainKernels::predict(), which do not
-/// read the columns that are nullptr here.
+/// Copies of the columns of a few organisms that OrganismKernels::predict() and BrainKernels::predict() read.
 struct FewOrganisms {
     static constexpr std::size_t room = physics::circles_per_block;
     struct View {
@@ -76,14 +75,10 @@ struct FewOrganisms {
                 .y = y.data(),
                 .velocity_x = velocity_x.data(),
                 .velocity_y = velocity_y.data(),
-                .body_radius = nullptr,
                 .id = id.data(),
                 .health = health.data(),
-                .loss_per_tick = nullptr,
                 .normal_speed = normal_speed.data(),
                 .impulse = impulse.data(),
-                .seen_x = nullptr,
-                .seen_y = nullptr,
                 .food = food.columns(),
                 .poison = poison.columns()};
     }
@@ -102,11 +97,7 @@ OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perce
                             .health = living.health.data(),
                             .loss_per_tick = living.loss_per_tick.data(),
                             .normal_speed = living.normal_speed.data(),
-                            .impulse = living.impulse.data(),
-                            .seen_x = nullptr,
-                            .seen_y = nullptr,
-                            .food = {},
-                            .poison = {}};
+                            .impulse = living.impulse.data()};
     perception.add_to(columns, living, food, poison);
     return columns;
 }

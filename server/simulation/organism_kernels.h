@@ -20,16 +20,16 @@ struct ViewColumns {
 };
 
 /// The columns of organisms, by the index of the body (physics::Circles). They include placeholders of dead organisms,
-/// and are padded to full vectors.
+/// and are padded to full vectors. Columns that a kernel does not read may be nullptr.
 struct OrganismColumns {
     const std::int32_t *x, *y;
     const float *velocity_x, *velocity_y;
-    const float* body_radius;
+    const float* body_radius = nullptr;
     const std::uint32_t* id;
     float* health; // −infinity for placeholders of dead organisms
-    const float *loss_per_tick, *normal_speed, *impulse;
-    std::int32_t *seen_x, *seen_y; // where the organism was when its views were last updated
-    ViewColumns food, poison;
+    const float *loss_per_tick = nullptr, *normal_speed, *impulse = nullptr;
+    std::int32_t *seen_x = nullptr, *seen_y = nullptr; // where the organism was when its views were last updated
+    ViewColumns food{}, poison{};
 };
 
 struct ChoiceRules {

@@ -71,14 +71,10 @@ struct Organisms {
                 .y = y.data(),
                 .velocity_x = velocity_x.data(),
                 .velocity_y = velocity_y.data(),
-                .body_radius = nullptr,
                 .id = id.data(),
                 .health = health.data(),
                 .loss_per_tick = loss.data(),
                 .normal_speed = normal_speed.data(),
-                .impulse = nullptr,
-                .seen_x = nullptr,
-                .seen_y = nullptr,
                 .food = {nullptr, food_x.data(), food_y.data(), food_radius.data(), 4},
                 .poison = {nullptr, poison_x.data(), poison_y.data(), poison_radius.data(), 4}};
     }
