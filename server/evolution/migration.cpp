@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace evod::evolution {
 namespace {
@@ -94,52 +95,72 @@ bool migration_due(std::uint64_t generation, const Parameters& parameters) {
     return parameters.migration != Topology::None && generation % parameters.migration_epoch == 0;
 }
 
-std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fitness, const Parameters& parameters,
-                                     base::Seed seed, std::uint64_t generation) {
+std::vector<MigrationRoute> plan_migration(std::span<const std::uint32_t> populations, const Parameters& parameters,
+                                           base::Seed seed, std::uint64_t generation) {
     EVOD_ASSERT(generation >= 1);
-    const auto islands = static_cast<std::uint32_t>(fitness.size());
-    const auto population = [&](std::uint32_t island) { return static_cast<std::uint32_t>(fitness[island].size()); };
-    const auto stream = [&](std::uint32_t island, std::uint32_t entity, Decision decision) {
-        return base::RandomStream{{seed, base::Purpose::Migration, island, generation}, entity, decision};
-    };
     base::InlineExecutor executor;
-    std::vector<Ranking> rankings(fitness.begin(), fitness.end());
-
-    std::vector<Migrant> migrants;
-    const std::vector<Edge> all = edges(islands, parameters.migration, seed, generation);
+    std::vector<MigrationRoute> routes;
+    const std::vector<Edge> all =
+        edges(static_cast<std::uint32_t>(populations.size()), parameters.migration, seed, generation);
     for (auto first = all.begin(); first != all.end();) {
         const std::uint32_t to = first->to;
         const auto last = std::find_if(first, all.end(), [&](const Edge& edge) { return edge.to != to; });
         std::vector<std::uint32_t> wanted;
         for (auto edge = first; edge != last; ++edge) {
-            wanted.push_back(std::min(parameters.migrant_count, population(edge->from)));
+            wanted.push_back(std::min(parameters.migrant_count, populations[edge->from]));
         }
-        const std::vector<std::uint32_t> leaving =
-            share_of_places(std::move(wanted), population(to), stream(to, 0, LastPlaces), executor);
-
-        std::vector<std::uint32_t> replaced; // organisms to be replaced, in the order in which their places are taken
-        if (parameters.immigrants_replace == Replaced::Worst) {
-            const auto order = rankings[to].best_first();
-            replaced.assign(order.rbegin(), order.rend());
-        } else {
-            base::RandomStream random = stream(to, 0, ReplacedChoice);
-            replaced = draw_unique(population(to), population(to), random, executor);
-        }
-        auto place = replaced.begin();
+        const std::vector<std::uint32_t> leaving = share_of_places(
+            std::move(wanted), populations[to],
+            base::RandomStream{{seed, base::Purpose::Migration, to, generation}, 0, LastPlaces}, executor);
+        std::uint32_t place = 0;
         for (const std::uint32_t count : leaving) {
-            const std::uint32_t from = first++->from;
-            std::vector<std::uint32_t> drawn;
-            std::span<const std::uint32_t> emigrants;
-            if (parameters.emigrants == Emigrants::Best) {
-                emigrants = rankings[from].best_first().first(count);
-            } else {
-                base::RandomStream random = stream(from, to, EmigrantChoice);
-                drawn = draw_unique(population(from), count, random, executor);
-                emigrants = drawn;
-            }
-            for (const std::uint32_t organism : emigrants) {
-                migrants.push_back({from, to, organism, *place++});
-            }
+            routes.push_back({.from = first++->from, .to = to, .count = count, .first_place = place});
+            place += count;
+        }
+    }
+    return routes;
+}
+
+std::vector<std::uint32_t> emigrants(const MigrationRoute& route, Ranking& ranking, const Parameters& parameters,
+                                     base::Seed seed, std::uint64_t generation) {
+    if (parameters.emigrants == Emigrants::Best) {
+        const auto best = ranking.best_first().first(route.count);
+        return {best.begin(), best.end()};
+    }
+    base::InlineExecutor executor;
+    base::RandomStream random{{seed, base::Purpose::Migration, route.from, generation}, route.to, EmigrantChoice};
+    return draw_unique(static_cast<std::uint32_t>(ranking.fitness().size()), route.count, random, executor);
+}
+
+std::vector<std::uint32_t> replaced_first(std::uint32_t island, Ranking& ranking, const Parameters& parameters,
+                                          base::Seed seed, std::uint64_t generation) {
+    if (parameters.immigrants_replace == Replaced::Worst) {
+        const auto order = ranking.best_first();
+        return {order.rbegin(), order.rend()};
+    }
+    base::InlineExecutor executor;
+    base::RandomStream random{{seed, base::Purpose::Migration, island, generation}, 0, ReplacedChoice};
+    const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
+    return draw_unique(population, population, random, executor);
+}
+
+std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fitness, const Parameters& parameters,
+                                     base::Seed seed, std::uint64_t generation) {
+    std::vector<Ranking> rankings(fitness.begin(), fitness.end());
+    std::vector<std::uint32_t> populations;
+    for (const std::span<const double> island : fitness) {
+        populations.push_back(static_cast<std::uint32_t>(island.size()));
+    }
+    std::vector<Migrant> migrants;
+    std::vector<std::uint32_t> replaced; // on the island `to` of the previous route
+    std::uint32_t to = ~0U;
+    for (const MigrationRoute& route : plan_migration(populations, parameters, seed, generation)) {
+        if (std::exchange(to, route.to) != route.to) {
+            replaced = replaced_first(to, rankings[to], parameters, seed, generation);
+        }
+        std::uint32_t place = route.first_place;
+        for (const std::uint32_t organism : emigrants(route, rankings[route.from], parameters, seed, generation)) {
+            migrants.push_back({route.from, to, organism, replaced[place++]});
         }
     }
     return migrants;

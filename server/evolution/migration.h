@@ -10,6 +10,7 @@
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
 #include "server/evolution/parameters.h"
+#include "server/evolution/ranking.h"
 
 #include <cstdint>
 #include <span>
@@ -27,6 +28,33 @@ struct Migrant {
 
 /// Returns whether islands exchange migrants after generation `generation` (from 1): every migration_epoch generations.
 bool migration_due(std::uint64_t generation, const Parameters& parameters);
+
+/// The migrants that one island sends to another in one epoch. Their number is known before it is known which organisms
+/// they are, so the processes that share a world agree on it without exchanging their fitness.
+struct MigrationRoute {
+    std::uint32_t from, to;    // islands, never equal
+    std::uint32_t count;       // number of migrants
+    std::uint32_t first_place; // migrant i replaces the organism replaced_first(…)[first_place + i] of `to`
+};
+
+/// Plans how many migrants each island sends to each other island (choose_migrants() states the rules).
+///
+/// populations  the number of organisms on each island.
+/// returns      ordered by (to, from).
+std::vector<MigrationRoute> plan_migration(std::span<const std::uint32_t> populations, const Parameters& parameters,
+                                           base::Seed seed, std::uint64_t generation);
+
+/// Returns the organisms of route.from that migrate, in the order of their places.
+///
+/// ranking  of the organisms of route.from.
+std::vector<std::uint32_t> emigrants(const MigrationRoute& route, Ranking& ranking, const Parameters& parameters,
+                                     base::Seed seed, std::uint64_t generation);
+
+/// Returns the organisms of an island in the order in which migrants replace them.
+///
+/// ranking  of the organisms of `island`.
+std::vector<std::uint32_t> replaced_first(std::uint32_t island, Ranking& ranking, const Parameters& parameters,
+                                          base::Seed seed, std::uint64_t generation);
 
 /// Chooses the migrants of one epoch; changes nothing.
 ///

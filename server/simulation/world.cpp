@@ -14,27 +14,29 @@
 
 namespace evod::simulation {
 World::World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population,
-             parameters::Schedule schedule)
-    : World{parameters::ParameterSet{parameters, parameters, 1}, seed, std::move(first_population),
-            std::move(schedule)} {}
+             parameters::Schedule schedule, base::Exchange& exchange)
+    : World{parameters::ParameterSet{parameters, parameters, 1}, seed, std::move(first_population), std::move(schedule),
+            exchange} {}
 
 World::World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
-             parameters::Schedule schedule)
+             parameters::Schedule schedule, base::Exchange& exchange)
     : seed_{seed}
     , parameters_{std::move(parameters)}
     , first_population_{std::move(first_population)}
-    , schedule_{std::move(schedule)} {
+    , schedule_{std::move(schedule)}
+    , exchange_{&exchange} {
     begin_run();
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
              base::Executor& executor, FirstPopulation first_population, Founders founders,
-             parameters::Schedule schedule)
+             parameters::Schedule schedule, base::Exchange& exchange)
     : seed_{seed}
     , parameters_{opening.parameters}
     , first_population_{std::move(first_population)}
     , schedule_{std::move(schedule)}
     , moment_{opening.moment}
+    , exchange_{&exchange}
     , history_{std::move(history)}
     , progress_{opening.progress} {
     EVOD_ASSERT(born.size() == parameters_.active.island_count);
@@ -48,6 +50,7 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
 }
 
 World World::at_its_opening(base::Executor& executor, bool keep_requests) const {
+    EVOD_ASSERT(!is_shared());
     Opening opening = opening_;
     if (keep_requests && moment_.generation_tick == 0) {
         opening.parameters = parameters_;
@@ -82,7 +85,8 @@ base::Result<parameters::Parameters> World::beginning() const {
 
 void World::reset(base::Seed seed) {
     const parameters::Parameters first = beginning().value();
-    World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_};
+    World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_,
+                *exchange_};
     *this = std::move(fresh);
 }
 
@@ -93,12 +97,10 @@ void World::begin_run() {
     generation_over_ = false;
     make_islands();
     EVOD_ASSERT(!first_population_ || first_population_->size() == p.island_count);
-    std::vector<evolution::NextGeneration> first;
-    for (std::uint32_t island = 0; island < p.island_count; ++island) {
-        evolution::NextGeneration born;
-        born.genes = first_population_ ? (*first_population_)[island]
-                                       : evolution::initial_population(p.population_size, p, seed_, island);
-        first.push_back(std::move(born));
+    std::vector<evolution::NextGeneration> first(p.island_count);
+    for (auto island = static_cast<std::uint32_t>(share_.begin); island < share_.end; ++island) {
+        first[island].genes = first_population_ ? (*first_population_)[island]
+                                                : evolution::initial_population(p.population_size, p, seed_, island);
     }
     base::InlineExecutor executor; // a run begins between two ticks, where no executor is available
     begin_generation(std::move(first), executor);
@@ -109,28 +111,38 @@ void World::make_islands() {
     for (std::uint32_t island = 0; island < parameters_.active.island_count; ++island) {
         islands_.emplace_back(seed_, island);
     }
+    share_ = share_of(islands_.size(), exchange_->rank(), exchange_->size());
+    summaries_.resize(exchange_->size() > 1 ? islands_.size() : 0);
+}
+
+/// Calls body(i) for every island i of `share`.
+template <class Body>
+void for_each_island(base::Range share, base::Executor& executor, Body&& body) {
+    executor.parallel_for(share.end - share.begin, 1, [&](base::Range range) {
+        for (std::size_t i = share.begin + range.begin; i < share.begin + range.end; ++i) {
+            body(i);
+        }
+    });
 }
 
 void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
     opening_ = {moment_, parameters_, progress_};
     fitness_.clear();
     find_founders(bred);
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
-        }
+    for_each_island(share_, executor, [&](std::size_t i) {
+        islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
     });
+    exchange_summaries();
     update_hash();
 }
 
 void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
     if (moment_.generation == 1) {
         founders_.clear();
-        std::uint32_t number = 0;
-        for (const evolution::NextGeneration& first : bred) {
-            founders_.emplace_back(static_cast<std::size_t>(first.genes.cols()));
-            std::iota(founders_.back().begin(), founders_.back().end(), number);
-            number += static_cast<std::uint32_t>(first.genes.cols());
+        for (std::size_t i = 0; i < bred.size(); ++i) { // all islands begin with the same number of organisms
+            const auto count = static_cast<std::size_t>(bred[i].genes.cols());
+            founders_.emplace_back(count);
+            std::iota(founders_.back().begin(), founders_.back().end(), static_cast<std::uint32_t>(i * count));
         }
         return;
     }
@@ -191,8 +203,11 @@ parameters::Parameters World::parameters_of_next_tick() const {
 
 std::uint64_t World::alive_count() const {
     std::uint64_t alive = 0;
-    for (const Island& island : islands_) {
+    for (const Island& island : islands_) { // the islands of other processes are empty here
         alive += island.alive_count();
+    }
+    for (std::size_t i = 0; i < summaries_.size(); ++i) {
+        alive += is_mine(i) ? 0 : summaries_[i].alive_count;
     }
     return alive;
 }
@@ -273,6 +288,7 @@ void World::apply_planned(std::span<const parameters::Assignment> changes,
 }
 
 EntityIds World::place(const PlaceEntities& command) {
+    EVOD_ASSERT(!is_shared());
     Island& island = islands_[command.island];
     EntityIds ids{.island = command.island, .generation = moment_.generation};
     for (const PlaceEntities::Item& item : command.items) {
@@ -297,6 +313,7 @@ EntityIds World::place(const PlaceEntities& command) {
 }
 
 EntityIds World::remove(const RemoveEntities& command) {
+    EVOD_ASSERT(!is_shared());
     Island& island = islands_[command.island];
     for (const std::uint32_t item : command.food) {
         island.remove(ItemKind::Food, item);
@@ -338,12 +355,10 @@ void World::turn_over(base::Executor& executor) {
     std::vector<evolution::GeneMatrix> migrated;
     const std::vector<const evolution::GeneMatrix*> genes = parents(migrated);
     std::vector<evolution::NextGeneration> bred(islands_.size());
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            bred[i] = evolution::next_generation(fitness_[i], *genes[i], p, p.population_size, key_of(i), executor);
-            bred[i].account =
-                evolution::account_for(islands_[i].born().genes, *genes[i], bred[i].genes, bred[i].parents, executor);
-        }
+    for_each_island(share_, executor, [&](std::size_t i) {
+        bred[i] = evolution::next_generation(fitness_[i], *genes[i], p, p.population_size, key_of(i), executor);
+        bred[i].account =
+            evolution::account_for(islands_[i].born().genes, *genes[i], bred[i].genes, bred[i].parents, executor);
     });
 
     ++moment_.generation;
@@ -361,44 +376,33 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
     if (!evolution::migration_due(moment_.generation, p)) {
         return genes;
     }
-    std::vector<std::span<const double>> fitness(fitness_.begin(), fitness_.end());
-    const auto migrants = evolution::choose_migrants(fitness, p, seed_, moment_.generation);
-    if (migrants.empty()) {
+    std::vector<std::uint32_t> populations;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        populations.push_back(organism_count(i));
+    }
+    const auto routes = evolution::plan_migration(populations, p, seed_, moment_.generation);
+    MigrationHappened happened{.generation = moment_.generation, .edges = {}};
+    for (const evolution::MigrationRoute& route : routes) {
+        if (route.count > 0) {
+            happened.edges.push_back({route.from, route.to, route.count});
+        }
+    }
+    if (happened.edges.empty()) {
         return genes;
     }
-    std::vector<evolution::IslandPopulation> populations;
     for (const evolution::GeneMatrix* born : genes) {
         migrated.push_back(*born);
     }
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         genes[i] = &migrated[i];
-        populations.push_back({&migrated[i], fitness_[i]});
     }
-    evolution::migrate(migrants, populations);
-    if (!founders_.empty()) {
-        std::vector<std::uint32_t> of_migrants; // all founders are copied before any is overwritten
-        of_migrants.reserve(migrants.size());
-        for (const evolution::Migrant& migrant : migrants) {
-            of_migrants.push_back(founders_[migrant.from][migrant.organism]);
-        }
-        for (std::size_t i = 0; i < migrants.size(); ++i) {
-            founders_[migrants[i].to][migrants[i].replaces] = of_migrants[i];
-        }
-    }
-
-    MigrationHappened happened{.generation = moment_.generation, .edges = {}};
-    for (const evolution::Migrant& migrant : migrants) { // ordered by (to, from)
-        auto& edges = happened.edges;
-        if (edges.empty() || edges.back().from != migrant.from || edges.back().to != migrant.to) {
-            edges.push_back({migrant.from, migrant.to, 0});
-        }
-        ++edges.back().migrant_count;
-    }
+    migrate(routes, migrated);
     events_.push_back(std::move(happened));
     return genes;
 }
 
-void World::advance_tick(base::Executor& executor) {
+void World::advance(std::uint64_t tick, base::Executor& executor) {
+    EVOD_ASSERT(tick > moment_.tick);
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     EVOD_ASSERT(!awaits_fitness());
     turn_over(executor);
@@ -406,40 +410,49 @@ void World::advance_tick(base::Executor& executor) {
         parameters_.active =
             parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
-    const parameters::Parameters& p = parameters_.active;
-    ++moment_.tick;
-    ++moment_.generation_tick;
-    moment_.simulated_s += p.tick_s;
-    if (!has_bodies()) {
-        end_generation(executor);
-        update_hash();
+    std::uint64_t alive = advance_share(executor);
+    while (moment_.tick < tick && !ends(moment_.generation_tick, alive)) {
         apply_planned_now();
-        return;
+        alive = advance_share(executor);
     }
-
-    const auto tick = static_cast<std::uint32_t>(moment_.generation_tick);
-    std::uint64_t alive = 0;
-    died_out_.assign(islands_.size(), 0);
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (islands_[i].alive_count() == 0) {
-                continue; // an island without living organisms skips the tick
-            }
-            islands_[i].advance_tick(p, tick, executor);
-            died_out_[i] = islands_[i].alive_count() == 0;
-        }
-    });
-    for (std::uint32_t i = 0; i < islands_.size(); ++i) {
-        alive += islands_[i].alive_count();
-        if (died_out_[i]) {
-            events_.push_back(Extinction{.island = i, .generation = moment_.generation});
-        }
+    if (!summaries_.empty() && has_bodies()) {
+        meet(executor);
+        alive = alive_count();
     }
     update_hash();
     if (ends(moment_.generation_tick, alive)) {
         end_generation(executor);
     }
     apply_planned_now();
+}
+
+std::uint64_t World::advance_share(base::Executor& executor) {
+    const parameters::Parameters& p = parameters_.active;
+    ++moment_.tick;
+    ++moment_.generation_tick;
+    moment_.simulated_s += p.tick_s;
+    if (!has_bodies()) {
+        return 0;
+    }
+    const auto tick = static_cast<std::uint32_t>(moment_.generation_tick);
+    std::uint64_t alive = 0;
+    died_out_.assign(islands_.size(), 0);
+    for_each_island(share_, executor, [&](std::size_t i) {
+        if (islands_[i].alive_count() == 0) {
+            return; // an island without living organisms skips the tick
+        }
+        islands_[i].advance_tick(p, tick, executor);
+        died_out_[i] = islands_[i].alive_count() == 0;
+    });
+    for (auto i = static_cast<std::uint32_t>(share_.begin); i < share_.end; ++i) {
+        alive += islands_[i].alive_count();
+        if (died_out_[i] && is_shared()) {
+            died_out_since_meeting_.push_back({moment_.tick, i});
+        } else if (died_out_[i]) {
+            events_.push_back(Extinction{.island = i, .generation = moment_.generation});
+        }
+    }
+    return alive;
 }
 
 bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
@@ -452,15 +465,16 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
 }
 
 void World::find_fitness(base::Executor& executor) {
-    fitness_.clear();
-    for (const Island& island : islands_) {
-        fitness_.push_back(
-            island.fitness(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick), executor));
+    fitness_.assign(islands_.size(), {});
+    for (std::size_t i = share_.begin; i < share_.end; ++i) {
+        fitness_[i] =
+            islands_[i].fitness(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick), executor);
     }
 }
 
 void World::end_generation(base::Executor& executor) {
     if (is_fitness_external()) {
+        EVOD_ASSERT(!is_shared());
         fitness_.assign(islands_.size(), {});
         events_.push_back(FitnessAwaited{moment_.generation});
         return;
@@ -472,12 +486,23 @@ void World::end_generation(base::Executor& executor) {
 void World::finish_generation(base::Executor& executor) {
     const parameters::Parameters& p = parameters_.active;
     std::vector<GenerationStatistics> statistics;
-    for (std::size_t i = 0; i < islands_.size(); ++i) {
+    for (std::size_t i = share_.begin; i < share_.end; ++i) {
         GenerationStatistics s = generation_statistics(islands_[i], p, fitness_[i], executor);
         s.generation = moment_.generation;
         s.end_tick = moment_.tick;
         s.simulated_s = static_cast<double>(moment_.generation_tick) * p.tick_s;
         statistics.push_back(s);
+    }
+    if (is_shared()) {
+        base::Packer packer;
+        for (const GenerationStatistics& s : std::exchange(statistics, {})) {
+            pack(packer, s);
+        }
+        for (const std::string& part : exchange_->gather(packer.take())) {
+            for (base::Unpacker unpacker{part}; !unpacker.empty();) {
+                statistics.push_back(unpack_statistics(unpacker));
+            }
+        }
     }
     close_generation(statistics);
     events_.push_back(GenerationFinished{std::move(statistics)});
@@ -497,6 +522,7 @@ void World::close_generation(const std::vector<GenerationStatistics>& statistics
 }
 
 WorldState World::state(base::Executor& executor) const {
+    EVOD_ASSERT(!is_shared());
     WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
     if (is_fitness_external()) {
         state.given_fitness = fitness_;
@@ -522,6 +548,7 @@ std::vector<IslandShape> World::shapes() const {
 }
 
 base::Result<void> World::restore(const WorldState& state, base::Executor& executor) {
+    EVOD_ASSERT(!is_shared());
     EVOD_ASSERT(moment_.generation_tick == 0);
     const auto wrong = [](const char* what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -609,7 +636,9 @@ void World::update_hash() {
     constexpr std::uint32_t world_kind = 100, island_kind = 101;
     hash_ = base::EntityHash{world_kind, seed_.value}.add(moment_.generation).add(moment_.generation_tick).finish();
     for (const Island& island : islands_) {
-        hash_ += base::EntityHash{island_kind, island.index()}.add(island.hash().low).add(island.hash().high).finish();
+        const bool is_here = summaries_.empty() || is_mine(island.index());
+        const base::StateHash hash = is_here ? island.hash() : summaries_[island.index()].hash;
+        hash_ += base::EntityHash{island_kind, island.index()}.add(hash.low).add(hash.high).finish();
     }
     if (is_fitness_external()) {
         hash_ += hash_of_given(fitness_);

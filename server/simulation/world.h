@@ -12,15 +12,23 @@
 // If the fitness comes from clients, the generation ends in two steps. After its last tick the world awaits fitness and
 // cannot advance. When clients have rated all islands (rating.h), statistics are computed, and the generation is over.
 //
+// Several processes can share a world: each simulates some of its islands (share.h), and all advance the world by the
+// same calls. Moment, hash, outcome, parameters, history and events are then the same in all of them. The islands of the
+// other processes are empty here. Such a world is only advanced: it has no commands, forks, checkpoints and fitness from
+// clients.
+//
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
-//              Changes are those of parameters, entities that were placed or removed, and fitness from clients.
+//              Changes are those of parameters, entities that were placed or removed, and fitness from clients. It does
+//              not depend on how islands are shared.
 #pragma once
 
+#include "server/base/exchange.h"
 #include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/base/result.h"
 #include "server/base/state_hash.h"
+#include "server/evolution/migration.h"
 #include "server/evolution/termination.h"
 #include "server/parameters/parameters.h"
 #include "server/parameters/schedule.h"
@@ -28,6 +36,7 @@
 #include "server/simulation/commands.h"
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
+#include "server/simulation/share.h"
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
@@ -94,18 +103,20 @@ class World {
     /// parameters        the parameters of generation 1; must be valid.
     /// first_population  the chromosomes of generation 1, valid for these parameters; nullptr: drawn from the seed.
     /// schedule          the schedule of the run; must have the values of `parameters` in generation 1.
+    /// exchange          connects the processes that share the world, at most one per island.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
-          parameters::Schedule schedule = {});
+          parameters::Schedule schedule = {}, base::Exchange& exchange = base::no_exchange());
 
     /// Creates a world at the beginning of a generation of an existing run. It continues exactly as that run did.
     ///
-    /// born              the organisms of the generation; shape (opening.parameters.active.island_count).
+    /// born              the organisms of the generation; shape (opening.parameters.active.island_count). Those of
+    ///                   islands that other processes simulate are not read.
     /// history           statistics of the previous generations that are available.
     /// first_population  the first population of the run, for resets; nullptr: drawn from the seed.
     /// founders          founders of the organisms in `born`; not needed for the first generation.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
-          parameters::Schedule schedule = {});
+          parameters::Schedule schedule = {}, base::Exchange& exchange = base::no_exchange());
 
     /// Returns a copy of this world as it was at the first moment of its generation.
     ///
@@ -132,7 +143,12 @@ class World {
 
     /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running, and the
     /// world not to await fitness.
-    void advance_tick(base::Executor& executor);
+    void advance_tick(base::Executor& executor) { advance(moment_.tick + 1, executor); }
+
+    /// Performs ticks up to and including `tick`, but not beyond the end of the generation that the first of them
+    /// belongs to. Gives the same state as that many calls of advance_tick(). Processes that share the world exchange
+    /// results only once; extinctions are then reported after the changes of parameters in these ticks.
+    void advance(std::uint64_t tick, base::Executor& executor);
 
     /// Breeds and places the next generation, as advance_tick() would; does nothing if no generation has ended. If
     /// shuffle_fitness is on, the shuffled fitness decides migration, survival and breeding, and nothing else.
@@ -189,6 +205,9 @@ class World {
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
+    /// The islands that this process simulates: [begin, end).
+    base::Range share() const { return share_; }
+    base::Exchange& exchange() const { return *exchange_; }
     /// The founders of the organisms in Island::born(). Empty if this world began with a later generation and received no
     /// founders.
     const Founders& founders() const { return founders_; }
@@ -223,7 +242,7 @@ class World {
 
   private:
     World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
-          parameters::Schedule schedule);
+          parameters::Schedule schedule, base::Exchange& exchange);
     void begin_run();
     parameters::Parameters parameters_of_next_tick() const;
     void make_islands();
@@ -248,11 +267,22 @@ class World {
     /// Ends a generation whose fitness is known.
     void finish_generation(base::Executor& executor);
     void find_fitness(base::Executor& executor);
+    /// Performs one tick on the islands of this process. Returns the number of living organisms on them.
+    std::uint64_t advance_share(base::Executor& executor);
+    /// Brings all processes to the tick that the last of them has reached, and exchanges summaries and extinctions.
+    void meet(base::Executor& executor);
+    void exchange_summaries();
+    std::vector<IslandSummary> summaries_of_share() const;
+    bool is_shared() const { return exchange_->size() > 1; }
+    bool is_mine(std::size_t island) const { return share_.begin <= island && island < share_.end; }
+    std::uint32_t organism_count(std::size_t island) const;
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
     /// Returns the chromosomes to breed from, one matrix per island. If migrants arrive, these are new matrices, which
     /// are stored in `migrated`; otherwise they are the chromosomes of the ended generation.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
+    /// Sends the migrants of these routes, and writes those that arrive on the islands of this process.
+    void migrate(std::span<const evolution::MigrationRoute> routes, std::vector<evolution::GeneMatrix>& migrated);
     /// Sets the founders of the organisms in `bred`.
     void find_founders(const std::vector<evolution::NextGeneration>& bred);
     void update_hash();
@@ -267,6 +297,9 @@ class World {
     bool generation_over_ = false;
     base::StateHash hash_;
     std::vector<Island> islands_;
+    base::Exchange* exchange_;
+    base::Range share_{0, 0};
+    std::vector<IslandSummary> summaries_; // of all islands, as other processes have reported them; empty if not shared
     Opening opening_;
     History history_;
     Changes changes_;
@@ -276,6 +309,11 @@ class World {
     evolution::Progress progress_;
     // Per island: whether its last organism died in this tick. Kept between ticks to reuse the memory.
     std::vector<std::uint8_t> died_out_;
+    struct DiedOut {
+        std::uint64_t tick;
+        std::uint32_t island;
+    };
+    std::vector<DiedOut> died_out_since_meeting_; // used only if the world is shared
 };
 
 } // namespace evod::simulation
