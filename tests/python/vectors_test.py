@@ -1,7 +1,10 @@
-"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to exactly the values of its line."""
+"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to exactly the values of its line, and every
+mutation of mutations.txt is refused or decodes to the content with the listed checksum."""
 import collections
+import copy
 import json
 import pathlib
+import struct
 import unittest
 import zlib
 
@@ -78,6 +81,61 @@ def together(tiles):
                   for kind, of in rows.items()}
 
 
+COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
+COLUMNS = ("x", "y", "radius", "health", "half_width", "half_height", "heading")
+
+
+def mutated(snapshot, tile, change, where, value):
+    """A frame with one change of its body or of that of a tile, and with the right checksum."""
+    changed = stream_pb2.SnapshotFrame()
+    changed.CopyFrom(snapshot)
+    message, before = changed, b""
+    if tile >= 0:
+        message = changed.tiles[tile]
+        before = struct.pack("<III", changed.tile_px, message.tile, message.detail)
+    body = bytearray(message.body)
+    if change == "byte":
+        body[where] = value
+    elif change == "word":
+        body[where:where + 4] = struct.pack("<I", value)
+    elif change == "cut":
+        del body[where:]
+    elif change == "add":
+        body.append(value)
+    else:
+        assert change == "count"
+        setattr(message, COUNTS[where], value)
+    message.body = bytes(body)
+    counts = [getattr(message, count) for count in COUNTS]
+    fields = struct.pack("<QQ6I", message.sequence, message.base_sequence, *counts, changed.position_bytes)
+    message.checksum = zlib.crc32(before + fields + message.body)
+    return changed
+
+
+def checksum_of_content(snapshot):
+    """As checksum_of_content() in tests/unit/codec/vectors_test.cpp."""
+    numbers = []
+    for kind in KINDS:
+        entities = getattr(snapshot, kind)
+        numbers.append([len(entities)])
+        if kind not in ("crates", "obstacles"):
+            numbers.append(entities.id)
+        numbers += [entities._columns[name] for name in COLUMNS if len(entities) and name in entities._columns]
+    for tile in snapshot.tiles:
+        if tile.density is not None:
+            numbers += [tile.density[kind].ravel() for kind in KINDS[:3]]
+    words = [(numpy.asarray(column).astype(numpy.int64) & 0xFFFFFFFF).astype("<u4") for column in numbers]
+    return f"{zlib.crc32(numpy.concatenate(words).tobytes()):08x}"
+
+
+def copy_of(decoder):
+    """A decoder in the same state. Decoding replaces columns and does not change them, so that they can be shared."""
+    twin = copy.copy(decoder)
+    twin._whole = copy.copy(decoder._whole)
+    twin._tiles = {tile: copy.copy(deltas) for tile, deltas in decoder._tiles.items()}
+    return twin
+
+
 class Vectors(unittest.TestCase):
     maxDiff = None
 
@@ -108,6 +166,30 @@ class Vectors(unittest.TestCase):
                 expected["tiles"], entities = together(expected["tiles"])
                 expected |= entities
             self.assertEqual(shown, expected, vector.name)
+
+    def test_mutations_have_the_listed_verdicts(self):
+        mutations = collections.defaultdict(list)  # by line
+        for text in (FOLDER / "mutations.txt").read_text().splitlines():
+            line, tile, change, where, value, verdict = text.split()
+            mutations[int(line)].append(((int(tile), change, int(where), int(value)), verdict))
+        self.assertEqual(sum(map(len, mutations.values())), 10_000)
+        decoders = collections.defaultdict(snapshot_decoder.SnapshotDecoder)  # by case and island
+        for line, vector in enumerate(self.vectors, 1):
+            if vector.head["case"].endswith("_zstd"):
+                continue
+            decoder = decoders[vector.head["case"], vector.snapshot.island]
+            for mutation, verdict in mutations.pop(line, ()):
+                try:
+                    got = checksum_of_content(copy_of(decoder).decode(mutated(vector.snapshot, *mutation)))
+                except evod.DamagedData:
+                    got = "damaged"
+                self.assertEqual(got, verdict, (vector.name, mutation))
+            if "refused" in vector.decoded:
+                with self.assertRaises(evod.DamagedData):
+                    decoder.decode(vector.snapshot)
+            else:
+                decoder.decode(vector.snapshot)
+        self.assertEqual(dict(mutations), {})
 
     @unittest.skipUnless(snapshot_decoder.can_unpack, "the package zstandard is not installed")
     def test_vectors_cover_every_form_of_a_delta(self):
@@ -151,7 +233,7 @@ class Vectors(unittest.TestCase):
         columns = {("column", width, form) for width in (0, 1, 2) for form in ("plain", "with exceptions")}
         columns.add(("column", 4, "plain"))  # columns with exceptions are narrower
         sections = {(scope, "delta", "food", "parts", parts) for scope in ("island", "tile") for parts in range(4)}
-        sections |= {("tile", "delta", "organisms", "parts", parts) for parts in range(4)}
+        sections |= {("tile", "delta", "organisms", "parts", parts) for parts in (*range(4), 4, 5)}
         sections |= {("tile", "delta", "crates", "parts", parts) for parts in range(3)}
         sections |= {("island", "delta", "organisms", "parts", parts) for parts in range(2)}  # no organism is born within a generation
         ticks = {(scope, "delta", "ticks", ticks) for scope in ("island", "tile") for ticks in range(3)}

@@ -46,7 +46,7 @@ FULL, DOTS, DENSITY = stream_pb2.DETAIL_FULL, stream_pb2.DETAIL_DOTS, stream_pb2
 class Recorder(plain.Client):
     """A client that creates one world, steps it, and keeps the frames of each subscription in order."""
 
-    def __init__(self, server, seed, **parameters):
+    def __init__(self, server, seed, headings=False, **parameters):
         self.bodies = collections.defaultdict(list)  # by subscription
         self.newest = {}  # by (subscription, island): the last snapshot, and how many there have been
         self.cases = {}  # by name: the subscription
@@ -56,7 +56,7 @@ class Recorder(plain.Client):
         super().__init__(server, key="vectors")
         self.islands = parameters.get("island_count", 1)
         self.call(create_world=c.CreateWorld(name=WORLD, seed=seed, parameters=plain.assignments(**parameters)))
-        self.plain = self.subscribe(None, codec=PLAIN)
+        self.plain = self.subscribe(None, codec=PLAIN, headings=headings)
 
     def frame(self):
         channel, body = super().frame()
@@ -115,6 +115,8 @@ class Recorder(plain.Client):
         for organism in range(born):
             info = self.call(get_organism=c.GetOrganism(world=WORLD, island=snapshot.island, organism=organism)).organism
             steps = [math.floor(value * 16 + 0.5) for value in (info.x_px, info.y_px, info.radius_px, info.health)]
+            if snapshot.plain.organisms.heading:
+                steps.append(heading_in_steps(info.heading))
             shown = info.alive and info.radius_px > 0  # otherwise it has no body
             if shown != (organism in organisms) or shown and steps != organisms[organism]:
                 raise AssertionError(f"organism {organism}: {steps}, {info}; in columns {organisms.get(organism)}")
@@ -299,7 +301,20 @@ def damage(server):
         return recorder
 
 
-SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, corner, damage]
+def headings(server):
+    """Organisms with headings turn and die, and others are born; the last organism of a tile dies, so it has no headings."""
+    with Recorder(server, 41, headings=True, **{**TILED, "population_size": 6}, controller="network", brain_hidden=2,
+                  damping=0.9, force_per_unit=10.0, health_loss_per_s=60.0) as recorder:
+        recorder.cases["headings_plain"] = recorder.plain
+        recorder.subscribe("headings_deltas", codec=DELTA, headings=True)
+        recorder.subscribe("headings_tiles", codec=DELTA, headings=True, view=c.View())
+        recorder.run_to(1, 2)
+        recorder.speed(20.0)
+        recorder.run_to(30, 80, 90, 100, 110, 120)
+        return recorder
+
+
+SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, corner, damage, headings]
 
 
 # ---- what frames decode to --------------------------------------------------------------------------------------------
@@ -308,9 +323,16 @@ SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, 
 def entities_of(snapshot):
     """{kind: {column: whole numbers}} of a snapshot of CODEC_PLAIN."""
     assert snapshot.codec == PLAIN
-    return {kind: {name: (column if name == "id" else numpy.rint(column * 16)).astype(int).tolist()
-                   for name, column in columns.items()}
-            for kind, columns in plain.columns(snapshot).items()}
+    entities = {kind: {name: (column if name == "id" else numpy.rint(column * 16)).astype(int).tolist()
+                       for name, column in columns.items()}
+                for kind, columns in plain.columns(snapshot).items()}
+    if snapshot.plain.organisms.heading:
+        entities["organisms"]["heading"] = [heading_in_steps(heading) for heading in snapshot.plain.organisms.heading]
+    return entities
+
+
+def heading_in_steps(radians):
+    return math.floor(radians * 256 / (2 * math.pi) + 0.5) % 256
 
 
 def in_tile(entities, snapshot, tile):

@@ -103,6 +103,8 @@ class SnapshotDecoder:
         contents: list[Content] = []
         tiles: list[Tile] = []
         for tile in message.tiles:
+            if tile.sequence != message.sequence:
+                raise DamagedData(f"a tile's sequence is {tile.sequence}, not that of its snapshot, {message.sequence}")
             if tile.tile >= in_row * in_column or tiles and tile.tile <= tiles[-1].index:
                 raise DamagedData(f"a tile's index is {tile.tile}, allowed: rising, below {in_row * in_column}")
             left, top = tile.tile % in_row * side, tile.tile // in_row * side
@@ -116,7 +118,7 @@ class SnapshotDecoder:
                 body = _body_of(tile, message.position_bytes, checked_before, 2 * sum(counts.values()))
                 dots = _dots(body, counts, side / 256, left, top)
             elif tile.detail == stream_pb2.DETAIL_DENSITY:
-                density = _density(_body_of(tile, message.position_bytes, checked_before, 1 << 16))
+                density = _density(_body_of(tile, message.position_bytes, checked_before, 1 << 16), counts)
             else:
                 raise DamagedData(f"a tile's detail is {tile.detail}, allowed: 1 to 3")
             tiles.append(Tile(tile.tile, Detail(tile.detail), left, top, side, counts, dots, density))
@@ -286,6 +288,7 @@ class _Deltas:
         self._sequence = 0  # sequence number of the baseline for the next delta; 0: there is no baseline
         self.ticks = 0  # number of ticks over which the displacements in the baseline were measured
         self._content: Content = {}
+        self._position_bytes = 0  # of the baseline
 
     def decode(self, message: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
         """Decodes a SnapshotFrame or a SnapshotTile and returns its entities."""
@@ -294,6 +297,8 @@ class _Deltas:
         if not keyframe and message.base_sequence != base:
             raise DamagedData(f"a snapshot's base_sequence is {message.base_sequence}, not the last one, {base}")
         _position_kind(position_bytes)
+        if not keyframe and position_bytes != self._position_bytes:
+            raise DamagedData("a snapshot's position_bytes differ from those of its base")
         counts = _counts_of(message)
         content_before = {} if keyframe else self._content
         known = sum(counts) + sum(len(columns["x"]) for columns in content_before.values())
@@ -301,13 +306,10 @@ class _Deltas:
         ticks = body.number("<u2")
         content = {}
         for (name, sizes), count in zip(_SIZES.items(), counts):
-            section = self._section(body, name, sizes, content_before.get(name, {}), count, ticks, position_bytes)
-            if len(section["x"]) != count:
-                raise DamagedData(f"a snapshot has {len(section['x'])} {name}, not {count} as its count says")
-            content[name] = section
+            content[name] = self._section(body, name, sizes, content_before.get(name, {}), count, ticks, position_bytes)
         body.end()
         self.ticks = ticks if ticks or keyframe else self.ticks
-        self._content, self._sequence = content, message.sequence
+        self._content, self._sequence, self._position_bytes = content, message.sequence, position_bytes
         return content
 
     def _section(
@@ -349,6 +351,9 @@ class _Deltas:
             if moves:
                 come |= {field: body.column(come_count) for field in ("dx", "dy")}
         stayed_count = len(stayed["x"])
+        whole_count = stayed_count + (len(come["x"]) if come else 0)
+        if whole_count != count:
+            raise DamagedData(f"a snapshot has {whole_count} {name}, not {count} as its count says")
         if stayed_count and moves:
             for field in ("x", "y"):
                 before = stayed["d" + field]
@@ -358,8 +363,12 @@ class _Deltas:
                 stayed[field] = stayed[field] + way.view(numpy.uint32)
                 if ticks:
                     stayed["d" + field] = way
+                if position_bytes == 2 and int(stayed[field].max()) > 0xFFFF:
+                    raise DamagedData(f"a snapshot moves {name} out of the range of {field}")
         if stayed_count and name == "organisms":
             stayed["health"] = stayed["health"] + body.column(stayed_count)
+            if int(stayed["health"].view(numpy.uint32).max()) > 0xFFFF:
+                raise DamagedData("a snapshot has a health outside its range")
         if stayed_count and has_headings:
             stayed["heading"] = (stayed["heading"] + body.column(stayed_count)) % HEADING_STEPS
         columns = _merged(stayed, come, has_ids) if come else stayed
@@ -403,12 +412,15 @@ def _dots(body: _Body, counts: Mapping[str, int], cell_px: float, left: float, t
     return dict(zip(counts, numpy.split(places, ends[:-1], axis=1)))
 
 
-def _density(body: _Body) -> Mapping[str, Array]:
+def _density(body: _Body, counts: Mapping[str, int]) -> Mapping[str, Array]:
     cells = body.number("<u1")
     if cells not in _DENSITY_CELLS:
         raise DamagedData(f"a density has {cells} cells per row, allowed: 1, 2, 4, 8 and 16")
     density = {name: body.column(cells * cells).reshape(cells, cells) for name in ("organisms", "food", "poison")}
     body.end()
+    for name, numbers in density.items():
+        if int(numbers.view(numpy.uint32).sum(dtype=numpy.int64)) != counts[name]:
+            raise DamagedData(f"the cells of a density do not add up to the count of {name}")
     return density
 
 
@@ -429,5 +441,8 @@ def _merged_tiles(contents: Sequence[Content]) -> Content:
             for field in fields
         }
         order = numpy.argsort(columns["id"], kind="stable")
+        ids = columns["id"][order]
+        if numpy.any(ids[1:] == ids[:-1]):
+            raise DamagedData(f"a snapshot has {name} with the same id in two tiles")
         together[name] = {field: column[order] for field, column in columns.items()}
     return together

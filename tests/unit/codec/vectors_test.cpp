@@ -1,8 +1,15 @@
-// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes exactly to the content of its line.
+// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes exactly to the content of its line, and every
+// mutation of mutations.txt is refused or decodes to the content with the listed checksum.
+//
+// The verdicts in mutations.txt are those of this decoder. EVOD_RECORD=1 unit_codec --gtest_filter='*Mutations*' writes the
+// file again.
 
 #include "proto/codec/compression.h"
+#include "proto/codec/delta_codec.h"
 #include "proto/codec/framing.h"
+#include "proto/codec/little_endian.h"
 #include "proto/codec/snapshot_decoder.h"
+#include "proto/codec/tiles.h"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
@@ -13,12 +20,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <map>
+#include <random>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -147,6 +158,9 @@ json::object entities_of(const QuantisedSnapshot& snapshot, bool with_ids) {
          {"y", numbers(snapshot.organisms.y)},
          {"radius", numbers(snapshot.organisms.width)},
          {"health", numbers(snapshot.organisms.height)}});
+    if (snapshot.organisms.has_headings()) {
+        entities["organisms"].as_object()["heading"] = numbers(snapshot.organisms.heading);
+    }
     add(entities, "food",
         {{"id", numbers(snapshot.food.id)}, {"x", numbers(snapshot.food.x)}, {"y", numbers(snapshot.food.y)}});
     add(entities, "poison",
@@ -308,6 +322,212 @@ TEST(Vectors, CoverEveryCodecAndDetail) {
     }
     expect_all(*evod::v1::Codec_descriptor(), codecs);
     expect_all(*evod::v1::Detail_descriptor(), details);
+}
+
+// ---- mutations ---------------------------------------------------------------------------------------------------
+
+/// One line of mutations.txt: a change of one frame, and what the decoder makes of it.
+struct Mutation {
+    std::size_t line = 0; // of snapshots.jsonl, from 1
+    int tile = -1;        // position in SnapshotFrame.tiles; -1: the body of the frame itself
+    std::string change;   // "byte", "word", "cut", "add" or "count"
+    std::uint32_t where = 0, value = 0;
+    std::string verdict; // "damaged", or the checksum of the content in hexadecimal digits
+
+    std::string text() const {
+        std::ostringstream out;
+        out << line << ' ' << tile << ' ' << change << ' ' << where << ' ' << value << ' ' << verdict << '\n';
+        return out.str();
+    }
+};
+
+template <class Message>
+void change_message(const Mutation& mutation, Message& message) {
+    std::string& body = *message.mutable_body();
+    if (mutation.change == "byte") {
+        body.at(mutation.where) = static_cast<char>(mutation.value);
+    } else if (mutation.change == "word") {
+        for (unsigned i = 0; i < 4; ++i) {
+            body.at(mutation.where + i) = static_cast<char>(mutation.value >> (8 * i));
+        }
+    } else if (mutation.change == "cut") {
+        body.resize(mutation.where);
+    } else if (mutation.change == "add") {
+        body.push_back(static_cast<char>(mutation.value));
+    } else {
+        ASSERT_EQ(mutation.change, "count");
+        Counts counts = counts_of(message);
+        counts.at(mutation.where) = mutation.value;
+        set_counts(counts, message);
+    }
+}
+
+/// Returns the frame with the change, and with the checksum of the changed body.
+evod::v1::SnapshotFrame mutated(evod::v1::SnapshotFrame frame, const Mutation& mutation) {
+    if (mutation.tile < 0) {
+        change_message(mutation, frame);
+        frame.set_checksum(checksum_of(frame, frame.body()));
+    } else {
+        evod::v1::SnapshotTile& tile = *frame.mutable_tiles(mutation.tile);
+        change_message(mutation, tile);
+        tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
+    }
+    return frame;
+}
+
+/// Returns the CRC-32 of all numbers as u32: for each kind its count, then the columns id (not of boxes), x, y, radius or
+/// half width, health or half height, and heading, as the kind has them; then the cells of each density.
+std::string checksum_of_content(const ReceivedSnapshot& snapshot) {
+    std::string bytes;
+    const auto append = [&bytes](const auto& column) {
+        for (const std::uint32_t value : column) {
+            std::array<char, 4> number;
+            store(value, number.data());
+            bytes.append(number.data(), number.size());
+        }
+    };
+    for (const auto part : snapshot_parts) {
+        const Entities& entities = *snapshot.entities.*part;
+        append(std::array{static_cast<std::uint32_t>(entities.x.size())});
+        if (part != &QuantisedSnapshot::crates && part != &QuantisedSnapshot::obstacles) {
+            append(entities.id);
+        }
+        for (const Column* column : {&entities.x, &entities.y, &entities.width, &entities.height, &entities.heading}) {
+            append(*column);
+        }
+    }
+    for (const DecodedTile& tile : snapshot.tiles) {
+        append(tile.density.organisms);
+        append(tile.density.food);
+        append(tile.density.poison);
+    }
+    std::array<char, 9> digits;
+    std::snprintf(digits.data(), digits.size(), "%08x", crc32(bytes));
+    return digits.data();
+}
+
+std::string verdict_of(SnapshotDecoder decoder, const Mutation& mutation, const evod::v1::SnapshotFrame& frame) {
+    const auto snapshot = decoder.decode(mutated(frame, mutation));
+    EXPECT_EQ(decoder.needs_keyframe(), !snapshot);
+    return snapshot ? checksum_of_content(*snapshot) : "damaged";
+}
+
+/// Returns whether a line can be mutated: the frame has no compressed body and is decoded.
+bool can_be_mutated(const Vector& vector) {
+    const auto plain = [](const auto& message) { return message.compression() != evod::v1::COMPRESSION_ZSTD; };
+    return vector.codec == "CODEC_DELTA" && !vector.case_name.ends_with("_zstd") &&
+           !vector.decoded.contains("refused") && plain(vector.snapshot) &&
+           std::ranges::all_of(vector.snapshot.tiles(), plain);
+}
+
+/// Calls what(line, decoder) for each line that can be mutated, with a decoder that has decoded the frames before it.
+template <class Do>
+void each_line(const Do& what) {
+    std::map<std::pair<std::string, std::uint32_t>, SnapshotDecoder> decoders;
+    for (std::size_t i = 0; i < vectors().size(); ++i) {
+        const Vector& vector = vectors()[i];
+        SnapshotDecoder& decoder = decoders[{vector.case_name, vector.snapshot.island()}];
+        if (can_be_mutated(vector)) {
+            what(i + 1, decoder);
+        }
+        (void)decoder.decode(vector.snapshot);
+    }
+}
+
+/// Makes random mutations. Most of them concern numbers near the limits of what a body allows.
+class MutationSource {
+  public:
+    Mutation next(std::size_t line) {
+        const evod::v1::SnapshotFrame& frame = vectors()[line - 1].snapshot;
+        Mutation mutation;
+        mutation.line = line;
+        if (frame.tiles_size() > 0) {
+            mutation.tile = static_cast<int>(below(static_cast<std::uint32_t>(frame.tiles_size())));
+        }
+        const std::string& body = mutation.tile < 0 ? frame.body() : frame.tiles(mutation.tile).body();
+        const auto size = static_cast<std::uint32_t>(body.size());
+        const std::uint32_t kind = below(20);
+        if (kind == 0) {
+            mutation.change = "count";
+            mutation.where = below(5);
+            const Counts counts = mutation.tile < 0 ? counts_of(frame) : counts_of(frame.tiles(mutation.tile));
+            mutation.value = below(4) == 0 ? one_of(words) : counts[mutation.where] + below(3) - 1;
+        } else if (kind == 1) {
+            mutation.change = "add";
+            mutation.value = below(256);
+        } else if (kind == 2 && size > 0) {
+            mutation.change = "cut";
+            mutation.where = below(size);
+        } else if (kind < 6 && size >= 4) {
+            mutation.change = "word";
+            mutation.where = below(size - 3);
+            mutation.value = one_of(words);
+        } else if (size > 0) {
+            mutation.change = "byte";
+            mutation.where = below(4) == 0 ? below(std::min(size, 16U)) : below(size);
+            const auto now = static_cast<unsigned char>(body[mutation.where]);
+            const std::uint32_t how = below(3);
+            mutation.value = how == 0 ? below(256) : how == 1 ? now ^ (1U << below(8)) : one_of(bytes);
+        } else {
+            mutation.change = "add";
+        }
+        return mutation;
+    }
+
+    std::uint32_t below(std::uint32_t end) { return static_cast<std::uint32_t>(random_() % end); }
+
+  private:
+    static constexpr std::array<std::uint32_t, 10> words{0,    1,       2,          3,          0x7f,
+                                                         0xff, 0x10000, 0x7fffffff, 0x80000000, 0xffffffff};
+    static constexpr std::array<std::uint32_t, 16> bytes{0, 1, 2, 3, 4, 5, 6, 7, 8, 16, 127, 128, 129, 130, 132, 255};
+    template <std::size_t size>
+    std::uint32_t one_of(const std::array<std::uint32_t, size>& of) {
+        return of[below(size)];
+    }
+    std::mt19937 random_{20240229};
+};
+
+constexpr std::size_t mutation_count = 10'000;
+
+void record_mutations() {
+    std::vector<std::size_t> lines;
+    each_line([&](std::size_t line, const SnapshotDecoder&) { lines.push_back(line); });
+    MutationSource source;
+    std::map<std::size_t, std::vector<Mutation>> mutations; // by line
+    for (std::size_t i = 0; i < mutation_count; ++i) {
+        const std::size_t line = lines[i % lines.size()];
+        mutations[line].push_back(source.next(line));
+    }
+    std::ofstream out{EVOD_SOURCE_FOLDER + std::string{"/proto/vectors/mutations.txt"}, std::ios::binary};
+    each_line([&](std::size_t line, const SnapshotDecoder& decoder) {
+        for (Mutation& mutation : mutations[line]) {
+            mutation.verdict = verdict_of(decoder, mutation, vectors()[line - 1].snapshot);
+            out << mutation.text();
+        }
+    });
+}
+
+TEST(Vectors, MutationsHaveTheListedVerdicts) {
+    if (std::getenv("EVOD_RECORD") != nullptr) {
+        record_mutations();
+    }
+    std::istringstream in{content_of("mutations.txt")};
+    std::map<std::size_t, std::vector<Mutation>> mutations; // by line
+    std::size_t count = 0, sound = 0;
+    for (Mutation one; in >> one.line >> one.tile >> one.change >> one.where >> one.value >> one.verdict; ++count) {
+        sound += one.verdict != "damaged";
+        mutations[one.line].push_back(one);
+    }
+    EXPECT_EQ(count, mutation_count);
+    EXPECT_GT(sound, mutation_count / 10);
+    EXPECT_LT(sound, mutation_count * 9 / 10);
+    each_line([&](std::size_t line, const SnapshotDecoder& decoder) {
+        for (const Mutation& mutation : mutations[line]) {
+            EXPECT_EQ(verdict_of(decoder, mutation, vectors()[line - 1].snapshot), mutation.verdict) << mutation.text();
+        }
+        mutations.erase(line);
+    });
+    EXPECT_TRUE(mutations.empty()) << "a mutation names a line that cannot be mutated";
 }
 
 } // namespace
