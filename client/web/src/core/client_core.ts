@@ -1,0 +1,535 @@
+// The client side of the protocol, as a state machine without sockets and clocks (the model is
+// client/python/evod/core.py).
+//
+// The owner of the socket calls opened(), received() and lost(), and after every call of any method sends the bytes
+// that outgoing() returns. received(), lost() and close() return what happened as CoreEvents, in order. A "close" event
+// is the last of its list: the owner then closes the socket, calls lost(), and connects again unless `failed` is set.
+//
+// After a reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with the same
+// client_key and request_id. The repetition is idempotent, because the server has a reply cache: it applies each
+// command once.
+//
+// Bounds       Requests beyond the server's limit are queued here. Every snapshot of a subscription with
+//              unacknowledged_max has to be passed to acknowledge(), after it was drawn or dropped.
+import type { Message } from "../messages";
+import { DamagedData, InvalidMessage } from "./errors";
+import { control_channel, encode_frame, FrameReader } from "./frames";
+import { Schema } from "./protobuf";
+import type { Snapshot } from "./snapshot";
+import { is_keyframe, SnapshotDecoder } from "./snapshot_decoder";
+
+export const protocol_version = 1;
+const keyframe_requests_max = 3; // consecutive keyframe requests without a decoded snapshot in between
+const control_frame_bytes_max = 1 << 20; // until the server has stated its limit
+
+/** Requests that contain an id which is valid only in its session. They fail when the session ends. */
+const session_requests = new Set(["unsubscribe", "request_keyframe", "set_view", "continue_export"]);
+
+export type CoreEvent =
+  | { kind: "opened"; welcome: Message } // there is a session
+  | { kind: "response"; id: number; response: Message } // refusals included: response.status
+  | { kind: "failed"; id: number; message: string; code: string } // no answer can arrive any more
+  | { kind: "event"; subscription: Subscription; event: Message }
+  | { kind: "snapshot"; subscription: Subscription; snapshot: Snapshot }
+  | { kind: "damaged"; subscription: Subscription; message: string } // a snapshot was dropped, a keyframe requested
+  | { kind: "subscribed"; subscription: Subscription } // in this session
+  | { kind: "subscription_refused"; subscription: Subscription; status: Message }
+  | { kind: "view_refused"; subscription: Subscription; status: Message } // the previous view stays
+  | { kind: "close"; message: string; code: string }; // close the socket; see `failed` for whether to connect again
+
+/** Why there is no session, or why none is possible. */
+export interface Loss {
+  message: string; // a sentence
+  code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
+}
+
+/** A subscription that continues after a reconnect, until unsubscribe(). The fields are set by the core. */
+export interface Subscription {
+  readonly request: Message; // { subscribe_snapshots } or { subscribe_events }
+  server_id: number | null; // in this session; null: not accepted yet
+  request_id: number | null; // of the unanswered request
+  refused: Message | null; // the Status if the server has refused it
+  sessions: number; // in which the server accepted it
+  rate_hz: number; // snapshots per second that the server granted
+  ended: boolean;
+}
+
+export interface CoreOptions {
+  client_name: string; // at most 64 bytes
+  client_version: string;
+  token: string; // empty: none
+  server: string; // names the server in messages: "127.0.0.1:7745"
+  frame_bytes_max?: number; // Hello.frame_bytes_max
+}
+
+interface Pending {
+  kind: string;
+  frame: Uint8Array;
+  sent: boolean; // in this session
+}
+
+/** The snapshots of one island for one subscription, in this session. */
+interface StreamState {
+  decoder: SnapshotDecoder;
+  keyframe_needed: boolean;
+  keyframe_requests: number; // since the last decoded snapshot
+}
+
+/** What a subscription to snapshots needs besides its public fields. */
+interface ViewState {
+  sent: Message | undefined; // the view that the server has or will have
+  request_id: number | null; // of the unanswered SetView
+}
+
+export class ClientCore {
+  readonly schema: Schema;
+  readonly client_key = random_key();
+  welcome: Message | null = null; // received in the current or the last session
+  connected = false; // the server has sent its Welcome on the current connection
+  failed: Loss | null = null; // why reconnecting is pointless; null: connect again
+  loss: Loss | null = null; // why there is no session at present
+  damaged_snapshot_count = 0;
+
+  private readonly hello: Message;
+  private readonly server: string;
+  private reader = new FrameReader();
+  private queued: Uint8Array[] = []; // frames to send
+  private events: CoreEvent[] = [];
+  private last_request_id = 0;
+  private readonly pending = new Map<number, Pending>(); // by request_id, in the order of the calls
+  private readonly first = new Set<number>(); // ids of the requests to send before all others
+  private readonly in_flight = new Set<number>(); // unanswered requests of this session, even if no caller waits
+  private readonly own = new Set<number>(); // ids of the requests of this core itself
+  private readonly abandoned_replays = new Set<number>(); // unanswered OpenReplay requests whose callers no longer wait
+  private readonly subscriptions = new Set<Subscription>();
+  private readonly of_server_id = new Map<number, Subscription>();
+  private readonly streams = new Map<string, StreamState>(); // key: server_id and island
+  private readonly views = new Map<Subscription, ViewState>();
+  private unacknowledged = new WeakSet<Snapshot>(); // of this session
+
+  /** descriptor: the serialised FileDescriptorSet of the server. Throws DamagedData. */
+  constructor(descriptor: Uint8Array, options: CoreOptions) {
+    this.schema = new Schema(descriptor);
+    this.server = options.server;
+    this.hello = {
+      protocol_version, client_name: options.client_name, client_version: options.client_version, token: options.token,
+      frame_bytes_max: options.frame_bytes_max ?? 0,
+    };
+  }
+
+  // ---- the connection ----------------------------------------------------------------------------------------------
+
+  /** Queues the Hello. Call it after connecting. */
+  opened(): void {
+    this.queued = [];
+    this.reader = new FrameReader();
+    this.send({ hello: this.hello });
+  }
+
+  /** Processes bytes from the server. The caller must not change them afterwards. */
+  received(bytes: Uint8Array): CoreEvent[] {
+    try {
+      this.reader.feed(bytes);
+      for (let frame = this.reader.next(); frame !== null; frame = this.reader.next()) {
+        if (frame.channel === control_channel) {
+          this.take_control(this.schema.decode("evod.v1.ServerMessage", frame.body));
+        } else if (this.connected) {
+          this.take_snapshot(this.schema.decode("evod.v1.SnapshotFrame", frame.body));
+        } else {
+          throw new DamagedData("the first frame is a snapshot, not a Welcome");
+        }
+        if (this.events.length > 0 && this.events[this.events.length - 1].kind === "close") {
+          break;
+        }
+      }
+    } catch (error) {
+      if (!(error instanceof DamagedData)) {
+        throw error;
+      }
+      if (this.connected) {
+        this.close_connection({ message: `${this.server} sent damaged data: ${error.message}`, code: "" });
+      } else {
+        this.failed = { message: `${this.server} is not an evod server: ${error.message}`, code: "" };
+        this.close_connection(this.failed);
+      }
+    }
+    return this.take_events();
+  }
+
+  /** Call it when the connection was lost or could not be opened. Connect again afterwards, unless `failed` is set. */
+  lost(loss: Loss): CoreEvent[] {
+    this.connected = false;
+    this.loss = loss;
+    this.queued = [];
+    this.in_flight.clear();
+    this.abandoned_replays.clear();
+    this.of_server_id.clear();
+    this.streams.clear();
+    this.unacknowledged = new WeakSet();
+    for (const subscription of this.subscriptions) {
+      subscription.server_id = subscription.request_id = null;
+    }
+    this.views.clear();
+    for (const [id, pending] of [...this.pending]) {
+      const subscribes = pending.kind.startsWith("subscribe_");
+      if (this.failed !== null || subscribes || session_requests.has(pending.kind)) {
+        this.pending.delete(id);
+        this.first.delete(id);
+        if (!subscribes && !this.own.has(id)) { // the Subscription continues
+          this.events.push({ kind: "failed", id, ...loss });
+        }
+      }
+      pending.sent = false;
+    }
+    this.own.clear();
+    return this.take_events();
+  }
+
+  /** All pending requests fail. The core cannot be used again. */
+  close(): CoreEvent[] {
+    this.failed = { message: "the connection was closed here", code: "" };
+    return this.lost(this.failed);
+  }
+
+  /** Removes and returns the bytes to send now; null if there are none. */
+  outgoing(): Uint8Array | null {
+    if (this.queued.length <= 1) {
+      return this.queued.pop() ?? null;
+    }
+    const bytes = new Uint8Array(this.queued.reduce((sum, frame) => sum + frame.length, 0));
+    let at = 0;
+    for (const frame of this.queued) {
+      bytes.set(frame, at);
+      at += frame.length;
+    }
+    this.queued = [];
+    return bytes;
+  }
+
+  // ---- requests ----------------------------------------------------------------------------------------------------
+
+  /** Queues a request without request_id and client_key, such as { pause: { world: "a" } }. It is sent when there is a
+   *  session. Returns its request_id, which names it in the "response" or "failed" event.
+   *
+   *  first: send it before the requests that wait. Throws InvalidMessage if the request does not fit its type or is too
+   *  long, or if `failed` is set. */
+  request(request: Message, first = false): number {
+    if (this.failed !== null) {
+      throw new InvalidMessage(this.failed.message);
+    }
+    const id = this.last_request_id + 1;
+    const kind = Object.keys(request).find((field) => request[field] !== undefined && request[field] !== null) ?? "";
+    const body = this.schema.encode("evod.v1.ClientMessage",
+                                    { request: { ...request, request_id: id, client_key: this.client_key } });
+    const limit: number = this.welcome?.limits?.control_frame_bytes_max ?? control_frame_bytes_max;
+    if (body.length > limit) {
+      throw new InvalidMessage(`the request is ${body.length} bytes long, allowed: at most ${limit}`);
+    }
+    this.last_request_id = id;
+    this.pending.set(id, { kind, frame: encode_frame(body), sent: false });
+    if (first) {
+      this.first.add(id);
+    }
+    this.send_waiting();
+    return id;
+  }
+
+  /** Call it when the caller no longer waits: there will be no event for this request. The core closes a replay that
+   *  the request opens. */
+  forget(id: number): void {
+    const pending = this.pending.get(id);
+    this.pending.delete(id);
+    this.first.delete(id);
+    if (pending?.kind === "open_replay" && pending.sent) {
+      this.abandoned_replays.add(id);
+    }
+  }
+
+  // ---- subscriptions -----------------------------------------------------------------------------------------------
+
+  /** Subscribes when there is a session, and again in each new session, until unsubscribe().
+   *
+   *  request: { subscribe_snapshots: {…} } or { subscribe_events: {…} }. The core keeps and changes this object. Throws
+   *  InvalidMessage like request(). */
+  subscribe(request: Message): Subscription {
+    if (this.failed !== null) {
+      throw new InvalidMessage(this.failed.message);
+    }
+    this.schema.encode("evod.v1.Request", request); // throws now rather than in a later session
+    const subscription: Subscription = { request, server_id: null, request_id: null, refused: null, sessions: 0,
+                                         rate_hz: 0, ended: false };
+    if (this.connected) {
+      this.resubscribe(subscription);
+    }
+    this.subscriptions.add(subscription);
+    return subscription;
+  }
+
+  /** Ends the subscription. */
+  unsubscribe(subscription: Subscription): void {
+    subscription.ended = true;
+    this.subscriptions.delete(subscription);
+    this.views.delete(subscription);
+    if (subscription.server_id !== null) {
+      this.unsubscribe_from(subscription.server_id);
+      subscription.server_id = null;
+    }
+  }
+
+  /** Changes the view of a subscription to snapshots that began with one. At most one change is in flight; further ones
+   *  replace each other until it is answered. */
+  set_view(subscription: Subscription, view: Message): void {
+    subscription.request.subscribe_snapshots.view = view;
+    this.send_view(subscription);
+  }
+
+  /** Acknowledges a snapshot, so that the server can send another one. Does nothing if its session or subscription has
+   *  ended, or if it is already acknowledged. */
+  acknowledge(subscription: Subscription, snapshot: Snapshot): void {
+    if (subscription.server_id !== null && this.unacknowledged.delete(snapshot)) {
+      this.send_acknowledgement(subscription.server_id, snapshot.info.island, snapshot.info.sequence);
+    }
+  }
+
+  // ---- private -----------------------------------------------------------------------------------------------------
+
+  private take_events(): CoreEvent[] {
+    const events = this.events;
+    this.events = [];
+    return events;
+  }
+
+  private close_connection(loss: Loss): void {
+    this.events.push({ kind: "close", ...loss });
+  }
+
+  private send(message: Message): void {
+    this.queued.push(encode_frame(this.schema.encode("evod.v1.ClientMessage", message)));
+  }
+
+  private send_acknowledgement(subscription_id: number, island: number, sequence: number | bigint): void {
+    this.send({ acknowledge_snapshot: { subscription_id, island, sequence } });
+  }
+
+  /** Queues a request of this core itself, which causes no event. It ends with the session. */
+  private request_silently(request: Message): number {
+    const id = this.request(request, true);
+    this.own.add(id);
+    return id;
+  }
+
+  /** Sends queued requests, up to half of the server's limit on unanswered requests. */
+  private send_waiting(): void {
+    if (!this.connected || this.welcome === null) {
+      return;
+    }
+    // The server counts a request until it has sent the complete answer. The answer may arrive here before the server
+    // stops counting the request.
+    const limit = Math.max(1, Math.floor((this.welcome.limits?.requests_in_flight_max ?? 32) / 2));
+    for (const urgent of this.first.size > 0 ? [true, false] : [false]) {
+      for (const [id, pending] of this.pending) {
+        if (this.in_flight.size >= limit) {
+          return;
+        }
+        if (!pending.sent && this.first.has(id) === urgent) {
+          pending.sent = true;
+          this.in_flight.add(id);
+          this.queued.push(pending.frame);
+        }
+      }
+    }
+  }
+
+  private take_control(message: Message): void {
+    if (!this.connected) {
+      this.take_welcome(message);
+    } else if (message.response !== undefined) {
+      this.take_response(message.response);
+    } else if (message.event !== undefined) {
+      this.take_event(message.event);
+    } else if (message.goodbye !== undefined) {
+      const loss = loss_of(message.goodbye.status);
+      if (loss.code === "CODE_UNAUTHENTICATED") {
+        this.failed = loss;
+      }
+      this.close_connection(loss);
+    }
+  }
+
+  private take_welcome(message: Message): void {
+    if (message.goodbye !== undefined) {
+      const loss = loss_of(message.goodbye.status);
+      const refused = { message: `the server at ${this.server} refused this client: ${loss.message}`, code: loss.code };
+      if (loss.code !== "CODE_RESOURCE_EXHAUSTED" && loss.code !== "CODE_UNAVAILABLE") {
+        this.failed = refused;
+      }
+      this.close_connection(refused);
+      return;
+    }
+    if (message.welcome === undefined) {
+      throw new DamagedData("the first message is not a Welcome");
+    }
+    const version = message.welcome.protocol_version ?? 0;
+    if (version !== protocol_version) {
+      this.failed = { code: "", message: `the server at ${this.server} uses protocol version ${version}, but this ` +
+                                         `page uses ${protocol_version}: reload the page` };
+      this.close_connection(this.failed);
+      return;
+    }
+    this.welcome = message.welcome;
+    this.connected = true;
+    this.loss = null;
+    this.events.push({ kind: "opened", welcome: message.welcome });
+    // Subscriptions are sent first, so that subscribers receive the events that the other requests cause.
+    for (const subscription of this.subscriptions) {
+      this.resubscribe(subscription);
+    }
+    this.send_waiting();
+  }
+
+  private take_response(response: Message): void {
+    const id: number = response.request_id ?? 0;
+    this.in_flight.delete(id);
+    this.first.delete(id);
+    if (this.abandoned_replays.delete(id) && response.world !== undefined) {
+      this.request({ close_replay: { world: response.world.name } });
+    }
+    const pending = this.pending.get(id);
+    if (pending !== undefined && pending.sent) {
+      this.pending.delete(id);
+      if (pending.kind.startsWith("subscribe_")) {
+        this.take_subscription(id, pending, response);
+      } else if (this.own.delete(id)) {
+        this.take_own(id, response);
+      } else {
+        this.events.push({ kind: "response", id, response });
+      }
+    }
+    this.send_waiting();
+  }
+
+  private resubscribe(subscription: Subscription): void {
+    subscription.request_id = this.request(subscription.request, true);
+    const snapshots: Message | undefined = subscription.request.subscribe_snapshots;
+    if (snapshots?.view !== undefined) {
+      this.views.set(subscription, { sent: snapshots.view, request_id: null });
+    }
+  }
+
+  private take_subscription(id: number, pending: Pending, response: Message): void {
+    const server_id: number = response.subscription?.subscription_id ?? 0;
+    const subscription = [...this.subscriptions].find((known) => known.request_id === id);
+    if (response.status?.code !== undefined) {
+      if (subscription !== undefined) {
+        subscription.request_id = null;
+        subscription.refused = response.status;
+        this.events.push({ kind: "subscription_refused", subscription, status: response.status });
+      }
+    } else if (subscription === undefined) {
+      this.unsubscribe_from(server_id);
+    } else {
+      subscription.request_id = subscription.refused = null;
+      subscription.server_id = server_id;
+      subscription.rate_hz = response.subscription?.rate_hz ?? 0;
+      ++subscription.sessions;
+      this.of_server_id.set(server_id, subscription);
+      this.events.push({ kind: "subscribed", subscription });
+      if (subscription.sessions > 1 && pending.kind === "subscribe_events") {
+        // The number of events missed between the sessions is not known, so the count is missing.
+        this.events.push({ kind: "event", subscription, event: { events_dropped: {} } });
+      }
+      this.send_view(subscription);
+    }
+  }
+
+  private unsubscribe_from(server_id: number): void {
+    this.of_server_id.delete(server_id);
+    for (const key of [...this.streams.keys()]) {
+      if (key.startsWith(`${server_id} `)) {
+        this.streams.delete(key);
+      }
+    }
+    if (this.connected) {
+      this.request_silently({ unsubscribe: { subscription_id: server_id } });
+    }
+  }
+
+  /** Sends the view of a subscription if the server does not have it and no other change is in flight. */
+  private send_view(subscription: Subscription): void {
+    const state = this.views.get(subscription), view: Message = subscription.request.subscribe_snapshots?.view;
+    if (state === undefined || subscription.server_id === null || state.request_id !== null || state.sent === view) {
+      return;
+    }
+    state.sent = view;
+    state.request_id = this.request_silently({ set_view: { subscription_id: subscription.server_id, view } });
+  }
+
+  /** Takes the response to a request of this core itself. */
+  private take_own(id: number, response: Message): void {
+    for (const [subscription, state] of this.views) {
+      if (state.request_id === id) {
+        state.request_id = null;
+        if (response.status?.code !== undefined) {
+          this.events.push({ kind: "view_refused", subscription, status: response.status });
+        }
+        this.send_view(subscription);
+      }
+    }
+  }
+
+  private take_event(event: Message): void {
+    for (const subscription of this.of_server_id.values()) {
+      const events: Message | undefined = subscription.request.subscribe_events;
+      const world: string = event.world ?? "";
+      if (events !== undefined && (events.world === undefined || world === "" || events.world === world)) {
+        this.events.push({ kind: "event", subscription, event });
+      }
+    }
+  }
+
+  private take_snapshot(frame: Message): void {
+    const server_id: number = frame.subscription_id ?? 0, island: number = frame.island ?? 0;
+    const subscription = this.of_server_id.get(server_id);
+    if (subscription === undefined) {
+      return; // the subscription ended while the snapshot was in flight
+    }
+    const key = `${server_id} ${island}`;
+    let stream = this.streams.get(key);
+    if (stream === undefined) {
+      stream = { decoder: new SnapshotDecoder(), keyframe_needed: false, keyframe_requests: 0 };
+      this.streams.set(key, stream);
+    }
+    if (!stream.keyframe_needed || is_keyframe(frame)) {
+      try {
+        const snapshot = stream.decoder.decode(frame);
+        stream.keyframe_needed = false;
+        stream.keyframe_requests = 0;
+        this.unacknowledged.add(snapshot);
+        this.events.push({ kind: "snapshot", subscription, snapshot });
+        return;
+      } catch (error) {
+        if (!(error instanceof DamagedData)) {
+          throw error;
+        }
+        ++this.damaged_snapshot_count;
+        stream.keyframe_needed = true;
+        if (++stream.keyframe_requests > keyframe_requests_max) { // keyframes are damaged too
+          throw error;
+        }
+        this.events.push({ kind: "damaged", subscription, message: error.message });
+        this.request_silently({ request_keyframe: { subscription_id: server_id } });
+      }
+    }
+    this.send_acknowledgement(server_id, island, frame.sequence ?? 0);
+  }
+}
+
+/** Returns the reason in a Status. */
+function loss_of(status: Message | undefined): Loss {
+  return { message: status?.message ?? "the server ended the session", code: status?.code ?? "" };
+}
+
+/** Returns 32 random hexadecimal digits. */
+function random_key(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+}

@@ -1,0 +1,120 @@
+// Camera: which part of the island a pane shows. World coordinates are in px, the model's unit of length; screen coordinates in
+// CSS pixels from the upper left corner of the canvas. Both have +x to the right and +y down. All functions are pure.
+import type { Camera } from "../messages";
+
+export interface Size {
+  width: number;
+  height: number;
+}
+
+export interface Point {
+  x: number;
+  y: number;
+}
+
+export interface Rectangle {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+export const zoom_max = 64;
+export const wall_pixels = 6; // thickness of the walls, at any zoom
+export const margin_pixels = 8; // around the walls when the whole island is shown
+
+function clamp(value: number, low: number, high: number): number {
+  return Math.min(Math.max(value, low), high);
+}
+
+/** The largest zoom at which the whole island and its walls are visible. */
+export function zoom_to_fit(canvas: Size, island: Size): number {
+  const around = 2 * (wall_pixels + margin_pixels);
+  const zoom = Math.min((canvas.width - around) / Math.max(island.width, 1), (canvas.height - around) / Math.max(island.height, 1));
+  return clamp(zoom, 1e-6, zoom_max);
+}
+
+export function zoom_min(canvas: Size, island: Size): number {
+  return zoom_to_fit(canvas, island) / 2;
+}
+
+/** The camera that shows the whole island. */
+export function fitted(canvas: Size, island: Size): Camera {
+  return { x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island) };
+}
+
+/** Keeps the middle of the canvas on the island, and the zoom in its range. */
+export function clamped(camera: Camera, canvas: Size, island: Size): Camera {
+  return {
+    x_px: clamp(camera.x_px, 0, island.width),
+    y_px: clamp(camera.y_px, 0, island.height),
+    zoom: clamp(camera.zoom, zoom_min(canvas, island), zoom_max),
+  };
+}
+
+export function to_screen(camera: Camera, canvas: Size, world: Point): Point {
+  return { x: canvas.width / 2 + (world.x - camera.x_px) * camera.zoom, y: canvas.height / 2 + (world.y - camera.y_px) * camera.zoom };
+}
+
+export function to_world(camera: Camera, canvas: Size, screen: Point): Point {
+  return { x: camera.x_px + (screen.x - canvas.width / 2) / camera.zoom, y: camera.y_px + (screen.y - canvas.height / 2) / camera.zoom };
+}
+
+/** Moves the drawn island by this many pixels. */
+export function panned(camera: Camera, canvas: Size, island: Size, by: Point): Camera {
+  return clamped({ ...camera, x_px: camera.x_px - by.x / camera.zoom, y_px: camera.y_px - by.y / camera.zoom }, canvas, island);
+}
+
+/** Multiplies the zoom. The world point under `screen` does not move, unless the middle would leave the island. */
+export function zoomed(camera: Camera, canvas: Size, island: Size, screen: Point, factor: number): Camera {
+  const zoom = clamp(camera.zoom * factor, zoom_min(canvas, island), zoom_max);
+  const held = to_world(camera, canvas, screen);
+  return clamped(
+    { x_px: held.x - (screen.x - canvas.width / 2) / zoom, y_px: held.y - (screen.y - canvas.height / 2) / zoom, zoom }, canvas, island);
+}
+
+/** The visible part of the world. */
+export function visible_part(camera: Camera, canvas: Size): Rectangle {
+  const corner = to_world(camera, canvas, { x: 0, y: 0 });
+  return { left: corner.x, top: corner.y, width: canvas.width / camera.zoom, height: canvas.height / camera.zoom };
+}
+
+export function contains(rectangle: Rectangle, point: Point): boolean {
+  return point.x >= rectangle.left && point.x <= rectangle.left + rectangle.width &&
+    point.y >= rectangle.top && point.y <= rectangle.top + rectangle.height;
+}
+
+export function is_whole_island_visible(camera: Camera, canvas: Size, island: Size): boolean {
+  const visible = visible_part(camera, canvas);
+  return contains(visible, { x: 0, y: 0 }) && contains(visible, { x: island.width, y: island.height });
+}
+
+// ---- minimap ---------------------------------------------------------------------------------------------------
+
+export interface MinimapPlace {
+  screen: Rectangle;
+  zoom: number; // pixels on the screen per px of the world
+}
+
+/** The place of the minimap in the lower right corner: at most 180 pixels, and at most a third of the canvas. */
+export function minimap_place(canvas: Size, island: Size): MinimapPlace {
+  const side = Math.min(180, Math.min(canvas.width, canvas.height) / 3);
+  const margin = 12;
+  const zoom = side / Math.max(island.width, island.height, 1);
+  const width = island.width * zoom;
+  const height = island.height * zoom;
+  return { screen: { left: canvas.width - width - margin, top: canvas.height - height - margin, width, height }, zoom };
+}
+
+/** The rectangle on the minimap that marks the visible part of the world, clipped at the walls, at least 6 pixels wide and high. */
+export function minimap_frame(place: MinimapPlace, camera: Camera, canvas: Size): Rectangle {
+  const visible = visible_part(camera, canvas);
+  const { screen, zoom } = place;
+  const left = clamp(screen.left + visible.left * zoom, screen.left, screen.left + screen.width);
+  const right = clamp(screen.left + (visible.left + visible.width) * zoom, screen.left, screen.left + screen.width);
+  const top = clamp(screen.top + visible.top * zoom, screen.top, screen.top + screen.height);
+  const bottom = clamp(screen.top + (visible.top + visible.height) * zoom, screen.top, screen.top + screen.height);
+  const width = Math.max(right - left, 6);
+  const height = Math.max(bottom - top, 6);
+  return { left: (left + right - width) / 2, top: (top + bottom - height) / 2, width, height };
+}

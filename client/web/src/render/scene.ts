@@ -1,0 +1,88 @@
+// Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback (Canvas2D) draws it.
+import type { Camera, Look, PopulationColumns } from "../messages";
+import type { MinimapPlace, Rectangle, Size } from "./camera";
+import type { DensityGrid } from "./density";
+import type { Interpolator } from "./interpolator";
+import type { Label } from "./labels";
+import type { Colour, IslandColours, ScaleTable, Styles } from "./look";
+import type { Flash, Trails } from "./traces";
+
+export interface Scene {
+  canvas: Size; // in CSS pixels
+  ratio: number; // device pixels per CSS pixel
+  camera: Camera;
+  look: Look;
+  colours: IslandColours;
+  styles: Styles;
+  at: Interpolator; // the snapshots
+  blend: number;
+  shown_s: number; // the simulated time that is drawn
+  snapshot_version: number; // changes with the snapshots
+  colours_version: number; // changes with organism_colours
+  organism_colours: Int32Array | null; // packed, by row of the latest snapshot; null: no colouring
+  health_max: number; // the arc of a body is complete at this health
+  selected: number; // rows of the latest snapshot; -1: none
+  pointed_at: number;
+  population: PopulationColumns | null; // of the shown generation
+  trails: Trails | null; // null: not shown
+  flashes: readonly Flash[];
+  shows: "organisms" | "dots" | "density";
+  density: DensityGrid;
+  density_scale: ScaleTable | null; // if densities are shown
+  labels: Label[];
+  minimap: { place: MinimapPlace; frame: Rectangle; grid: DensityGrid; scale: ScaleTable; version: number } | null;
+  preview: { x: number; y: number; radius: number; colour: Colour } | null; // of what a click would place, in CSS pixels
+}
+
+export interface Painter {
+  readonly kind: "webgl2" | "canvas2d";
+  /** More visible organisms are drawn as densities. */
+  readonly organisms_max: number;
+  readonly label_height: number; // CSS pixels
+  /** The width of a label's text in CSS pixels. */
+  measure(text: string, ratio: number): number;
+  draw(scene: Scene): void;
+}
+
+/** The part of the canvas inside the walls, in CSS pixels. */
+export function inside_walls(scene: { camera: Camera; canvas: Size }, island: Size): Rectangle {
+  const { camera, canvas } = scene;
+  return {
+    left: canvas.width / 2 - camera.x_px * camera.zoom, top: canvas.height / 2 - camera.y_px * camera.zoom,
+    width: island.width * camera.zoom, height: island.height * camera.zoom,
+  };
+}
+
+/** The rows for which rings or arrows are drawn: of all organisms, or of the one at the mouse and the selected one. */
+export function chosen_rows(which: Look["forces"], scene: Scene): Iterable<number> {
+  switch (which) {
+    case "none":
+      return [];
+    case "selected":
+      return [...new Set([scene.pointed_at, scene.selected])].filter((row) => row >= 0);
+    case "all":
+      return all_rows(scene.at.latest.count);
+  }
+}
+
+function* all_rows(count: number): Generator<number> {
+  for (let row = 0; row < count; ++row) {
+    yield row;
+  }
+}
+
+export const choice_seek = 2; // CHOICE_SEEK of world.proto
+export const choice_flee = 3;
+/** Length of an arrow, in px of the island, for a force of 1 kg px/s². */
+export const arrow_px_per_force = 0.3;
+/** No organism perceives farther than this. */
+export const perception_px_max = 200;
+
+export function colour_of_choice(choice: number, colours: IslandColours): Colour {
+  return choice === choice_seek ? colours.seeks : choice === choice_flee ? colours.flees : colours.wanders;
+}
+
+/** A trail whose end is older is fainter. */
+export function trail_alpha(alpha: number, age_s: number, kept_s: number): number {
+  return Math.trunc(alpha * (1 - 0.8 * Math.min(Math.max(age_s / kept_s, 0), 1)));
+}
