@@ -1,0 +1,165 @@
+// Inheritance: how crossover, order mutation, mutations and bounds turned the genes of the parents into those of a
+// descendant. No DOM.
+import type { Message } from "../messages";
+
+export interface GeneOrigin {
+  value: number;
+  from_second: boolean; // false: from the first parent, or blended from both parents
+  blended: boolean; // a weighted mean of the genes of both parents
+  gene: number; // index of the gene in that parent
+}
+
+/** A change of one gene, by a mutation or by clamping to its bounds. */
+export interface GeneChange {
+  kind: string; // an enumerator of MutationKind
+  gene: number;
+  before: number;
+  after: number;
+}
+
+export interface Inheritance {
+  alone: boolean; // the only parent is the organism itself
+  first: number[]; // genes of the parents
+  second: number[];
+  cuts: number[]; // after gene g - 1, the child takes its genes from the other parent
+  crossed: GeneOrigin[]; // by gene, after the crossover
+  moves: { from: number; to: number }[]; // by the order mutation; genes that stayed are not included
+  arranged: GeneOrigin[]; // by gene, after the order mutation
+  changes: GeneChange[]; // in the order in which they happened
+  changed: boolean[]; // by gene
+  genes: number[]; // of the descendant
+}
+
+/** Whether gene g comes from the second parent. */
+export function is_from_second(descendant: Message, gene: number): boolean {
+  const word: number = gene < 32 ? descendant.from_second ?? 0
+    : descendant.more_from_second?.[Math.floor(gene / 32) - 1] ?? 0;
+  return ((word >>> (gene % 32)) & 1) === 1;
+}
+
+/** Returns null if the lists of the Descendant contradict each other. */
+export function inheritance_of(descendant: Message): Inheritance | null {
+  const first: number[] = descendant.first_genes ?? [], second: number[] = descendant.second_genes ?? [];
+  const count = first.length;
+  const order: number[] | undefined = descendant.order_mutation?.order;
+  const alone = second.length === 0 || descendant.kind !== "DESCENDANT_KIND_CHILD";
+  if (count === 0 || (!alone && second.length !== count) ||
+    (second.length === 0 && (descendant.from_second ?? 0) !== 0) ||
+    (descendant.order_mutation && order?.length !== count)) {
+    return null;
+  }
+  const result: Inheritance = { alone, first, second, cuts: [], crossed: [], moves: [], arranged: [], changes: [],
+    changed: first.map(() => false), genes: [] };
+  const share: number = alone ? 0 : descendant.second_share ?? 0;
+  for (let gene = 0; gene < count; ++gene) {
+    if (share > 0) {
+      result.crossed.push({ value: Math.fround(first[gene]! + share * (second[gene]! - first[gene]!)),
+        from_second: false, blended: true, gene });
+      continue;
+    }
+    const from_second = !alone && is_from_second(descendant, gene);
+    result.crossed.push({ value: from_second ? second[gene]! : first[gene]!, from_second, blended: false, gene });
+    if (gene > 0 && from_second !== result.crossed[gene - 1]!.from_second) {
+      result.cuts.push(gene);
+    }
+  }
+  result.arranged = [...result.crossed];
+  if (order) {
+    for (let gene = 0; gene < count; ++gene) {
+      const from = order[gene]!;
+      const moved = result.crossed[from];
+      if (!moved) {
+        return null;
+      }
+      result.arranged[gene] = moved;
+      if (from !== gene) {
+        result.moves.push({ from, to: gene });
+      }
+    }
+  }
+  result.genes = result.arranged.map((origin) => origin.value);
+  for (const mutation of (descendant.mutations ?? []) as Message[]) {
+    const gene: number = mutation.gene ?? 0;
+    if (gene >= count) {
+      return null;
+    }
+    result.changes.push({ kind: mutation.kind ?? "", gene, before: mutation.before ?? 0, after: mutation.after ?? 0 });
+    result.genes[gene] = mutation.after ?? 0;
+    result.changed[gene] = true;
+  }
+  return result;
+}
+
+/** "creep", "reset", "scale", "bit flip", "clamped" */
+export function mutation_text(kind: string): string {
+  switch (kind) {
+    case "MUTATION_KIND_CREEP": return "creep";
+    case "MUTATION_KIND_RESET": return "reset";
+    case "MUTATION_KIND_SCALE": return "scale";
+    case "MUTATION_KIND_BIT_FLIP": return "bit flip";
+    case "MUTATION_KIND_CLAMP": return "clamped";
+    default: return "mutation";
+  }
+}
+
+/** Four significant digits: "119.6", "0.4231", "−0.07". */
+export function gene_text(value: number): string {
+  return String(Number(value.toPrecision(4))).replace("-", "−");
+}
+
+/** "+7.31", "−0.4" */
+export function delta_text(delta: number): string {
+  return (delta < 0 ? "−" : "+") + gene_text(Math.abs(delta));
+}
+
+/** Where a gene comes from: "hidden3<bias: 0.42 of parent 12, creep to 0.5" */
+export function origin_text(inheritance: Inheritance, gene: number, name: string, descendant: Message): string {
+  const origin = inheritance.arranged[gene]!;
+  const parent = (origin.from_second ? descendant.second_parent : descendant.first_parent) ?? 0;
+  const changes = inheritance.changes.filter((change) => change.gene === gene)
+    .map((change) => `, ${mutation_text(change.kind)} to ${gene_text(change.after)}`);
+  return `${name}: ${gene_text(origin.value)}${origin.blended ? ", a mean of both parents" : ` of parent ${parent}`}` +
+    (origin.gene !== gene ? `, moved from gene ${origin.gene + 1}` : "") + changes.join("");
+}
+
+/** "66 other genes: 35 of parent 12, 31 of parent 45, 4 mutated" */
+export function other_genes_text(inheritance: Inheritance, first_gene: number, descendant: Message): string {
+  const others = inheritance.arranged.slice(first_gene);
+  const from_second = others.filter((origin) => origin.from_second).length;
+  const mutated = inheritance.changed.slice(first_gene).filter((changed) => changed).length;
+  const one = descendant.first_parent ?? 0, two = descendant.second_parent ?? 0;
+  const parts = [
+    others.some((origin) => origin.blended) ? `means of parents ${one} and ${two}`
+      : `${others.length - from_second} of parent ${one}`,
+    from_second > 0 ? `${from_second} of parent ${two}` : "", mutated > 0 ? `${mutated} mutated` : "",
+  ];
+  return `${others.length} other genes: ${parts.filter((part) => part !== "").join(", ")}`;
+}
+
+/** Neighbouring genes of a long chromosome that are drawn side by side: the weights of one neuron, or a few genes that
+ *  are no weights. */
+export interface GeneBlock {
+  label: string; // the neuron, or the first gene
+  neuron: string; // "": the genes are no weights
+  first: number;
+  count: number;
+}
+
+const unnamed_max = 16; // genes in a block that are no weights
+
+/** Divides the genes from `first` on into blocks. */
+export function gene_blocks(names: readonly string[], first: number): GeneBlock[] {
+  const blocks: GeneBlock[] = [];
+  for (let gene = first; gene < names.length; ++gene) {
+    const name = names[gene]!;
+    const cut = name.indexOf("<");
+    const neuron = cut < 0 ? "" : name.slice(0, cut);
+    const last = blocks[blocks.length - 1];
+    if (last && last.neuron === neuron && (neuron !== "" || last.count < unnamed_max)) {
+      last.count += 1;
+    } else {
+      blocks.push({ label: neuron || name, neuron, first: gene, count: 1 });
+    }
+  }
+  return blocks;
+}

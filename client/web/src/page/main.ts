@@ -1,0 +1,73 @@
+// main: starts the page: loads the protocol, starts the worker, connects, and shows the worlds when the session is open.
+import { App } from "./app";
+import { show_icon } from "./icon";
+import { Server } from "./server";
+import { Start, take_token } from "./start";
+
+declare const trustedTypes: { createPolicy(name: string, rules: { createScriptURL(url: string): string }): { createScriptURL(url: string): string } } | undefined;
+
+const worker_file = "worker.js";
+
+/** The browser starts a worker only from an address that the policy has allowed; this one allows no other. */
+function start_worker(): Worker {
+  const policy = typeof trustedTypes === "undefined" ? null : trustedTypes.createPolicy("evod", {
+    createScriptURL: (url) => {
+      if (url !== worker_file) {
+        throw new TypeError(`the page starts only ${worker_file}`);
+      }
+      return url;
+    },
+  });
+  return new Worker(policy ? policy.createScriptURL(worker_file) : worker_file, { type: "module" });
+}
+
+async function run(): Promise<void> {
+  show_icon();
+  const token = take_token(), start = new Start();
+  document.body.append(start.element);
+  if (typeof OffscreenCanvas === "undefined") {
+    start.fail("This browser is too old: the page needs Chrome 111, Firefox 121, Safari 17 or a newer one.");
+    return;
+  }
+  const worker = start_worker();
+  let descriptor: ArrayBuffer;
+  try {
+    const answer = await fetch("protocol.bin");
+    if (!answer.ok) {
+      throw new Error(`${answer.status} ${answer.statusText}`);
+    }
+    descriptor = await answer.arrayBuffer();
+  } catch (error) {
+    start.fail(`The server does not send its protocol: ${(error as Error).message}`);
+    return;
+  }
+  const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`;
+  const server = new Server(worker, descriptor, url);
+  start.follow(server);
+  worker.addEventListener("error", (event) => start.fail(`The page has failed: ${event.message || "its worker cannot be started"}`));
+  const show_visibility = (): void => server.post({ kind: "visible", visible: document.visibilityState !== "hidden" });
+  document.addEventListener("visibilitychange", show_visibility);
+  show_visibility();
+  let app: App | null = null;
+  server.on_change(() => {
+    if (server.state.phase === "open" && server.worlds_known) {
+      app ??= new App(server);
+      Object.assign(globalThis, { evod: { server, app } }); // for tests and for the console of the browser
+      if (!app.element.isConnected) {
+        start.element.replaceWith(app.element);
+      }
+    } else if (server.state.phase === "refused" && app) {
+      app.element.replaceWith(start.element);
+    }
+  });
+  addEventListener("hashchange", () => {
+    const { hash } = location, new_token = take_token();
+    if (location.hash !== hash) {
+      server.connect(new_token); // the link contained a token
+    }
+    app?.follow_link(location.hash);
+  });
+  server.connect(token);
+}
+
+void run();

@@ -1,0 +1,61 @@
+// Notices: short messages at the bottom that disappear by themselves, and banners at the top that stay while something is wrong.
+import { h, set_text } from "./dom";
+
+const shown_ms = 6000, notices_max = 3;
+
+export class Notices {
+  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
+
+  /** Shows a message. The same message is not shown twice at a time. */
+  show(text: string): void {
+    for (const notice of [...this.element.children]) {
+      if (notice.firstChild?.textContent === text) {
+        notice.remove();
+      }
+    }
+    const notice = h("div", { class: "notice" }, h("span", {}, text));
+    notice.append(h("button", { type: "button", class: "button button-quiet", "aria-label": "Close the message", onclick: () => notice.remove() }, "✕"));
+    this.element.append(notice);
+    while (this.element.children.length > notices_max) {
+      this.element.firstElementChild!.remove();
+    }
+    this.#expire(notice);
+  }
+
+  /** Removes the message after a time, but not while the pointer or the focus is on it. */
+  #expire(notice: HTMLElement): void {
+    setTimeout(() => (notice.matches(":hover, :focus-within") ? this.#expire(notice) : notice.remove()), shown_ms);
+  }
+}
+
+export interface Banner {
+  name: string; // "lost"
+  kind: "bad" | "warn";
+  text: string;
+  action?: { label: string; act: () => void };
+}
+
+export class Banners {
+  readonly element = h("div", { class: "banners", role: "status", "aria-live": "polite" });
+  #shown = new Map<string, HTMLElement>();
+
+  /** Shows exactly these banners. */
+  set(banners: Banner[]): void {
+    for (const [name, element] of this.#shown) {
+      if (!banners.some((banner) => banner.name === name)) {
+        element.remove();
+        this.#shown.delete(name);
+      }
+    }
+    for (const banner of banners) {
+      let element = this.#shown.get(banner.name);
+      if (!element) {
+        element = h("div", { class: "banner", "data-kind": banner.kind }, h("span", {}),
+          banner.action && h("button", { type: "button", class: "button", onclick: banner.action.act }, banner.action.label));
+        this.#shown.set(banner.name, element);
+        this.element.append(element);
+      }
+      set_text(element.firstElementChild!, banner.text);
+    }
+  }
+}

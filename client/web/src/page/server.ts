@@ -1,0 +1,348 @@
+// Server: the connection to the server, as the page sees it. The worker owns the socket.
+//
+// Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching: until
+// the user takes part, may() allows only requests that change nothing for others.
+import { Changes } from "./changes";
+import { of_tab } from "./storage";
+import { refusal_text } from "./texts";
+import type { ConnectionState, FromWorker, Message, RequestRules, ToWorker } from "../messages";
+
+/** A refusal of the server. `violations` name the wrong fields. */
+export class Refusal extends Error {
+  constructor(message: string, readonly code: string, readonly reason: string,
+              readonly violations: { field: string; allowed: string; got: string }[]) {
+    super(message);
+  }
+}
+
+/** Requests that change something for other clients. */
+const changing_kinds = new Set(["REQUEST_KIND_COMMAND", "REQUEST_KIND_LEASE", "REQUEST_KIND_SERVER"]);
+
+const own_event_ms = 3000;
+
+type Waiting = { kind: string; fields: Message; resolve: (response: Message) => void; reject: (error: Refusal) => void };
+
+export class Server {
+  state: ConnectionState = { phase: "connecting", message: "", code: "", welcome: null };
+  /** The registry: ParameterDescription messages, in order. Empty until the session is open. */
+  parameters: Message[] = [];
+  limits: Message = {};
+  /** All worlds: WorldInfo messages, sorted by name; kept up to date by events. Includes the replays of this page. */
+  worlds: Message[] = [];
+  /** Whether the list of worlds of the present session has arrived. */
+  worlds_known = false;
+  features: ReadonlySet<string> = new Set();
+  /** Storage message: whether the server can write runs. null: it stores none. */
+  storage: Message | null = null;
+  /** The server said that it is shutting down. */
+  going_away = false;
+  /** The server that answered after a reconnect has another version than the one that served this page. */
+  updated = false;
+
+  #worker: Worker;
+  #rules = new Map<string, RequestRules>(); // by the field of Request
+  #roles: string[] = []; // in rising order
+  #last_id = 0;
+  #waiting = new Map<number, Waiting>();
+  #sent_ms = new Map<string, number>(); // when commands were sent last, by kind and world
+  #replays = new Set<string>(); // names of the replays that this session has opened
+  #changes = new Changes(false);
+  #event_listeners = new Set<(event: Message) => void>();
+  #message_listeners = new Set<(message: FromWorker) => void>();
+  #first_version = "";
+  #instance = "";
+  #taking_part = of_tab.get("take_part") === "yes";
+
+  /** descriptor: the serialised FileDescriptorSet of the protocol. */
+  constructor(worker: Worker, private readonly descriptor: ArrayBuffer, private readonly url: string) {
+    this.#worker = worker;
+    worker.addEventListener("message", (event: MessageEvent<FromWorker>) => this.#take(event.data));
+  }
+
+  connect(token: string): void {
+    this.state = { phase: "connecting", message: "", code: "", welcome: this.state.welcome };
+    this.post({ kind: "connect", url: this.url, token, descriptor: this.descriptor.slice(0) });
+    this.#changes.notify();
+  }
+
+  post(message: ToWorker, transfer: Transferable[] = []): void {
+    this.#worker.postMessage(message, transfer);
+  }
+
+  /** Calls `listener` with every message of the worker. */
+  on_message(listener: (message: FromWorker) => void): () => void {
+    this.#message_listeners.add(listener);
+    return () => this.#message_listeners.delete(listener);
+  }
+
+  /** Calls `listener` after any change of state, registry or worlds. Returns a function that ends it. */
+  on_change(listener: () => void): () => void {
+    return this.#changes.listen(listener);
+  }
+
+  on_event(listener: (event: Message) => void): () => void {
+    this.#event_listeners.add(listener);
+    return () => this.#event_listeners.delete(listener);
+  }
+
+  get role(): string {
+    return this.state.welcome?.role ?? "ROLE_UNSPECIFIED";
+  }
+
+  get taking_part(): boolean {
+    return this.#taking_part && this.may_take_part;
+  }
+
+  /** Whether the role of the session allows any change. */
+  get may_take_part(): boolean {
+    return this.role === "ROLE_CONTROLLER" || this.role === "ROLE_ADMIN";
+  }
+
+  set_taking_part(taking_part: boolean): void {
+    this.#taking_part = taking_part;
+    of_tab.set("take_part", taking_part ? "yes" : "");
+    this.#changes.notify();
+  }
+
+  /** Whether the user may send this request now, such as "set_parameters". `world` may be a replay that this page opened. */
+  may(kind: string, world?: string): boolean {
+    return this.why_not(kind, world) === "";
+  }
+
+  /** Why the user may not send this request now, as a sentence; empty if he may. */
+  why_not(kind: string, world?: string): string {
+    if (this.state.phase !== "open") {
+      return "There is no connection to the server.";
+    }
+    const rule = this.#rules.get(kind);
+    if (!rule) {
+      return "The server does not know this request.";
+    }
+    const own_replay = world !== undefined && this.#replays.has(world);
+    if (own_replay && rule.viewer_in_own_replay) {
+      return "";
+    }
+    if (this.#roles.indexOf(this.role) < this.#roles.indexOf(rule.role)) {
+      return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER"
+        ? "Only the role admin may create and delete worlds."
+        : "You are connected as a viewer: read-only.";
+    }
+    return changing_kinds.has(rule.kind) && !this.taking_part ? "You are watching. Turn on “Take part” to change worlds." : "";
+  }
+
+  /** Whether this page has sent such a command to the world within the last own_event_ms: an event about it is then no news. */
+  has_sent(kind: string, world: string): boolean {
+    return performance.now() - (this.#sent_ms.get(`${kind} ${world}`) ?? -Infinity) < own_event_ms;
+  }
+
+  is_own_replay(world: string): boolean {
+    return this.#replays.has(world);
+  }
+
+  world(name: string): Message | null {
+    return this.worlds.find((world) => world.name === name) ?? null;
+  }
+
+  /** Sends {[kind]: fields}. Resolves with the answer inside the Response. Rejects with Refusal. */
+  async request(kind: string, fields: Message): Promise<Message> {
+    const response = await this.respond(kind, fields);
+    return (response[this.#rules.get(kind)?.answer ?? ""] as Message | undefined) ?? {};
+  }
+
+  /** Sends {[kind]: fields}. Resolves with the whole Response; applied_tick is there. Rejects with Refusal. */
+  respond(kind: string, fields: Message): Promise<Message> {
+    return new Promise((resolve, reject) => {
+      const id = ++this.#last_id;
+      this.#waiting.set(id, { kind, fields, resolve, reject });
+      if (changing_kinds.has(this.#rules.get(kind)?.kind ?? "")) {
+        this.#sent_ms.set(`${kind} ${fields.world ?? fields.name}`, performance.now());
+      }
+      this.post({ kind: "request", id, request: { [kind]: fields } });
+    });
+  }
+
+  /** For tests and benchmarks: figures of the worker. */
+  figures(): Promise<Message> {
+    return this.#ask((id) => ({ kind: "ask_figures", id }));
+  }
+
+  /** For tests: the entities of the newest snapshot in a pane; null if there is none. */
+  columns(pane: number): Promise<Message | null> {
+    return this.#ask((id) => ({ kind: "ask_columns", pane, id }));
+  }
+
+  #ask<Answer>(message_of: (id: number) => ToWorker): Promise<Answer> {
+    return new Promise((resolve) => {
+      const id = ++this.#last_id;
+      const end = this.on_message((message) => {
+        if ((message.kind === "figures" || message.kind === "columns") && message.id === id) {
+          end();
+          resolve((message.kind === "figures" ? message.figures : message.columns) as Answer);
+        }
+      });
+      this.post(message_of(id));
+    });
+  }
+
+  // ---- messages of the worker ----
+
+  #take(message: FromWorker): void {
+    switch (message.kind) {
+      case "rules":
+        this.#rules = message.rules;
+        this.#roles = message.roles;
+        break;
+      case "state":
+        this.#take_state(message.state);
+        break;
+      case "response": {
+        const waiting = this.#waiting.get(message.id);
+        this.#waiting.delete(message.id);
+        if (waiting) {
+          this.#take_response(waiting, message.response);
+        }
+        break;
+      }
+      case "failed": {
+        const waiting = this.#waiting.get(message.id);
+        this.#waiting.delete(message.id);
+        waiting?.reject(new Refusal(message.message, "", "", []));
+        break;
+      }
+      case "events":
+        for (const event of message.events) {
+          this.#take_event(event);
+        }
+        this.post({ kind: "events_taken" });
+        break;
+    }
+    for (const listener of [...this.#message_listeners]) {
+      listener(message);
+    }
+  }
+
+  #take_state(state: ConnectionState): void {
+    const opened = state.phase === "open" && this.state.phase !== "open";
+    if (state.phase !== "open" && this.state.phase === "open") {
+      this.#replays.clear(); // replays end with their session
+      this.worlds = this.worlds.filter((world) => !world.replay || world.replay.replay_of === undefined);
+    }
+    this.state = state;
+    if (opened && state.welcome) {
+      this.going_away = false;
+      this.features = new Set<string>(state.welcome.features ?? []);
+      this.limits = state.welcome.limits ?? {};
+      this.storage = state.welcome.storage ?? null;
+      const version: string = state.welcome.server_version ?? "";
+      this.#first_version ||= version;
+      this.updated = version !== this.#first_version;
+      void this.#open(state.welcome.instance_id ?? "");
+    }
+    this.#changes.notify();
+  }
+
+  async #open(instance: string): Promise<void> {
+    try {
+      const list = this.#list_worlds();
+      if (instance !== this.#instance) {
+        const description = await this.request("describe", {});
+        this.parameters = description.parameters ?? [];
+        this.#instance = instance;
+      }
+      await list;
+    } catch {
+      // The session ended meanwhile; the next one asks again.
+    }
+    this.#changes.notify();
+  }
+
+  /** Reads the progress of all worlds: events report only ends of generations and commands. */
+  async refresh_worlds(): Promise<void> {
+    await this.#list_worlds().catch(() => undefined);
+  }
+
+  async #list_worlds(): Promise<void> {
+    const list = await this.request("list_worlds", {});
+    const replays = this.worlds.filter((world) => this.#replays.has(world.name));
+    this.worlds = [...(list.worlds ?? []), ...replays.filter((replay) => !(list.worlds ?? []).some((world: Message) => world.name === replay.name))];
+    this.#sort();
+    this.worlds_known = true;
+    this.#changes.notify();
+  }
+
+  #take_response(waiting: Waiting, response: Message): void {
+    const status: Message | undefined = response.status;
+    if (status) {
+      waiting.reject(new Refusal(refusal_text(status), status.code ?? "", status.reason ?? "",
+        (status.violations ?? []).map((one: Message) => ({ field: one.field ?? "", allowed: one.allowed ?? "", got: one.got ?? "" }))));
+      return;
+    }
+    if (waiting.kind === "open_replay" && response.world) {
+      this.#replays.add(response.world.name);
+    } else if (waiting.kind === "close_replay") {
+      this.#replays.delete(waiting.fields.world);
+      this.#remove(waiting.fields.world);
+    }
+    if (response.world) {
+      this.#put(response.world);
+    } else if (response.statistics?.world) {
+      this.#put(response.statistics.world);
+    }
+    waiting.resolve(response);
+  }
+
+  #take_event(event: Message): void {
+    const info: Message | undefined = event.run_control_changed?.world ?? event.world_created?.world ?? event.world_reset?.world;
+    if (info) {
+      this.#put(info);
+    } else if (event.world_deleted) {
+      this.#remove(event.world ?? "");
+    } else if (event.run_terminated) {
+      this.#change(event.world, { state: "RUN_STATE_TERMINATED", outcome: event.run_terminated.outcome });
+    } else if (event.generation_finished) {
+      const finished: number = event.generation_finished.statistics?.[0]?.generation ?? 0;
+      this.#change(event.world, { generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined });
+    } else if (event.fitness_awaited) {
+      this.#change(event.world, { awaited_fitness: event.fitness_awaited });
+    } else if (event.storage_changed) {
+      this.storage = event.storage_changed.storage ?? null;
+      this.#changes.notify();
+    } else if (event.server_going_away) {
+      this.going_away = true;
+      this.#changes.notify();
+    } else if (event.events_dropped) {
+      void this.#list_worlds().catch(() => undefined);
+    }
+    for (const listener of [...this.#event_listeners]) {
+      listener(event);
+    }
+  }
+
+  /** Takes a WorldInfo unless a newer one of the same run is known. An event about a command may arrive late. */
+  #put(info: Message): void {
+    const known = this.world(info.name);
+    if (known && known.run_id === info.run_id && !info.replay && Number(known.tick ?? 0) > Number(info.tick ?? 0)) {
+      return;
+    }
+    this.worlds = [...this.worlds.filter((world) => world.name !== info.name), info];
+    this.#sort();
+    this.#changes.notify();
+  }
+
+  #change(name: string, fields: Message): void {
+    const known = this.world(name);
+    if (known) {
+      this.worlds = this.worlds.map((world) => (world === known ? { ...world, ...fields } : world));
+      this.#changes.notify();
+    }
+  }
+
+  #remove(name: string): void {
+    this.worlds = this.worlds.filter((world) => world.name !== name);
+    this.#changes.notify();
+  }
+
+  #sort(): void {
+    this.worlds.sort((one, other) => (one.name < other.name ? -1 : one.name > other.name ? 1 : 0));
+  }
+}

@@ -1,0 +1,42 @@
+// LazyPanel: a panel whose code is loaded when it is first shown, so that the page itself loads faster.
+import { h } from "../page/dom";
+import type { Panel } from "./panel";
+
+export class LazyPanel implements Panel {
+  readonly element = h("div", { class: "lazy-panel" });
+  #panel: Panel | null = null;
+  #loading = false;
+  #subject: { [key: string]: unknown } | null = null; // of a show() before the code was loaded
+
+  constructor(readonly name: string, readonly title: string, readonly load: () => Promise<Panel>) {}
+
+  refresh(): void {
+    if (this.#panel) {
+      this.#panel.refresh();
+    } else if (!this.#loading) {
+      this.#loading = true;
+      this.element.textContent = "Loading …";
+      this.load().then((panel) => this.#show_loaded(panel), (error) => {
+        this.#loading = false; // the next refresh() tries again
+        this.element.textContent = `The panel cannot be loaded: ${error instanceof Error ? error.message : error}.`;
+      });
+    }
+  }
+
+  show(subject: { [key: string]: unknown }): void {
+    if (this.#panel) {
+      this.#panel.show?.(subject);
+    } else {
+      this.#subject = subject;
+    }
+  }
+
+  #show_loaded(panel: Panel): void {
+    this.#panel = panel;
+    this.element.replaceChildren(panel.element);
+    panel.refresh();
+    if (this.#subject) {
+      panel.show?.(this.#subject);
+    }
+  }
+}
