@@ -34,7 +34,7 @@ Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
                   "listen on 127.0.0.1, or name a folder with --data"
                 : "any client on the network could control this server, and there is no token yet: create one "
                   "with `evod token add NAME --role admin --data " +
-                      folder + "`, or listen on 127.0.0.1 without --require-token");
+                      folder + "`, or listen on 127.0.0.1 without --require-token and --http-host");
     }
     return gate;
 }

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -37,13 +38,33 @@ void raise_descriptor_limit() {
     }
 }
 
-void log_http_address(const boost::asio::ip::tcp::endpoint& http) {
+/// Logs where browsers find the page and the metrics, and how to let other users in.
+void log_http_address(const boost::asio::ip::tcp::endpoint& http, const network::PageAddress& page, bool encrypted) {
     const std::string address = http.address().to_string();
-    log::info("metrics and health at http://{}:{}/metrics and /healthz",
+    log::info("metrics and health at {}://{}:{}/metrics and /healthz", encrypted ? "https" : "http",
               http.address().is_v6() ? "[" + address + "]" : address, http.port());
-    if (!http.address().is_loopback()) {
-        log::warn("HTTP requires no token: any machine that can connect to {}:{} can read the metrics", address,
-                  http.port());
+    if (page.port == 0) {
+        log::warn("this evod was built without the page for browsers: see the CMake option EVOD_BUILD_WEB");
+        return;
+    }
+    const std::string url = network::url_of(page);
+    log::info("page at {}", url);
+    if (!page.is_local) {
+        log::info("other users open {}#token=TOKEN; evod token add NAME --role viewer makes a token", url);
+    }
+}
+
+void warn_if_not_encrypted(std::initializer_list<boost::asio::ip::address> addresses) {
+    std::string open;
+    for (const boost::asio::ip::address& address : addresses) {
+        const std::string text = address.to_string();
+        if (!address.is_loopback() && text != open) {
+            open += (open.empty() ? "" : " and ") + text;
+        }
+    }
+    if (!open.empty()) {
+        log::warn("without TLS, any machine on the network path to {} can read tokens and use them: see --tls-cert",
+                  open);
     }
 }
 
@@ -62,12 +83,12 @@ int run_server(network::ServerOptions options) {
     }
     log::info("vector instructions: {}", base::name_of(base::instructions()));
     const auto endpoint = (*server)->endpoint();
-    if (!endpoint.address().is_loopback() && !encrypted) {
-        log::warn("without TLS, any machine on the network path to {} can read tokens and use them: see --tls-cert",
-                  endpoint.address().to_string());
+    const auto http = (*server)->http_endpoint();
+    if (!encrypted) {
+        warn_if_not_encrypted({endpoint.address(), http ? http->address() : endpoint.address()});
     }
-    if (const auto http = (*server)->http_endpoint()) {
-        log_http_address(*http);
+    if (http) {
+        log_http_address(*http, (*server)->page(), encrypted);
     }
     const auto seed = (*server)->first_seed();
     log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),

@@ -7,7 +7,12 @@
 #include "server/log/log.h"
 #include "server/network/random_ids.h"
 
+#include <boost/asio/ip/address_v6.hpp>
+
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <string_view>
 #include <utility>
 
 namespace evod::commands {
@@ -29,15 +34,43 @@ void add_tls_options(Command& command, access::TlsFiles& tls) {
         "PEM file with CA certificates; every client then needs a certificate that one of these CAs has signed");
 }
 
+/// Allows what a browser sends as the host of an address, without port and brackets.
+std::string host_name_problem(const std::string& word) {
+    constexpr std::string_view other = "-._:";
+    const auto is_part = [&](unsigned char character) {
+        return std::isalnum(character) != 0 || other.find(static_cast<char>(character)) != std::string_view::npos;
+    };
+    boost::system::error_code not_an_address;
+    boost::asio::ip::make_address_v6(word, not_an_address);
+    const bool is_name = word.find(':') == std::string::npos && !word.empty() && std::ranges::all_of(word, is_part);
+    const bool is_address = !not_an_address && word.find('%') == std::string::npos; // browsers send no IPv6 zone
+    return is_name || is_address
+               ? ""
+               : "got " + word + ", allowed a host name without scheme and port, such as evod.example.org";
+}
+
 void add_http_options(Command& command, ServeOptions& options) {
-    const auto http = command
+    const auto web = command.add_flag("--web", &options.web,
+                                      "Serve the page that shows the worlds in a browser, at TCP port " +
+                                          std::to_string(page_port) + " or that of --http-port");
+    const auto port = command
                           .add_option("--http-port", &options.http_port,
-                                      "TCP port for /metrics and /healthz over HTTP, for example 7745; 0: any free "
-                                      "port; default: no HTTP")
+                                      "TCP port for the page, /metrics and /healthz over HTTP; 0: any free port; "
+                                      "default: no HTTP without --web")
                           .check(port_number);
+    const auto needs_http = [web, port](const std::string&) {
+        return web.is_given() || port.is_given() ? std::string{} : std::string{"requires --web or --http-port"};
+    };
     command.add_option("--http-bind", &options.http_bind_address, "IP address on which the server listens for HTTP")
-        .needs(http)
+        .check(needs_http)
         .show_default();
+    command
+        .add_option("--http-host", &options.http_host_names,
+                    "Host name under which browsers reach this server, if it is neither the name nor an address of "
+                    "this machine, for example the name of a proxy; every client then needs a token; may be repeated")
+        .one_at_a_time()
+        .check(needs_http)
+        .check(host_name_problem);
 }
 
 /// The part of the configuration that `evod` and `evod replay` share.
@@ -50,8 +83,10 @@ network::ServerOptions common_server_options(const ServeOptions& options) {
     server.session_bounds = options.session_bounds;
     server.token_needed = options.token_needed;
     server.tls = options.tls;
-    if (options.http_port) {
-        server.http = {.bind_address = options.http_bind_address, .port = *options.http_port};
+    if (options.web || options.http_port) {
+        server.http = {.bind_address = options.http_bind_address,
+                       .port = options.http_port.value_or(page_port),
+                       .host_names = options.http_host_names};
     }
     return server;
 }

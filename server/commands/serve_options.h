@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::command_line {
 class Command;
@@ -17,11 +18,15 @@ class Command;
 
 namespace evod::commands {
 
+constexpr std::uint16_t page_port = 7745; // of --web
+
 /// The values of the options. Their initial values are the defaults of the program.
 struct ServeOptions {
     std::string bind_address = "127.0.0.1", http_bind_address = "127.0.0.1";
     std::uint16_t port = codec::default_port;
+    bool web = false;
     std::optional<std::uint16_t> http_port;
+    std::vector<std::string> http_host_names;
     std::string log_level = "info", log_format = "text";
     std::size_t threads = default_thread_count();
     std::string experiment_file, population_file;

@@ -1,59 +1,52 @@
-// HTTP: read-only pages for monitoring. Every client that can connect to the port may read them.
+// HTTP: one port that serves the page of the browser viewer, its sessions in WebSockets, and pages for monitoring.
 //
-// Owner        the server, on the network thread. Each connection has one coroutine.
-// Full         limits.h limits the number of connections, the size of a request's header and the time for a request.
-// Source       RFC 9110 and RFC 9112. Boost.Beast parses requests and writes answers.
+// Owner        the server, on the network thread. http_connection.h serves each connection.
+// Full         limits.h limits the number of connections, the size of a request's header and the time for a request. If
+//              there are too many connections, one of the address with the most connections makes room, so that one
+//              address cannot keep the others out.
+// Source       RFC 9110 and RFC 9112.
 #pragma once
 
+#include "server/network/http_connection.h"
 #include "server/network/limits.h"
 #include "server/network/listener.h"
 
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/status.hpp>
 
-#include <functional>
-#include <map>
+#include <list>
 #include <memory>
-#include <set>
 #include <string>
 
 namespace evod::network {
 
 class Http {
   public:
-    struct Page {
-        boost::beast::http::status status = boost::beast::http::status::ok;
-        std::string text;
-        std::string type = "text/plain; charset=utf-8";
-    };
-    /// The key is the path of a page, such as "/metrics".
-    using Pages = std::map<std::string, std::function<boost::asio::awaitable<Page>()>, std::less<>>;
-
-    /// Opens the port; 0 selects any free port. The counters must outlive the object.
+    /// Opens the port; 0 selects any free port.
     static base::Result<std::unique_ptr<Http>> open(boost::asio::io_context& context, const std::string& address,
-                                                    std::uint16_t port, Pages pages, LimitCounters& counters);
+                                                    std::uint16_t port, HttpService service);
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
 
     /// Accepts connections until close() is called.
     void start();
     void close();
+    /// Uses other settings of TLS for new connections.
+    void set_tls(boost::asio::ssl::context* tls) { service_.tls = tls; }
 
   private:
-    Http(boost::asio::io_context& context, Listener listener, Pages pages, LimitCounters& counters)
-        : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)}, counters_{counters} {}
+    Http(boost::asio::io_context& context, Listener listener, HttpService service)
+        : context_{context}, listener_{std::move(listener)}, service_{std::move(service)} {}
 
-    /// full  true: there are too many connections, so the client receives only a 503.
-    boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
-    boost::asio::awaitable<Page> page(std::string target);
+    void accepted(boost::asio::ip::tcp::socket socket);
+    /// Closes one connection to make room for a new one. Chooses the address with the most connections, there one that
+    /// waits for a request, and of these the oldest. Closes other connections only of an address that still has as many
+    /// connections as the new one's address afterwards. Returns false if there is no such connection.
+    bool make_room(const std::string& address_prefix);
 
     boost::asio::io_context& context_;
     Listener listener_;
-    Pages pages_;
-    LimitCounters& counters_;
-    std::set<boost::beast::tcp_stream*> connections_;
+    HttpService service_;
+    std::list<HttpConnectionPtr> connections_; // the oldest first
     bool closed_ = false;
 };
 

@@ -117,9 +117,11 @@ constexpr LimitRow table[] = {
     {Limit::OutboxEvents, "waiting_events_max", runtime::outbox_events_max,
      "events of all worlds that wait between simulation and network",
      "the server drops further events and reports their number to all subscribers in `EventsDropped`"},
-    {Limit::HttpConnections, "http_connections_max", http_connections_max, "open HTTP connections",
-     "the server answers a new connection with `503` and closes it; from twice as many connections it closes new ones "
-     "at once"},
+    {Limit::HttpConnections, "http_connections_max", http_connections_max,
+     "open HTTP connections; a WebSocket counts as a session instead",
+     "the server closes a connection of the address with the most connections, if possible one that waits for a "
+     "request. If none waits and the new connection is from that address, the server answers it with `503`; from twice "
+     "as many connections it closes new ones at once"},
     {Limit::HttpHeaderBytes, "http_header_bytes_max", http_header_bytes_max, "bytes in the header of an HTTP request",
      "the server answers with `431` and closes the connection"},
     {Limit::HttpRequestTimeout, "http_request_timeout_s", seconds(http_request_timeout),

@@ -41,7 +41,7 @@ constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
-constexpr std::size_t http_connections_max = 16;
+constexpr std::size_t http_connections_max = 64; // a class loads the page at once
 constexpr std::size_t http_header_bytes_max = 8 << 10;
 constexpr std::chrono::seconds http_request_timeout{5};
 
@@ -139,6 +139,12 @@ constexpr int unsent_bytes_max = 128 << 10;
 constexpr std::chrono::seconds silence_max{10}, probe_every{5};
 constexpr int probes_max = 4;
 constexpr std::chrono::milliseconds untaken_max{30'000};
+
+// Frames of a WebSocket without content: pings, pongs, empty messages. A browser sends one per websocket_ping_after.
+constexpr double empty_frames_per_s_max = 100, empty_frames_burst_max = 1000;
+// The server sends a ping to the client of a WebSocket after this silence, and closes the session after that one. Proxies
+// close connections on which nothing is sent.
+constexpr std::chrono::seconds websocket_ping_after{10}, websocket_silence_max{30};
 
 // Maximum size of all cached answers together. Beyond it the least recently used keys are evicted first.
 constexpr std::size_t retry_bytes_max = 64 << 20;

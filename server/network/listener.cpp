@@ -98,7 +98,12 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
         }
         if (!error) {
             reported = false;
-            accepted(std::move(socket));
+            // The system still returns the bytes of a client that has reset its connection, but no longer its address.
+            boost::system::error_code disconnected;
+            (void)socket.remote_endpoint(disconnected);
+            if (!disconnected) {
+                accepted(std::move(socket));
+            }
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
             // accept() would fail again immediately. During the pause sessions may end and free descriptors.
             if (!std::exchange(reported, true)) {

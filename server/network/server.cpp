@@ -77,10 +77,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     } else if (auto begun = server->world_to_begin(); !begun) {
         return begun.error();
     }
-    boost::system::error_code no_address; // Listener::check() has already reported it
-    const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
-    auto gate = access::Gate::open(server->options_.token_folder,
-                                   server->options_.token_needed || (!no_address && !address.is_loopback()));
+    auto gate = access::Gate::open(server->options_.token_folder, server->needs_token());
     if (!gate) {
         return gate.error();
     }
@@ -95,6 +92,17 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     }
     std::signal(SIGPIPE, SIG_IGN); // writing the log to a closed pipe must not end the server
     return server;
+}
+
+bool Server::needs_token() const {
+    const auto is_reachable = [](const std::string& text) {
+        boost::system::error_code no_address; // Listener::check() has already reported it
+        const auto address = asio::ip::make_address(text, no_address);
+        return !no_address && !address.is_loopback();
+    };
+    // A proxy on this machine has a loopback address, whatever the address of its clients. --http-host announces one.
+    return options_.token_needed || is_reachable(options_.bind_address) ||
+           (options_.http && (is_reachable(options_.http->bind_address) || !options_.http->host_names.empty()));
 }
 
 Server::Server(ServerOptions options)
@@ -291,7 +299,10 @@ bool Server::run() {
 
     wait_for_signal();
     start_housekeeping();
-    asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }), detached);
+    asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) {
+        accepted(std::make_unique<Transport>(std::move(socket), tls_.get()));
+    }),
+                   detached);
     if (http_) {
         http_->start();
     }
@@ -331,6 +342,9 @@ void Server::reread_certificate() {
     } else {
         tls_ = *std::move(tls); // existing connections keep the old certificate
         host_.tls = tls_.get();
+        if (http_) {
+            http_->set_tls(tls_.get());
+        }
         log::info("SIGHUP: certificate reloaded for new connections");
     }
 }
@@ -412,8 +426,8 @@ void Server::evict_sessions() {
     asio::post(context_, [this] { send_memory_.rearm(); });
 }
 
-void Server::accepted(tcp::socket socket) {
-    const auto session = std::make_shared<Session>(std::move(socket), host_, ++session_number_);
+void Server::accepted(std::unique_ptr<Transport> transport) {
+    const auto session = std::make_shared<Session>(std::move(transport), host_, ++session_number_);
     ++connections_;
     host_.traffic.connections.add();
     if (going_away_) {

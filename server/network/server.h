@@ -40,8 +40,11 @@ struct ServerOptions {
     struct HttpOptions {
         std::string bind_address = "127.0.0.1";
         std::uint16_t port = 0; // 0: any free port
+        // Names by which browsers may address the server, besides its own: of a proxy, of a DNS entry. If there is one,
+        // every client needs a token: behind a proxy on the same machine all clients have a loopback address.
+        std::vector<std::string> host_names = {};
     };
-    std::optional<HttpOptions> http; // nullopt: the metrics are not served over HTTP
+    std::optional<HttpOptions> http; // nullopt: neither the browser viewer nor the metrics are served over HTTP
     std::optional<Replay> replay;    // a run file to serve as a replay, without live worlds and data folder
 
     simulation::CreateWorld first_world; // created if no world has this name
@@ -66,7 +69,10 @@ class Server {
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_->endpoint(); }
 
-    /// The address of the metrics pages; nullopt if they are not served over HTTP.
+    /// Where browsers find the page. The port is 0 if it is not served.
+    const PageAddress& page() const { return host_.page; }
+
+    /// The address of the HTTP port; nullopt if there is none.
     std::optional<boost::asio::ip::tcp::endpoint> http_endpoint() const {
         return http_ ? std::optional{http_->endpoint()} : std::nullopt;
     }
@@ -84,6 +90,8 @@ class Server {
     explicit Server(ServerOptions options);
     base::Result<void> open_archive();
     base::Result<void> open_http();
+    /// Whether a client without a token is refused, on all interfaces.
+    bool needs_token() const;
     /// Whether run() must create first_world.
     bool creates_first_world() const;
     /// Returns the name of the world to which first_speed and first_run apply.
@@ -96,7 +104,7 @@ class Server {
     void check_tokens();
     /// Closes the sessions that use the most memory until all sessions together are within the limit of SendMemory.
     void evict_sessions();
-    void accepted(boost::asio::ip::tcp::socket socket);
+    void accepted(std::unique_ptr<Transport> transport);
     void deliver();
     /// Sends the next islands of the newest snapshots, then lets the thread do other work.
     void send_snapshots();
@@ -106,7 +114,7 @@ class Server {
     void begin_shutdown();
     v1::Metrics metrics();
     /// Returns status 200 if the simulation responds and runs can be written, otherwise 503 with the reason.
-    asio::awaitable<Http::Page> health();
+    asio::awaitable<HttpAnswer> health();
 
     ServerOptions options_;
     LimitCounters limit_counters_;

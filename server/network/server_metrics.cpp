@@ -1,15 +1,23 @@
-// The part of Server that collects metrics, checks the server's health and serves both over HTTP.
+// The part of Server that collects metrics, checks the server's health, and opens the HTTP port that serves both and the
+// browser viewer.
+#include "proto/codec/compression.h"
+#include "proto/codec/gzip.h"
 #include "server/base/instructions.h"
 #include "server/metrics/exposition.h"
 #include "server/metrics/families.h"
 #include "server/metrics/process.h"
+#include "server/network/description.h"
 #include "server/network/limits.h"
 #include "server/network/server.h"
+#include "server/network/web_assets.h"
 #include "server/protocol/refusals.h"
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <climits>
 #include <map>
 
 namespace evod::network {
@@ -76,6 +84,12 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
 
 void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
     add_counter(to, "evod_connections_total", "Accepted connections").add(number(traffic.connections.value()));
+    add_counter(to, "evod_websockets_total", "Accepted connections that are WebSockets of browsers")
+        .add(number(traffic.websockets.value()));
+    add_counter(to, "evod_http_refused_total", "HTTP requests refused because of their Host, Origin or missing token")
+        .add(number(traffic.http_refused_hosts.value()), {{"because", "host"}})
+        .add(number(traffic.http_refused_origins.value()), {{"because", "origin"}})
+        .add(number(traffic.http_refused_tokens.value()), {{"because", "token"}});
     add_counter(to, "evod_requests_total", "Readable requests, including refused ones")
         .add(number(traffic.requests.value()));
     add_counter(to, "evod_received_bytes_total", "Bytes received from clients, without the overhead of TLS")
@@ -118,6 +132,18 @@ void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::St
     add_histogram(to, "evod_journal_commit_seconds",
                   "Time of a group commit of commands, hashes and generations, including the sync to disk")
         .add(thread.times().commit);
+}
+
+/// The message schema, which clients without generated code load.
+HttpFile schema_file() {
+    const std::string& schema = description().file_descriptor_set();
+    static const std::string compressed = codec::gzip(schema);
+    return {
+        .compressed = {.path = "/protocol.bin",
+                       .type = "application/octet-stream",
+                       .bytes = compressed,
+                       .etag = '"' + std::to_string(codec::crc32(schema)) + '-' + std::to_string(schema.size()) + '"'},
+        .plain = schema};
 }
 
 } // namespace
@@ -168,9 +194,9 @@ v1::Metrics Server::metrics() {
     return all;
 }
 
-asio::awaitable<Http::Page> Server::health() {
+asio::awaitable<HttpAnswer> Server::health() {
     const auto ill = [](const std::string& why) {
-        return Http::Page{.status = boost::beast::http::status::service_unavailable,
+        return HttpAnswer{.status = boost::beast::http::status::service_unavailable,
                           .text = protocol::quotable(why, 1000) + '\n'};
     };
     const bool answers = co_await heartbeat_.answers_within(simulation_patience);
@@ -184,24 +210,48 @@ asio::awaitable<Http::Page> Server::health() {
     if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED) {
         co_return ill("runs cannot be written: " + host_.storage->reason());
     }
-    co_return Http::Page{.text = "ok\n"};
+    co_return HttpAnswer{.text = "ok\n"};
 }
 
 base::Result<void> Server::open_http() {
     if (!options_.http) {
         return {};
     }
-    Http::Pages pages;
-    pages["/metrics"] = [this]() -> asio::awaitable<Http::Page> {
-        co_return Http::Page{.text = metrics::to_prometheus(metrics()), .type = metrics::prometheus_content_type};
+    boost::system::error_code no_address; // open() has already reported it
+    std::array<char, HOST_NAME_MAX + 1> machine{};
+    ::gethostname(machine.data(), machine.size() - 1); // without a name it stays empty
+    auto host_names = HostNames::make(asio::ip::make_address(options_.http->bind_address, no_address), machine.data(),
+                                      options_.http->host_names);
+    if (!host_names) {
+        return host_names.error();
+    }
+    HttpService service{.limit_counters = limit_counters_,
+                        .traffic = host_.traffic,
+                        .host_names = *std::move(host_names),
+                        .tls = tls_.get()};
+    service.pages["/metrics"] = {.make = [this]() -> asio::awaitable<HttpAnswer> {
+                                     co_return HttpAnswer{.text = metrics::to_prometheus(metrics()),
+                                                          .type = metrics::prometheus_content_type};
+                                 },
+                                 .needs_token = needs_token()};
+    service.pages["/healthz"] = {.make = [this] { return health(); }};
+    for (const WebAsset& asset : web_assets()) {
+        service.files.push_back({.compressed = asset});
+    }
+    service.files.push_back(schema_file());
+    service.admit = host_.admit;
+    service.session = [this](std::unique_ptr<Transport> transport) {
+        host_.traffic.websockets.add();
+        accepted(std::move(transport));
     };
-    pages["/healthz"] = [this] { return health(); };
-    auto http =
-        Http::open(context_, options_.http->bind_address, options_.http->port, std::move(pages), limit_counters_);
+    auto http = Http::open(context_, options_.http->bind_address, options_.http->port, std::move(service));
     if (!http) {
         return http.error();
     }
     http_ = *std::move(http);
+    if (!web_assets().empty()) {
+        host_.page = page_address(http_->endpoint(), options_.http->host_names, !options_.tls.certificate.empty());
+    }
     return {};
 }
 

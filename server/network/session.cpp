@@ -15,42 +15,38 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace evod::network {
-namespace {
-
-constexpr std::size_t batch_frames_max = 64;
-constexpr std::size_t snapshots_at_once = 32; // snapshots that one session sends before other sessions are served
-// send_frame() copies a frame into one buffer if it has many parts or is short.
-constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
-static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a header and a tail, too");
-
-} // namespace
 
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
+    : Session{std::make_unique<Transport>(std::move(socket), host.tls), host, number} {}
+
+Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::uint64_t number)
     : snapshots{*host.clock, host.traffic.snapshots_dropped, *this}
-    , transport_{std::move(socket), host.tls}
+    , transport_{std::move(transport)}
     , host_{host}
     , number_{number}
-    , peer_{transport_.peer()}
+    , peer_{transport_->peer()}
     , address_prefix_{address_key(peer_.address())}
     , reader_bytes_{host.send_memory}
     , expected_bytes_{host.send_memory}
     , held_back_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
-    , hello_timer_{transport_.socket().get_executor()}
-    , frame_timer_{transport_.socket().get_executor()}
-    , turn_timer_{transport_.socket().get_executor()}
-    , farewell_timer_{transport_.socket().get_executor()}
-    , writer_signal_{transport_.socket().get_executor(), asio::steady_timer::time_point::max()} {
+    , empty_frames_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
+    , hello_timer_{transport_->socket().get_executor()}
+    , frame_timer_{transport_->socket().get_executor()}
+    , turn_timer_{transport_->socket().get_executor()}
+    , farewell_timer_{transport_->socket().get_executor()}
+    , writer_signal_{transport_->socket().get_executor(), asio::steady_timer::time_point::max()} {
     boost::system::error_code ignored; // if an option cannot be set, the session still works, but less well
-    transport_.socket().set_option(tcp::no_delay{true}, ignored);
-    transport_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
+    transport_->socket().set_option(tcp::no_delay{true}, ignored);
+    transport_->socket().set_option(asio::socket_base::keep_alive{true}, ignored);
     const auto set = [&](int option, std::int64_t value) {
         const int given = static_cast<int>(value);
-        ::setsockopt(transport_.socket().native_handle(), IPPROTO_TCP, option, &given, sizeof given);
+        ::setsockopt(transport_->socket().native_handle(), IPPROTO_TCP, option, &given, sizeof given);
     };
     set(TCP_NOTSENT_LOWAT, unsent_bytes_max);
     set(TCP_KEEPIDLE, silence_max.count());
@@ -62,9 +58,9 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
 void Session::start(const std::optional<base::Refusal>& refused) {
     coroutines_ = 2;
     asio::co_spawn(
-        transport_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
+        transport_->socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
     asio::co_spawn(
-        transport_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
+        transport_->socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
     if (refused) {
         fail(*refused);
         return;
@@ -103,7 +99,7 @@ std::string Session::by() const {
 
 asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
-    if (const auto error = co_await transport_.begin(); error == Transport::not_tls()) {
+    if (const auto error = co_await transport_->begin(); error == Transport::not_tls()) {
         fail(refusal(base::RefusalCode::FailedPrecondition,
                      "this server requires TLS: use --ca FILE or --tls with evoctl and evoview",
                      base::Reason::TlsRequired));
@@ -116,26 +112,38 @@ asio::awaitable<void> Session::read() {
     begun_ = true;
     wake_writer();
     while (!finishing_ && !ended_) {
-        const auto [error, count] = co_await transport_.read_some(asio::buffer(bytes));
+        reading_ = true;
+        const auto [error, count] = co_await transport_->read_some(asio::buffer(bytes));
+        reading_ = false;
+        silent_ = {};
         const bool more_to_say = in_flight_ + queue_.size() + sending_.size() > 0;
-        if (error == asio::error::eof && more_to_say && !finishing_ && !ended_) {
-            // The client closed its sending side but may still read. It therefore receives the pending answers.
+        if (error == asio::error::eof && (finishing_ || more_to_say || transport_->is_websocket()) && !ended_) {
+            // The client closed its sending side but may still read. It therefore receives the pending answers, and in a
+            // WebSocket a Close frame.
             input_over_ = true;
             wake_writer();
             end();
             co_return;
         }
+        if (error == Transport::websocket_fault() && !finishing_ && !ended_) {
+            const WebSocketDecoder::Fault fault = *transport_->fault();
+            close_code_ = fault.code;
+            co_await fail_when_answered(
+                refusal(base::RefusalCode::InvalidArgument, std::string{fault.what}, base::Reason::FrameInvalid));
+            break;
+        }
         if (error || ended_) {
             break;
         }
+        count_empty_frames();
         host_.traffic.received_bytes.add(count);
         reader_.feed({bytes.data(), count});
         reader_bytes_.set(reader_.capacity_bytes());
-        bool one_came = false;
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
                 if (frame.error().exceeded == codec::ExceededLimit::FrameBytes) {
+                    close_code_ = WebSocketClose::MessageTooBig;
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 }
                 co_await fail_when_answered(
@@ -145,7 +153,8 @@ asio::awaitable<void> Session::read() {
             if (!*frame) {
                 break;
             }
-            one_came = true;
+            within_frame_ = false; // the time limit of a frame does not apply while the session does not read
+            frame_timer_.cancel();
             const double cost = 1 + std::floor(static_cast<double>((*frame)->body.size()) / bytes_per_turn);
             if (!turns_to_send_.take(cost, host_.clock->now())) {
                 co_await wait_for_turn(cost);
@@ -155,9 +164,9 @@ asio::awaitable<void> Session::read() {
             }
             on_frame(**frame);
             // Let the thread serve other sessions before the next frame is read.
-            co_await asio::post(transport_.socket().get_executor(), no_throw);
+            co_await asio::post(transport_->socket().get_executor(), no_throw);
         }
-        update_frame_timer(one_came);
+        update_frame_timer();
         reader_.trim();
         reader_bytes_.set(ended_ ? 0 : reader_.capacity_bytes());
     }
@@ -169,9 +178,24 @@ asio::awaitable<void> Session::read() {
     end();
 }
 
-void Session::update_frame_timer(bool one_came) {
+void Session::count_empty_frames() {
+    const std::uint64_t count = transport_->take_empty_frame_count();
+    if (transport_->control_waits()) {
+        wake_writer();
+    }
+    if (count > 0 && !empty_frames_.take(static_cast<double>(count), host_.clock->now())) {
+        host_.limit_counters.met(Limit::RequestsPerSecond);
+        host_.limit_counters.met(Limit::RequestBurst);
+        fail(refusal(base::RefusalCode::ResourceExhausted,
+                     "got more than " + std::to_string(static_cast<int>(empty_frames_per_s_max)) +
+                         " pings, pongs and empty messages per second: send fewer",
+                     base::Reason::Unspecified));
+    }
+}
+
+void Session::update_frame_timer() {
     const bool within = reader_.buffered_bytes() > 0 && !finishing_ && !ended_;
-    const bool goes_on = within && within_frame_ && !one_came;
+    const bool goes_on = within && within_frame_;
     within_frame_ = within;
     if (goes_on) {
         return;
@@ -182,7 +206,8 @@ void Session::update_frame_timer(bool one_came) {
     }
     frame_timer_.expires_after(frame_timeout);
     frame_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error) {
+        // The frame may have arrived after the timer expired, but before this handler.
+        if (const auto self = weak.lock(); self && !error && self->within_frame_) {
             self->host_.limit_counters.met(Limit::FrameTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
                                "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
@@ -195,9 +220,6 @@ void Session::update_frame_timer(bool one_came) {
 asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
-    // The time limit of a frame does not apply while the session does not read.
-    within_frame_ = false;
-    frame_timer_.cancel();
     do {
         turn_timer_.expires_after(turns_to_send_.time_for(request_burst_max / 10));
         co_await turn_timer_.async_wait(no_throw);
@@ -216,16 +238,17 @@ asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     fail(refused);
 }
 
-/// Reads and discards further input. If unread bytes remained, closing the connection would discard the last answer.
+/// Reads and discards further input. If unread bytes remained, closing the connection would discard the last answer. The
+/// frames of a WebSocket are not decoded, so that neither a ping nor an invalid frame ends this.
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
-    for (;;) {
-        const auto [error, count] = co_await transport_.read_some(asio::buffer(bytes));
-        if (error) {
-            break;
-        }
+    boost::system::error_code error;
+    while (!error) {
+        std::tie(error, std::ignore) = co_await transport_->receive_some(asio::buffer(bytes));
     }
-    close();
+    if (error != asio::error::eof) { // otherwise the client may still read
+        close();
+    }
 }
 
 void Session::on_frame(const codec::Frame& frame) {
@@ -306,6 +329,10 @@ void Session::on_hello(const v1::Hello& hello) {
     }
     welcome.set_role(access::to_proto(visitor_.role));
     welcome.set_user(visitor_.name);
+    if (!host_.page.is_local || peer_.address().is_loopback()) {
+        welcome.set_page_port(host_.page.port);
+        welcome.set_page_host(host_.page.host);
+    }
     enqueue(encode_control(message), Kind::Unasked);
 }
 
@@ -347,275 +374,17 @@ void Session::fail(const base::Refusal& refused) {
     }
     log_closed(name_of(refused.code), refused.message);
     enqueue(encode_goodbye(refused), Kind::Unasked);
+    if (!close_code_) {
+        close_code_ = refused.reason == base::Reason::ServerGoingAway ? WebSocketClose::GoingAway
+                                                                      : WebSocketClose::PolicyViolation;
+    }
     finish();
-}
-
-// ---- sending ---------------------------------------------------------------------------------------------------
-
-bool Session::admit_request() {
-    if (in_flight_ >= requests_in_flight_max) {
-        host_.limit_counters.met(Limit::RequestsInFlight);
-        return false;
-    }
-    ++in_flight_;
-    return true;
-}
-
-void Session::hold_back(v1::Request request) {
-    const std::size_t bytes = request.SpaceUsedLong();
-    held_back_bytes_.set(held_back_bytes_.bytes() + bytes);
-    held_back_.push_back({std::move(request), bytes});
-}
-
-std::optional<v1::Request> Session::take_held_back() {
-    if (held_back_.empty()) {
-        return std::nullopt;
-    }
-    HeldBack next = std::move(held_back_.front());
-    held_back_.pop_front();
-    held_back_bytes_.set(held_back_bytes_.bytes() - next.bytes);
-    return std::move(next.request);
-}
-
-void Session::expect(std::ptrdiff_t bytes) {
-    if (!ended_) {
-        expected_bytes_.set(expected_bytes_.bytes() + static_cast<std::size_t>(bytes));
-    }
-}
-
-void Session::answer(SharedBytes frame) {
-    turns_to_send_.charge(static_cast<double>(frame->size() / answer_bytes_per_turn));
-    if (takes(frame->size())) {
-        return enqueue(std::move(frame), Kind::Answer);
-    }
-    v1::ServerMessage too_large;
-    too_large.ParseFromString(frame->substr(codec::header_bytes));
-    enqueue(encode_response(
-                protocol::refusing(too_large.response().request_id(),
-                                   refusal(base::RefusalCode::ResourceExhausted,
-                                           "the answer is " + std::to_string(frame->size() - codec::header_bytes) +
-                                               " bytes long, but the client accepts only " +
-                                               std::to_string(frame_bytes_max_) + ": ask for less",
-                                           base::Reason::AnswerTooLarge))),
-            Kind::Answer);
-}
-
-void Session::answer(v1::Response response) {
-    log_refusal(number_, by(), response);
-    answer(encode_response(std::move(response)));
-}
-
-void Session::send_unasked(const v1::Response& response) {
-    if (greeted_) {
-        log_refusal(number_, by(), response);
-    }
-    enqueue(encode_response(response), Kind::Unasked);
-}
-
-void Session::event(const SharedBytes& frame) {
-    // After an event was dropped, all further events are dropped until EventsDropped is sent. The client thus knows
-    // where the gap is.
-    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size())) {
-        return enqueue(frame, Kind::Event);
-    }
-    host_.limit_counters.met(Limit::QueuedEventBytes);
-    count_dropped_events(1);
-}
-
-void Session::count_dropped_events(std::uint64_t count) {
-    dropped_events_ += count;
-    host_.traffic.events_dropped.add(count);
-    wake_writer();
-}
-
-bool Session::may_send_snapshots() const {
-    return begun_ && !finishing_ && !ended_ && !input_over_ && queue_.empty() && sending_.empty() &&
-           dropped_events_ == 0;
-}
-
-void Session::send_snapshots() {
-    if (!idle_ || !may_send_snapshots()) {
-        return wake_writer();
-    }
-    // The snapshots are sent without waking the writer: with many viewers, waking the writers would double the cost.
-    std::size_t sent = 0;
-    for (; sent < snapshots_at_once && may_send_snapshots(); ++sent) {
-        const streaming::OutgoingFrame* const frame = snapshots.next();
-        if (frame == nullptr) {
-            break;
-        }
-        send_frame(*frame);
-    }
-    snapshots.release();
-    if (sent == snapshots_at_once || snapshots.retry_at() != runtime::Clock::time_point::max() ||
-        !may_send_snapshots()) {
-        wake_writer();
-    }
-}
-
-void Session::send_frame(const streaming::OutgoingFrame& frame) {
-    const auto& parts = frame.parts;
-    const std::string_view tail = frame.tail_view();
-    const std::size_t body_bytes = frame.body_bytes();
-    const auto header =
-        codec::encode_header({.channel = codec::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
-    const bool together = parts.size() > gathered_parts_max || body_bytes < gathered_bytes_min;
-    std::array<asio::const_buffer, Transport::buffers_at_once> buffers;
-    std::size_t buffer_count = 0;
-    if (together) {
-        host_.frame.assign(reinterpret_cast<const char*>(header.data()), header.size());
-        for (const SharedBytes* part : parts) {
-            host_.frame += **part;
-        }
-        host_.frame += tail;
-        buffers[buffer_count++] = asio::buffer(host_.frame);
-    } else {
-        buffers[buffer_count++] = asio::buffer(header);
-        for (const SharedBytes* part : parts) {
-            buffers[buffer_count++] = asio::buffer(**part);
-        }
-        buffers[buffer_count++] = asio::buffer(tail);
-    }
-    const auto [error, count] = transport_.write_now(std::span{buffers}.first(buffer_count));
-    if (error) {
-        return close();
-    }
-    host_.traffic.sent_stream_bytes.add(count);
-    if (count == header.size() + body_bytes) {
-        return host_.traffic.snapshots_sent.add();
-    }
-    rest_.buffers.clear();
-    if (together) {
-        const auto rest = std::make_shared<const std::string>(host_.frame, count);
-        sending_.push_back({{host_.send_memory, rest}, Kind::Snapshot});
-        rest_.buffers.push_back(asio::buffer(*rest));
-        return;
-    }
-    // The parts are not copied, because all sessions that receive them share them.
-    rest_.header = header;
-    rest_.tail = tail;
-    rest_.buffers.push_back(asio::buffer(rest_.header));
-    for (const SharedBytes* part : parts) {
-        sending_.push_back({{host_.send_memory, *part}, Kind::Snapshot});
-        rest_.buffers.push_back(asio::buffer(**part));
-    }
-    rest_.buffers.push_back(asio::buffer(rest_.tail));
-    std::size_t gone = count;
-    for (asio::const_buffer& buffer : rest_.buffers) {
-        const std::size_t of_this = std::min(gone, buffer.size());
-        buffer += of_this;
-        gone -= of_this;
-    }
-}
-
-void Session::enqueue(SharedBytes frame, Kind kind) {
-    if (finishing_ || ended_) {
-        return;
-    }
-    (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
-    queue_.push_back({{host_.send_memory, std::move(frame)}, kind});
-    if (response_bytes_ > queued_response_bytes_max) {
-        host_.limit_counters.met(Limit::QueuedResponseBytes);
-        log::warn({.session = number_, .client = by()}, "session {}: {} closed: the client does not read its answers",
-                  number_, by());
-        close();
-        return;
-    }
-    wake_writer();
-}
-
-void Session::written(const Queued& queued) {
-    (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
-}
-
-void Session::wake_writer() {
-    if (std::exchange(idle_, false)) {
-        writer_signal_.cancel();
-    }
-}
-
-asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
-    // wake_writer() cancels the timer. It runs on the same thread, so no wake-up can be lost before the wait begins.
-    idle_ = true;
-    writer_signal_.expires_at(until);
-    co_await writer_signal_.async_wait(no_throw);
-    idle_ = false;
-}
-
-asio::awaitable<void> Session::write() {
-    std::vector<asio::const_buffer> buffers;
-    std::size_t sent_at_once = 0;
-    while (!ended_) {
-        buffers.clear();
-        if (!begun_) {
-            co_await wait_for_work();
-        } else if (!sending_.empty()) {
-            const auto [error, count] = co_await transport_.write(rest_.buffers);
-            host_.traffic.sent_stream_bytes.add(count);
-            if (error) {
-                break;
-            }
-            sending_.clear(); // the bytes are no longer counted
-            rest_ = {};
-            host_.traffic.snapshots_sent.add();
-        } else if (!queue_.empty()) {
-            // Answers and events are sent first, because they are small and clients wait for them.
-            while (!queue_.empty() && sending_.size() < batch_frames_max) {
-                // The request counts as answered before the write completes, because the client may send its next
-                // request as soon as it has received the answer.
-                in_flight_ -= queue_.front().kind == Kind::Answer;
-                sending_.push_back(std::move(queue_.front()));
-                queue_.pop_front();
-                buffers.push_back(asio::buffer(*sending_.back().bytes));
-            }
-            const auto [error, count] = co_await transport_.write(buffers);
-            host_.traffic.sent_control_bytes.add(count);
-            if (error) {
-                break;
-            }
-            for (const Queued& sent : sending_) {
-                written(sent);
-            }
-            sending_.clear();
-        } else if (input_over_ && !finishing_) {
-            if (in_flight_ > 0) {
-                co_await wait_for_work();
-            } else if (turn_timer_.cancel() > 0) {
-                co_await asio::post(transport_.socket().get_executor(), no_throw); // lets fail_when_answered() continue
-            } else {
-                finish();
-            }
-        } else if (dropped_events_ > 0 && !finishing_) {
-            v1::Event event;
-            event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
-            enqueue(encode_event(std::move(event)), Kind::Event);
-        } else if (const auto* frame = finishing_ ? nullptr : snapshots.next()) {
-            send_frame(*frame);
-            // Let the thread serve other sessions.
-            if (++sent_at_once == snapshots_at_once) {
-                sent_at_once = 0;
-                co_await asio::post(transport_.socket().get_executor(), no_throw);
-            }
-        } else if (finishing_) {
-            break;
-        } else {
-            snapshots.release();
-            co_await wait_for_work(snapshots.retry_at());
-        }
-    }
-    if (finishing_ && !ended_) {
-        co_await transport_.finish();
-    } else {
-        close();
-    }
-    sending_.clear();
-    end();
 }
 
 // ---- closing ---------------------------------------------------------------------------------------------------
 
 void Session::check_progress(runtime::Clock::duration watched) {
-    const Transport::Progress progress = sending_.empty() ? Transport::Progress{} : transport_.progress();
+    const Transport::Progress progress = sending_.empty() ? Transport::Progress{} : transport_->progress();
     if (sending_.empty() || ended_ || progress != progress_) {
         progress_ = progress;
         stalled_ = {};
@@ -624,6 +393,26 @@ void Session::check_progress(runtime::Clock::duration watched) {
         log::warn({.session = number_, .client = by()},
                   "session {}: {} closed: the client has received nothing for {} s", number_, by(),
                   stalled_timeout.count());
+        close();
+    }
+    if (transport_->is_websocket()) {
+        check_silence(watched);
+    }
+}
+
+void Session::check_silence(runtime::Clock::duration watched) {
+    // Silence counts only while this session reads, and while the client has received everything. Otherwise the rate
+    // limit or stalled_timeout apply.
+    if (!reading_ || finishing_ || ended_ || !sending_.empty() || transport_->progress().not_taken > 0) {
+        return;
+    }
+    const auto before = std::exchange(silent_, silent_ + watched);
+    if (before < websocket_ping_after && silent_ >= websocket_ping_after) {
+        transport_->ping();
+        wake_writer();
+    } else if (silent_ >= websocket_silence_max) {
+        log_closed({}, "the client has not answered a ping for " +
+                           std::to_string((websocket_silence_max - websocket_ping_after).count()) + " s");
         close();
     }
 }
@@ -669,9 +458,9 @@ void Session::close() {
         return;
     }
     if (sending_.empty()) {
-        transport_.close();
+        transport_->close();
     } else {
-        transport_.abort();
+        transport_->abort();
     }
     hello_timer_.cancel();
     frame_timer_.cancel();

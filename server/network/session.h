@@ -1,4 +1,4 @@
-// Session: one TCP connection. It reads requests and writes answers, events and snapshots.
+// Session: one connection, over TCP or in a WebSocket. It reads requests and writes answers, events and snapshots.
 //
 // Owner        the server's table of sessions. The two coroutines of a session keep it alive until the connection has
 //              ended.
@@ -20,6 +20,7 @@
 #include "server/metrics/traffic.h"
 #include "server/network/limits.h"
 #include "server/network/messages.h"
+#include "server/network/page_address.h"
 #include "server/network/send_memory.h"
 #include "server/network/token_bucket.h"
 #include "server/network/transport.h"
@@ -50,6 +51,7 @@ struct SessionHost {
     SendMemory& send_memory;
     v1::Limits limits = {};
     std::string instance_id = {}; // 32 hexadecimal digits
+    PageAddress page = {};
     v1::Durability durability = v1::DURABILITY_NONE;
     std::optional<v1::Storage> storage = {}; // current state of the disk; nullopt: runs are not stored
     asio::ssl::context* tls = nullptr;       // nullptr: no TLS
@@ -74,6 +76,7 @@ struct EventSubscription {
 class Session : public std::enable_shared_from_this<Session>, private streaming::SnapshotSender {
   public:
     Session(tcp::socket socket, SessionHost& host, std::uint64_t number);
+    Session(std::unique_ptr<Transport> transport, SessionHost& host, std::uint64_t number);
 
     /// Starts reading and writing.
     ///
@@ -111,7 +114,8 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// Closes the connection at once.
     void close();
 
-    /// Closes the session if its client has received nothing for stalled_timeout. Must be called periodically.
+    /// Closes the session if its client has received nothing for stalled_timeout, or has not answered a ping of the
+    /// WebSocket. Must be called periodically.
     ///
     /// watched  the part of the time since the last call in which the server was able to observe the client.
     void check_progress(runtime::Clock::duration watched);
@@ -140,10 +144,12 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     };
 
     asio::awaitable<void> read();
+    /// Limits the rate of frames of the WebSocket that have no content.
+    void count_empty_frames();
+    /// Sends a ping to a silent client of a WebSocket, and closes the session if there is no answer.
+    void check_silence(runtime::Clock::duration watched);
     /// Limits the time from the first to the last byte of a frame.
-    ///
-    /// one_came  true: at least one frame was completed since the last call.
-    void update_frame_timer(bool one_came);
+    void update_frame_timer();
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
     asio::awaitable<void> wait_for_turn(double cost);
@@ -170,7 +176,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void log_closed(std::string_view code, const std::string& why);
     void end();
 
-    Transport transport_;
+    std::unique_ptr<Transport> transport_; // never nullptr
     SessionHost& host_;
     const std::uint64_t number_;
     const tcp::endpoint peer_;
@@ -185,14 +191,16 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
         std::size_t bytes;
     };
     std::deque<HeldBack> held_back_; // at most requests_in_flight_max entries
-    TokenBucket turns_to_send_;
+    TokenBucket turns_to_send_, empty_frames_;
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a part of a frame has arrived
     bool begun_ = false;        // the transport is ready for writing
     bool idle_ = false;         // the writer waits for data to send
     bool greeted_ = false, finishing_ = false, ended_ = false;
-    bool input_over_ = false; // nothing more is read, but pending answers are still sent
-    int coroutines_ = 0;      // number of running coroutines
+    bool reading_ = false;                     // a read is in progress
+    std::optional<WebSocketClose> close_code_; // why the session ends; nullopt: for no particular reason
+    bool input_over_ = false;                  // nothing more is read, but pending answers are still sent
+    int coroutines_ = 0;                       // number of running coroutines
 
     std::deque<Queued> queue_;
     std::vector<Queued> sending_; // not empty: a write is in progress or about to start
@@ -204,6 +212,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in queue_ and sending_
     Transport::Progress progress_;
     runtime::Clock::duration stalled_{}; // time in which the client was observed and received nothing
+    runtime::Clock::duration silent_{};  // time in which the client of a WebSocket could send and sent nothing
     std::size_t in_flight_ = 0;          // number of requests whose answers the writer has not taken yet
     std::uint64_t dropped_events_ = 0;   // number of dropped events that were not reported yet
     std::uint32_t subscription_id_ = 0;

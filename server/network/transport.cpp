@@ -20,9 +20,15 @@ namespace {
 
 constexpr unsigned char tls_handshake = 22; // the type of the first record of TLS, RFC 8446 section 5.1
 
+tcp::endpoint peer_of(const tcp::socket& socket) {
+    boost::system::error_code ignored; // a disconnected client has no address
+    return socket.remote_endpoint(ignored);
+}
+
 } // namespace
 
-Transport::Transport(tcp::socket socket, asio::ssl::context* tls) : socket_{std::move(socket)} {
+Transport::Transport(tcp::socket socket, asio::ssl::context* tls)
+    : socket_{std::move(socket)}, peer_{peer_of(socket_)} {
     if (tls != nullptr) {
         tls_.emplace(socket_, *tls);
     }
@@ -32,8 +38,12 @@ boost::system::error_code Transport::not_tls() {
     return make_error_code(boost::system::errc::protocol_error);
 }
 
+boost::system::error_code Transport::websocket_fault() {
+    return make_error_code(boost::system::errc::bad_message);
+}
+
 asio::awaitable<boost::system::error_code> Transport::begin() {
-    if (!tls_) {
+    if (std::exchange(begun_, true) || !tls_) {
         co_return boost::system::error_code{};
     }
     unsigned char first = tls_handshake;
@@ -50,37 +60,123 @@ asio::awaitable<boost::system::error_code> Transport::begin() {
     co_return error;
 }
 
+void Transport::begin_websocket(std::string received) {
+    websocket_ = WebSocket{.received = std::move(received), .decoder = {}, .pong = {}, .header_rest = {}, .prefix = {}};
+}
+
 asio::awaitable<Transport::Transferred> Transport::read_some(asio::mutable_buffer buffer) {
+    return websocket_ ? read_messages(buffer) : receive_some(buffer);
+}
+
+asio::awaitable<Transport::Transferred> Transport::receive_some(asio::mutable_buffer buffer) {
+    if (websocket_ && !websocket_->received.empty()) {
+        std::string& received = websocket_->received;
+        const std::size_t count = asio::buffer_copy(buffer, asio::buffer(received));
+        received.erase(0, count);
+        co_return Transferred{boost::system::error_code{}, count};
+    }
     if (tls_) {
         co_return co_await tls_->async_read_some(buffer, no_throw);
     }
     co_return co_await socket_.async_read_some(buffer, no_throw);
 }
 
+asio::awaitable<Transport::Transferred> Transport::read_messages(asio::mutable_buffer buffer) {
+    WebSocketDecoder& decoder = websocket_->decoder;
+    std::size_t decoded = 0;
+    if (!decoder.fault() && !decoder.closed()) {
+        const auto [error, count] = co_await receive_some(buffer);
+        if (error) {
+            co_return Transferred{error, 0};
+        }
+        decoded = decoder.decode({static_cast<std::byte*>(buffer.data()), count});
+        if (auto payload = decoder.take_ping()) {
+            websocket_->pong = *std::move(payload);
+        }
+    }
+    if (decoded == 0 && decoder.fault()) {
+        co_return Transferred{websocket_fault(), 0};
+    }
+    if (decoded == 0 && decoder.closed()) {
+        co_return Transferred{asio::error::eof, 0};
+    }
+    co_return Transferred{boost::system::error_code{}, decoded};
+}
+
 Transport::Transferred Transport::write_now(std::span<const asio::const_buffer> buffers) {
-    if (tls_) {
+    if (tls_ || control_waits()) {
         return {};
     }
-    std::array<iovec, buffers_at_once> parts;
-    EVOD_ASSERT(buffers.size() <= parts.size());
-    std::transform(buffers.begin(), buffers.end(), parts.begin(), [](const asio::const_buffer& buffer) {
-        return iovec{const_cast<void*>(buffer.data()), buffer.size()}; // sendmsg() does not modify it
-    });
+    std::array<iovec, 1 + buffers_at_once> parts;
+    EVOD_ASSERT(buffers.size() <= buffers_at_once);
+    std::size_t part_count = 0, bytes = 0;
+    for (const asio::const_buffer& buffer : buffers) {
+        bytes += buffer.size();
+    }
+    WebSocketHeader header;
+    if (websocket_) {
+        EVOD_ASSERT(websocket_->message_rest == 0);
+        header = binary_message_header(bytes);
+        parts[part_count++] = iovec{header.bytes.data(), header.size};
+    }
+    for (const asio::const_buffer& buffer : buffers) {
+        parts[part_count++] = iovec{const_cast<void*>(buffer.data()), buffer.size()}; // sendmsg() does not modify it
+    }
     msghdr message{};
     message.msg_iov = parts.data();
-    message.msg_iovlen = buffers.size();
+    message.msg_iovlen = part_count;
     const ssize_t sent = ::sendmsg(socket_.native_handle(), &message, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent >= 0) {
-        given_ += static_cast<std::uint64_t>(sent);
-        return {boost::system::error_code{}, static_cast<std::size_t>(sent)};
+    if (sent < 0) {
+        if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) {
+            return {};
+        }
+        return {boost::system::error_code{errno, boost::system::system_category()}, 0};
     }
-    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) {
-        return {};
+    auto count = static_cast<std::size_t>(sent);
+    given_ += count;
+    if (websocket_ && count > 0) {
+        const std::size_t of_header = std::min(count, header.size);
+        websocket_->header_rest = header.view().substr(of_header);
+        count -= of_header;
+        websocket_->message_rest = bytes - count;
     }
-    return {boost::system::error_code{errno, boost::system::system_category()}, 0};
+    return {boost::system::error_code{}, count};
 }
 
 asio::awaitable<Transport::Transferred> Transport::write(const std::vector<asio::const_buffer>& buffers) {
+    return websocket_ ? write_message(buffers) : write_bytes(buffers);
+}
+
+asio::awaitable<Transport::Transferred> Transport::write_message(const std::vector<asio::const_buffer>& buffers) {
+    WebSocket& websocket = *websocket_;
+    const std::size_t bytes = asio::buffer_size(buffers);
+    std::string& prefix = websocket.prefix;
+    prefix.clear();
+    if (websocket.message_rest > 0) {
+        EVOD_ASSERT(bytes == websocket.message_rest);
+        prefix = std::exchange(websocket.header_rest, {});
+    } else {
+        // Only the newest ping needs an answer, RFC 6455 section 5.5.3.
+        if (const auto pong = std::exchange(websocket.pong, std::nullopt)) {
+            prefix += encode_pong(*pong);
+        }
+        if (std::exchange(websocket.ping_due, false)) {
+            prefix += encode_ping();
+        }
+        if (bytes > 0) {
+            prefix += binary_message_header(bytes).view();
+        }
+    }
+    std::vector<asio::const_buffer> all{asio::buffer(prefix)};
+    all.insert(all.end(), buffers.begin(), buffers.end());
+    const auto [error, count] = co_await write_bytes(all);
+    if (!error) {
+        websocket.message_rest = 0;
+    }
+    co_return Transferred{error, count - std::min(count, prefix.size())};
+}
+
+asio::awaitable<Transport::Transferred> Transport::write_bytes(const std::vector<asio::const_buffer>& buffers) {
     if (tls_) {
         co_return co_await asio::async_write(*tls_, buffers, no_throw);
     }
@@ -91,6 +187,19 @@ asio::awaitable<Transport::Transferred> Transport::write(const std::vector<asio:
     co_return co_await asio::async_write(socket_, buffers, count, no_throw);
 }
 
+std::optional<WebSocketDecoder::Fault> Transport::fault() const {
+    return websocket_ ? websocket_->decoder.fault() : std::nullopt;
+}
+
+std::uint64_t Transport::take_empty_frame_count() {
+    return websocket_ ? websocket_->decoder.take_empty_frame_count() : 0;
+}
+
+void Transport::ping() {
+    EVOD_ASSERT(websocket_);
+    websocket_->ping_due = true;
+}
+
 Transport::Progress Transport::progress() {
     int not_taken = 0;
     ::ioctl(socket_.native_handle(), SIOCOUTQ, &not_taken);
@@ -98,7 +207,12 @@ Transport::Progress Transport::progress() {
             .not_taken = static_cast<std::uint64_t>(not_taken)};
 }
 
-asio::awaitable<void> Transport::finish() {
+asio::awaitable<void> Transport::finish(WebSocketClose code) {
+    if (websocket_) {
+        websocket_->prefix = encode_close(code);
+        const std::vector<asio::const_buffer> close{asio::buffer(websocket_->prefix)};
+        co_await write_bytes(close);
+    }
     if (tls_) { // sends close_notify, which marks the complete end of the stream (RFC 8446 section 6.1)
         co_await tls_->async_shutdown(no_throw);
     }
@@ -117,9 +231,9 @@ void Transport::close() {
     socket_.close(ignored);
 }
 
-tcp::endpoint Transport::peer() const {
+tcp::endpoint Transport::local() const {
     boost::system::error_code ignored; // a disconnected client has no address
-    return socket_.remote_endpoint(ignored);
+    return socket_.local_endpoint(ignored);
 }
 
 std::string to_text(const tcp::endpoint& endpoint) {

@@ -69,6 +69,7 @@ class Case(past.Case):
 
     def get(self, server, path="/metrics", method="GET", **arguments):
         with contextlib.closing(self.http(server)) as connection:
+            arguments.setdefault("headers", {"Authorization": f"Bearer {server.token}"} if hasattr(server, "token") else {})
             connection.request(method, path, **arguments)
             answer = connection.getresponse()
             answer.text = answer.read().decode()
@@ -271,6 +272,7 @@ class Clients(Case, access.Access):
     def test_sessions_by_role_and_failed_logins(self):
         secrets = {name: self.token(name, role) for role, name in access.NAMES.items()}
         server = self.serve("--require-token")
+        server.token = secrets["admin"]
         came = [self.come(server, secrets[name]) for name in ("viewer", "viewer", "controller", "admin")]
 
         def stay_silent(_):
@@ -287,6 +289,7 @@ class Clients(Case, access.Access):
     def test_a_viewer_may_query_metrics(self):
         secret = self.token("anna", access.VIEWER)
         server = self.serve("--require-token")
+        server.token = secret
         viewer = self.come(server, secret)
         answer = viewer.call(get_metrics=c.GetMetrics()).metrics
         page = self.metrics(server)
@@ -336,8 +339,9 @@ class Health(Case):
 class Http(Case):
     def test_only_existing_pages_can_be_read(self):
         server = self.serve()
-        lost = self.get(server, "/")
-        self.assertEqual((lost.status, lost.text), (404, "no such page; available: /healthz and /metrics\n"))
+        lost = self.get(server, "/nowhere")
+        self.assertEqual(lost.status, 404)
+        self.assertRegex(lost.text, r"^no such page; available: .*/protocol.bin, /healthz, /metrics, /session\n$")
         for method in ("POST", "PUT", "DELETE", "OPTIONS", "PATCH"):
             refused = self.get(server, method=method, body=b"x" * 100_000 if method in ("POST", "PUT") else None)
             self.assertEqual((refused.status, refused.headers["Allow"]), (405, "GET, HEAD"), method)
@@ -362,8 +366,8 @@ class Http(Case):
         server = self.serve()
 
         def ask(_):
-            pipeline = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n" * 20 +
-                                b"GET /nowhere HTTP/1.0\r\n\r\n" + b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n")
+            pipeline = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n" * 20 +
+                                b"GET /nowhere HTTP/1.0\r\nHost: localhost\r\n\r\n" + b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
             text = read_all(pipeline)
             self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", text, re.M), [b"200"] * 20 + [b"404"])
         waiting.quicker_than(SIMULATION_S, ask)
@@ -393,7 +397,7 @@ class Http(Case):
         server = self.serve()
 
         def status_of(size):
-            begin = b"GET /healthz HTTP/1.1\r\nConnection: close\r\nx: "
+            begin = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nx: "
             answer = read_all(self.raw(server, begin + b"y" * (size - len(begin) - 4) + b"\r\n\r\n"))
             return int(re.match(rb"HTTP/1\.1 (\d+) ", answer)[1])
         with self.meets(server, "http_header_bytes_max") as limit:
@@ -404,35 +408,31 @@ class Http(Case):
         server = self.serve()
         with self.meets(server, "http_request_timeout_s", 3) as limit:
             began = time.monotonic()
-            begun = [self.raw(server, data) for data in (b"", b"GET /metr", b"GET /metrics HTTP/1.1\r\nHost: a\r\n")]
+            begun = [self.raw(server, data) for data in (b"", b"GET /metr", b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n")]
             for connection in begun:
                 self.assertEqual(read_all(connection), b"")
             self.assertGreater(time.monotonic() - began, limit - 0.5)
 
     def test_too_many_connections_get_503(self):
         server = self.serve()
-
-        def is_well():
-            with contextlib.suppress(ConnectionError):  # closed at once, perhaps before the request was read
-                return self.get(server, "/healthz").status == 200
+        self.wait_well(server)
+        threads = {pathlib.Path(task, "comm").read_text().strip(): int(task.name)
+                   for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
+        request = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
         def crowd(_):
             with self.meets(server, "http_connections_max") as limit, contextlib.ExitStack() as stack:
                 def come(count):
-                    for _ in range(count):
-                        stack.enter_context(contextlib.closing(self.raw(server, b"")))
-                come(limit - 1)
-                plain.until(is_well, "the last place")
-                come(1)
-                answer = self.get(server, "/healthz")
-                self.assertEqual(answer.status, 503)
-                self.assertIn(f"{limit} connections are open already", answer.text)
-                come(limit)
-                plain.until(lambda: come(1) or read_all(self.raw(server, b"GET /healthz HTTP/1.1\r\n\r\n")) == b"",
-                            "one is closed at once")
+                    return [stack.enter_context(contextlib.closing(self.raw(server, request))) for _ in range(count)]
+                with stopped(threads["simulation"]):  # so that answers take SIMULATION_S
+                    come(limit)
+                    text = plain.until(lambda: (lambda one: one if b" 503 " in one and b"open already" in one else None)(
+                        waiting.receive(come(1)[0], 65536)), "too many").decode()
+                    self.assertIn(f"{limit} connections are open already", text)
+                    plain.until(lambda: read_all(come(1)[0]) == b"", "one is closed at once")
                 stack.close()
-                plain.until(is_well, "room")
-        waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)  # after that the silent ones are closed
+                self.wait_well(server)
+        waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)
 
     def test_it_is_closed_with_the_server(self):
         server = self.serve()

@@ -42,6 +42,9 @@ TEST(ServeOptions, ValuesOutOfRangeAreRejected) {
                                                   {"--threads", "0"},
                                                   {"--speed", "0"},
                                                   {"--http-bind", "::1"},
+                                                  {"--http-host", "lab"},
+                                                  {"--web", "--http-host", "http://lab"},
+                                                  {"--web", "--http-host", "lab:80"},
                                                   {"--durability", "some"},
                                                   {"--file-bytes-max", "1"},
                                                   {"--data", "a", "--keep-nothing"}}) {
@@ -67,6 +70,20 @@ TEST(ServeOptions, DescribeTheServer) {
     EXPECT_TRUE(server->first_speed);
     EXPECT_TRUE(server->first_run);
     EXPECT_FALSE(server->replay);
+}
+
+TEST(ServeOptions, WebIsThePortOfThePage) {
+    const auto described = [](std::vector<const char*> words) {
+        words.push_back("--keep-nothing");
+        return server_options(parse(words).value())->http;
+    };
+    EXPECT_FALSE(described({}));
+    EXPECT_EQ(described({"--web"})->port, 7745);
+    EXPECT_EQ(described({"--web", "--http-port", "8000"})->port, 8000);
+    const auto named =
+        described({"--http-host", "lab.example", "--web", "--http-host", "::1", "--http-bind", "0.0.0.0"});
+    EXPECT_EQ(named->bind_address, "0.0.0.0");
+    EXPECT_THAT(named->host_names, testing::ElementsAre("lab.example", "::1"));
 }
 
 TEST(ServeOptions, TheFirstWorldIsTheExperiments) {

@@ -1,0 +1,162 @@
+// The logic of the organism panel: what is known about an organism, its texts, and the layout of its network.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { bundle } from "./bundle.mjs";
+
+const organism = await bundle("organism");
+const place = { run_id: "r", island: 1, generation: 5, id: 3 };
+const none = 0xffffffff;
+
+function info(fields = {}) {
+  return { id: 3, island: 1, generation: 5, alive: true, lived_s: 2, health: 50, genes: [1], parents: [45, 7],
+    ...fields };
+}
+
+test("a history takes the organism's own answers only", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info({ generation: 6 }));
+  history.add_info(info({ id: undefined }));
+  assert.equal(history.info, null);
+  history.add_info(info());
+  history.add_info(info());
+  history.add_info(info({ lived_s: 3, health: 40 }));
+  assert.deepEqual(history.health, [{ s: 2, health: 50 }, { s: 3, health: 40 }]);
+});
+
+test("a full health curve keeps every second point", () => {
+  const history = new organism.OrganismHistory(place);
+  for (let i = 0; i <= organism.health_points_max; ++i) {
+    history.add_info(info({ lived_s: i }));
+  }
+  assert.equal(history.health.length, organism.health_points_max / 2 + 1);
+  assert.deepEqual(history.health.slice(0, 2).map((point) => point.s), [0, 2]);
+});
+
+test("a dead organism keeps its last network", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info({ brain: { inputs: [1] } }));
+  history.add_info(info({ alive: undefined, lived_s: 3, cause_of_death: "CAUSE_OF_DEATH_POISONED" }));
+  assert.deepEqual(history.brain, { inputs: [1] });
+  assert.equal(organism.fate_text(history), "died of poison after 3.0 s");
+});
+
+test("picks of the parents are requested, then its own", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info());
+  const first = history.wanted(true);
+  assert.deepEqual(first, { island: 1, generation: 4, first_contender: 45, first_pick: none, first_descendant: none });
+  history.add_breeding(first, { generation: 4, island: 1, pick_count: 25, survivor_count: 2,
+    contenders: [{ copies: 3, expected_copies: 1.71 }] });
+  assert.equal(history.origin, "child");
+  assert.equal(organism.picks_text("Its parent 45", history.picks_of_parent(45)),
+    "Its parent 45 was picked 3 of 25 times, expected 1.71.");
+  const second = history.wanted(true);
+  assert.equal(second.first_contender, 7);
+  history.add_breeding(second,
+    { generation: 4, island: 1, pick_count: 25, contenders: [{ migrant: { organism: 9 } }] });
+  assert.equal(organism.picks_text("Its parent 7", history.picks_of_parent(7)),
+    "Its parent 7 (a copy of organism 9 of island 0) was picked 0 of 25 times, expected 0.");
+  assert.equal(history.wanted(false), null);
+  assert.deepEqual(history.wanted(true),
+    { island: 1, generation: 5, first_contender: 3, first_pick: none, first_descendant: 0 });
+});
+
+test("offspring are read page by page", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info({ parents: [] }));
+  const pages = [
+    { generation: 5, island: 1, pick_count: 2, descendant_count: 4, contenders: [{ copies: 2 }],
+      descendants: [{ kind: "DESCENDANT_KIND_SURVIVOR", first_parent: 3 },
+        { id: 1, kind: "DESCENDANT_KIND_CHILD", first_parent: 3, second_parent: 8 }] },
+    { generation: 5, island: 1, descendant_count: 4,
+      descendants: [{ id: 2, kind: "DESCENDANT_KIND_CHILD", first_parent: 8, second_parent: 8 },
+        { id: 3, kind: "DESCENDANT_KIND_CHILD", first_parent: 3, second_parent: 3, mutations: [{}] }] },
+  ];
+  for (const page of pages) {
+    history.add_breeding(history.wanted(true), page);
+  }
+  assert.equal(history.wanted(true), null);
+  assert.deepEqual(history.children.map(organism.child_text), ["0 (unchanged)", "1 (with 8)", "3 (single parent)"]);
+});
+
+test("an answer without rows ends the search", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info({ parents: [] }));
+  history.add_breeding(history.wanted(true), { generation: 5, island: 1, descendant_count: 4, contenders: [{}] });
+  assert.deepEqual([history.children_left_out, history.wanted(true)], [true, null]);
+});
+
+test("gene ranges come from the organism's generation", () => {
+  const history = new organism.OrganismHistory(place);
+  const genes = [new Float32Array([1, 2, 6])];
+  history.add_population({ generation: 6, island: 1, genes });
+  history.add_population({ generation: 5, island: 0, genes });
+  assert.deepEqual(history.ranges, []);
+  history.add_population({ generation: 5, island: 1, genes });
+  assert.deepEqual(history.ranges, [{ min: 1, mean: 3, max: 6 }]);
+});
+
+test("parents are named with the way into the generation", () => {
+  assert.equal(organism.parents_text(info(), "child"), "Parents: 45 and 7 (generation 4)");
+  assert.equal(organism.parents_text(info({ parents: [7, 7] }), "child"),
+    "One parent: 7 (generation 4), which was both parents");
+  assert.equal(organism.parents_text(info({ parents: [7] }), "elite"),
+    "One parent: 7 (generation 4): this organism belongs to the elite");
+  assert.equal(organism.parents_text(info({ parents: [] }), "unknown"),
+    "No parents: founder of generation 1, or loaded from a file");
+  assert.equal(organism.parents_text(info({ placed_tick: 0 }), "unknown"),
+    "No parents: placed by a user after tick 0 of the generation");
+});
+
+test("the next action names its target", () => {
+  assert.equal(organism.choice_text({ choice: "CHOICE_SEEK", target_x_px: 12.4, target_y_px: 1000.2 }),
+    "about to seek food at (12, 1,000)");
+  assert.equal(organism.choice_text({ choice: "CHOICE_STEER" }), "steered by its network");
+  assert.equal(organism.choice_text({}), "");
+});
+
+test("groups of genes are contiguous ranges", () => {
+  const groups = ["GENE_GROUP_BODY", "GENE_GROUP_BODY", "GENE_GROUP_BRAIN", "GENE_GROUP_FREE"];
+  assert.deepEqual(organism.genes_of(groups, "brain", 4), { first: 2, count: 1 });
+  assert.deepEqual(organism.genes_of([], "body", 6), { first: 0, count: 6 });
+  assert.deepEqual(organism.genes_of([], "brain", 6), { first: 6, count: 0 });
+});
+
+const brain = { input_names: ["food_bearing", "speed"], inputs: [0.5, -1], hidden: [0.1, 0.2, 0.3],
+  output_names: ["turn"], outputs: [-0.25], has_bias: true };
+const weights = [1, 2, 3, 4, 5, 6, 7, 8, -9, 0.5, 0.25, 0.125, -0.0625]; // 3 × (2 + 1) + 1 × (3 + 1)
+
+test("weights follow the order of the chromosome", () => {
+  const diagram = organism.brain_diagram(brain, weights, 300, { inputs: 80, outputs: 60 });
+  assert.deepEqual(diagram.neurons.map((neuron) => neuron.name),
+    ["food_bearing", "speed", "bias", "hidden1", "hidden2", "hidden3", "bias", "turn"]);
+  const weight = (from, to) => diagram.connections
+    .find((connection) => connection.from === from && connection.to === to).weight;
+  assert.deepEqual([weight(0, 3), weight(2, 3), weight(0, 4), weight(2, 5), weight(3, 7), weight(6, 7)],
+    [1, 3, 4, -9, 0.5, -0.0625]);
+  assert.equal(diagram.connections[diagram.connections.length - 1].weight, -9);
+});
+
+test("a wrong number of weights has no diagram", () => {
+  assert.equal(organism.brain_diagram(brain, weights.slice(1), 300, { inputs: 80, outputs: 60 }), null);
+});
+
+test("notes list the inputs, the strongest first", () => {
+  const diagram = organism.brain_diagram(brain, weights, 300, { inputs: 80, outputs: 60 });
+  assert.equal(organism.neuron_text(diagram, 5),
+    "hidden3: 0.30. Inputs: bias × −9.00, speed × 8.00, food bearing × 7.00");
+  assert.equal(organism.connection_text(diagram, diagram.connections[diagram.connections.length - 1]),
+    "bias → hidden3: weight −9.00");
+});
+
+test("arrow keys move between neurons and stay inside", () => {
+  const diagram = organism.brain_diagram(brain, weights, 300, { inputs: 80, outputs: 60 });
+  assert.equal(organism.neighbour(diagram, 0, "ArrowUp"), 0);
+  assert.equal(organism.neighbour(diagram, 2, "ArrowDown"), 2);
+  assert.equal(organism.neighbour(diagram, 3, "ArrowRight"), 7);
+  assert.equal(organism.neighbour(diagram, 7, "ArrowRight"), 7);
+});
+
+test("the axis of the health ends at a round number", () => {
+  assert.deepEqual([1, 104, 201].map(organism.axis_end), [1, 150, 250]);
+});
