@@ -1,5 +1,6 @@
 #include "client/ctl/caller.h"
 
+#include "client/core/page_link.h"
 #include "client/ctl/text.h"
 
 #include <algorithm>
@@ -97,6 +98,7 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
         throw Stop{stranger ? ExitCode::TokenNeeded : ExitCode::NoConnection, welcome.error().what};
     }
     welcome_ = *std::move(welcome);
+    page_ = core::page_of(welcome_, options.server, options.tls.has_value());
 }
 
 v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {

@@ -63,12 +63,15 @@ class Caller {
 
     core::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
+    /// The address of the server's page, such as "http://lab:7745/". Empty if there is none that this machine can reach.
+    const std::string& page() const { return page_; }
     std::chrono::milliseconds timeout() const { return timeout_; }
 
   private:
     std::chrono::milliseconds timeout_;
     std::unique_ptr<core::Connection> connection_;
     v1::Welcome welcome_;
+    std::string page_;
 };
 
 /// Prints a reply: as JSON if --json was given, otherwise as the result of `text()`.
@@ -109,6 +112,7 @@ inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1
 void add_query_commands(command_line::Command& app, const Common& common);
 void add_parameter_commands(command_line::Command& app, const Common& common);
 void add_place_commands(command_line::Command& app, const Common& common);
+void add_link_command(command_line::Command& app, const Common& common);
 void add_rate_command(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
 void add_breeding_command(command_line::Command& app, const Common& common);

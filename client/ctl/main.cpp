@@ -75,6 +75,7 @@ int main(int argc, char** argv) {
     add_place_commands(app, common);
     add_rate_command(app, common);
     add_query_commands(app, common);
+    add_link_command(app, common);
     add_breeding_command(app, common);
     add_export_command(app, common);
     add_watch_commands(app, common);

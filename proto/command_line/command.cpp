@@ -107,6 +107,11 @@ Option Option::count(int min, int max) const {
     return *this;
 }
 
+Option Option::one_at_a_time() const {
+    option_->allow_extra_args(false);
+    return *this;
+}
+
 Option Option::required() const {
     option_->required();
     return *this;

@@ -51,6 +51,8 @@ class Option {
     Option choices(const std::vector<std::string>& choices) const;
     /// Sets the smallest and the largest number of values that a vector accepts.
     Option count(int min, int max) const;
+    /// Makes a vector take one value each time the option is given. Otherwise it takes all words up to the next option.
+    Option one_at_a_time() const;
     Option required() const;
     /// Rejects this option unless the other option is given too.
     Option needs(Option other) const;

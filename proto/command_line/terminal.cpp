@@ -24,7 +24,8 @@ void print_error(std::string_view program, std::string_view text) {
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find('\n', begin), text.size());
         const std::string_view line = text.substr(begin, end - begin);
-        std::cerr << (line.starts_with(' ') ? "" : prefix + " ") << line << '\n';
+        // One call, so that lines of several processes do not mix.
+        std::cerr << (line.starts_with(' ') ? "" : prefix + " ") + std::string{line} + '\n';
         begin = end + 1;
     }
 }

@@ -41,6 +41,11 @@ class Link:
         self._lock = threading.Lock()  # guards `end`, after which no coroutine is started
         self._end = weakref.finalize(self, _end, self._inner, self._loop, self._thread)
 
+    @property
+    def tls(self) -> bool:
+        """Whether the connection uses TLS."""
+        return self._inner.tls
+
     def perform(self, plan: Plan[T]) -> T:
         """Executes a plan. An exception in the calling thread, such as KeyboardInterrupt, cancels the plan."""
         return self._run(self._inner.perform(plan))

@@ -39,6 +39,7 @@ enum class Action {
     AllIslands,
     Fit,
     Screenshot,
+    CopyLink,
     Sidebar,
     NextColouring,
     Radii,

@@ -2,6 +2,8 @@
 
 #include "client/viewer/drawing/png.h"
 
+#include <SFML/Window/Clipboard.hpp>
+
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
@@ -195,6 +197,8 @@ void Window::carry_out(Action action) {
         return island_view.toggle_following(world);
     case Action::Screenshot:
         return save_screenshot();
+    case Action::CopyLink:
+        return copy_link();
     case Action::Sidebar:
         return renderer_.panels().toggle_sidebar();
     case Action::Help:
@@ -228,6 +232,16 @@ void Window::close_front() {
         asked_to_quit_ = now_;
         renderer_.overlay().notice("Esc again quits; the worlds continue", now_);
     }
+}
+
+void Window::copy_link() {
+    const std::string link = panes_.focused().world.link();
+    if (link.empty()) {
+        renderer_.overlay().notice("No link: start evod with --web, so that it serves the page for browsers", now_);
+        return;
+    }
+    sf::Clipboard::setString(link);
+    renderer_.overlay().notice("Copied " + link, now_);
 }
 
 void Window::save_screenshot() {

@@ -41,6 +41,8 @@ class Window {
     std::string problem_of(Action action);
     void carry_out(Action action);
     void close_front();
+    /// Puts the link to the shown moment on the clipboard.
+    void copy_link();
     void save_screenshot();
 
     Screen& screen_;

@@ -49,6 +49,7 @@ class ServerConnection {
     /// failed.
     std::string problem() const;
     const core::Endpoint& endpoint() const { return options_.server; }
+    bool uses_tls() const { return options_.tls.has_value(); }
     /// Gives access to the connection, for subscriptions.
     core::Connection& connection() { return connection_; }
     const core::Connection& connection() const { return connection_; }

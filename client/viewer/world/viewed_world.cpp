@@ -1,5 +1,6 @@
 #include "client/viewer/world/viewed_world.h"
 
+#include "client/core/page_link.h"
 #include "client/viewer/world/event_text.h"
 #include "client/viewer/world/status_text.h"
 
@@ -156,6 +157,24 @@ void ViewedWorld::remove(const std::string& name) {
             show_next_world();
         }
     });
+}
+
+std::string ViewedWorld::link() const {
+    const codec::ReceivedSnapshot* snapshot = feed.snapshot();
+    const std::string page =
+        core::page_of(server.status().welcome.value_or(evod::v1::Welcome{}), server.endpoint(), server.uses_tls());
+    if (!snapshot || page.empty()) {
+        return "";
+    }
+    const std::string original = replay.info() ? replay.info()->replay_of() : "";
+    core::PageMoment moment{.world = original.empty() ? snapshot->about.world() : original,
+                            .generation = snapshot->about.generation(),
+                            .tick = snapshot->about.generation_tick(),
+                            .organism = feed.selected()};
+    if (feed.island_count() > 1) {
+        moment.island = snapshot->about.island();
+    }
+    return core::link_of(page, moment);
 }
 
 std::optional<std::string> ViewedWorld::refusal() const {

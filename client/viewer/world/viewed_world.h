@@ -60,6 +60,10 @@ class ViewedWorld {
     /// Shows the first tick of a generation of the run, in a replay.
     void show_generation(std::uint64_t generation);
 
+    /// A link that shows this moment in a browser. Empty if the server has no page that this machine can reach, or if no
+    /// snapshot has arrived.
+    std::string link() const;
+
     /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }
     /// Why the server sends no snapshots, as a sentence; nullopt if it sends them or has not answered yet.

@@ -45,6 +45,8 @@ class FakeSession {
         message.mutable_welcome()->set_protocol_version(1);
         message.mutable_welcome()->set_server_version("fake");
         message.mutable_welcome()->set_role(role);
+        message.mutable_welcome()->set_page_port(7745);
+        message.mutable_welcome()->set_page_host("lab");
         message.mutable_welcome()->mutable_features()->Assign(features.begin(), features.end());
         message.mutable_welcome()->mutable_limits()->set_requests_in_flight_max(requests_in_flight_max);
         send(message);

@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence, TypeVar
 
 import numpy.typing
 
-from evod import local_server, plans, plotting, tables
+from evod import local_server, page_link, plans, plotting, tables
 from evod.aio.attributes import ParameterAttributes
 from evod.aio.awaitable import opens, opens_stream
 from evod.aio.link import Link, blocking_call
@@ -664,6 +664,49 @@ class World(ParameterAttributes):
         """Returns the current tick, generation, run state, speed, seed and gene names."""
         info: WorldInfo = result(await self._link.perform(plans.world_info(self.name)))
         return info
+
+    async def link(
+        self,
+        generation: int | None = None,
+        tick: int | None = None,
+        *,
+        island: int | None = None,
+        organism: int | None = None,
+        live: bool = False,
+        page: str | None = None,
+    ) -> str:
+        """Returns a link at which a browser shows a moment of this world.
+
+        Parameters
+        ----------
+        generation, tick
+            The moment; the tick is counted from the beginning of the generation. By default the present moment.
+        island
+            Index of the island that the page shows.
+        organism
+            The id of an organism that the page selects.
+        live
+            Whether the link shows the world as it runs, without a moment.
+        page
+            The address of the page, for example of a proxy. By default the address that the server reports.
+
+        Raises
+        ------
+        FailedPrecondition
+            The server has no page that this machine can reach. `evod --web` serves one.
+
+        Examples
+        --------
+        >>> import evod.aio
+        >>> async with evod.aio.local(seed=1) as lab:
+        ...     world = await lab.world()
+        ...     await world.link(organism=7, page="https://evod.example.org")
+        'https://evod.example.org/#world=default&generation=1&tick=0&island=0&organism=7'
+        """
+        info = await self._link.perform(plans.world_info(self.name))
+        if page is None:
+            page = page_link.page_of(self._lab.welcome, self._link.server, self._link.tls)
+        return page_link.link_of(page, info, generation, tick, island, organism, live)
 
     async def snapshot(self, island: int = 0, *, genes: bool = False) -> Snapshot:
         """Returns the current state of an island.

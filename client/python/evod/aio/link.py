@@ -45,6 +45,11 @@ class Link:
         self._waiters: set[asyncio.Future[None]] = set()  # completed after each change of the core
         self._connection_task: asyncio.Task[None] | None = None
 
+    @property
+    def tls(self) -> bool:
+        """Whether the connection uses TLS."""
+        return self._tls is not None
+
     # ---- plans ----------------------------------------------------------------------------------------------------
 
     async def perform(self, plan: Plan[T]) -> T:

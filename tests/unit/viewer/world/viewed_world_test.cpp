@@ -105,6 +105,19 @@ TEST_F(ViewedWorldTest, ShowsNoRunningStateWithoutAConnection) {
     ASSERT_NE(world.feed.snapshot(), nullptr) << "the last is still shown";
 }
 
+TEST_F(ViewedWorldTest, LinksToTheShownMoment) {
+    ViewedWorld world{wanted()};
+    EXPECT_EQ(world.link(), "");
+    auto session = begin(world);
+    show_first_snapshot(world, session, 50);
+    const evod::v1::SnapshotFrame& shown = world.feed.snapshot()->about;
+    const std::string moment = "http://lab:7745/#world=default&generation=" + std::to_string(shown.generation()) +
+                               "&tick=" + std::to_string(shown.generation_tick());
+    EXPECT_THAT(world.link(), testing::StartsWith(moment));
+    world.feed.select(4);
+    EXPECT_EQ(world.link(), moment + "&island=" + std::to_string(shown.island()) + "&organism=4");
+}
+
 TEST_F(ViewedWorldTest, ReportsWhyAWorldIsNotCreated) {
     ViewedWorld world{wanted()};
     auto session = begin(world);

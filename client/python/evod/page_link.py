@@ -1,0 +1,51 @@
+"""Links to the page of a server, at which a browser shows a moment of a world. client/core/page_link.h defines the same form."""
+from __future__ import annotations
+
+import re
+
+from evod.endpoint import Endpoint
+from evod.errors import FailedPrecondition, InvalidArgument
+from evod.v1 import session_pb2, world_pb2
+
+
+def page_of(welcome: session_pb2.Welcome, server: Endpoint, tls: bool) -> str:
+    """Returns the page of the server, such as "http://lab:7745/".
+
+    server, tls  how this client is connected.
+
+    >>> page_of(session_pb2.Welcome(page_port=7745), Endpoint("lab"), tls=False)
+    'http://lab:7745/'
+    """
+    if welcome.page_port == 0:
+        why = "start it with --web and, for other machines, --http-bind; or give the address of the page"
+        raise FailedPrecondition(f"the server at {server} has no page that this machine can reach: {why}")
+    return f"{'https' if tls else 'http'}://{Endpoint(welcome.page_host or server.host, welcome.page_port)}/"
+
+
+def link_of(
+    page: str, info: world_pb2.WorldInfo, generation: int | None, tick: int | None, island: int | None,
+    organism: int | None, live: bool,
+) -> str:
+    """Returns the link to a moment of a world; by default to the moment of `info`.
+
+    >>> link_of("http://lab:7745", world_pb2.WorldInfo(name="a", generation=3), None, None, 1, 7, live=False)
+    'http://lab:7745/#world=a&generation=3&tick=0&island=1&organism=7'
+    """
+    if not re.fullmatch(r"https?://[!$-;=?-Z_a-z~\[\]%]+", page):
+        raise InvalidArgument(f"page: got '{page}', allowed a URL without #, such as https://evod.example.org/")
+    if live and generation is not None:
+        raise InvalidArgument("generation and live are both given: use one of them")
+    if tick is not None and generation is None:
+        raise InvalidArgument("tick is given without generation: give both")
+    if generation is None:
+        generation, tick = info.generation, info.generation_tick
+    elif not 1 <= generation <= info.generation:
+        raise InvalidArgument(f"generation: got {generation}, allowed 1 to {info.generation}")
+    fields = [("world", info.replay.replay_of or info.name)]
+    if not live:
+        fields += [("generation", str(generation)), ("tick", str(tick or 0))]
+    if island is not None or organism is not None:
+        fields.append(("island", str(island or 0)))
+    if organism is not None:
+        fields.append(("organism", str(organism)))
+    return page + ("" if page.endswith("/") else "/") + "#" + "&".join("=".join(field) for field in fields)

@@ -1,0 +1,46 @@
+#include "client/core/page_link.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::core {
+namespace {
+
+evod::v1::Welcome welcome(std::uint32_t port, const std::string& host = "") {
+    evod::v1::Welcome welcome;
+    welcome.set_page_port(port);
+    welcome.set_page_host(host);
+    return welcome;
+}
+
+TEST(PageLink, NamesTheHostOfTheServerOrOfTheClient) {
+    EXPECT_EQ(page_of(welcome(7745), {.host = "lab", .port = 7744}, false), "http://lab:7745/");
+    EXPECT_EQ(page_of(welcome(7745), {.host = "::1", .port = 7744}, true), "https://[::1]:7745/");
+    EXPECT_EQ(page_of(welcome(80, "192.0.2.1"), {.host = "lab"}, false), "http://192.0.2.1:80/");
+    EXPECT_EQ(page_of(welcome(0), {.host = "lab"}, false), "");
+}
+
+TEST(PageLink, ContainsAMoment) {
+    const std::string page = "http://lab:7745/";
+    EXPECT_EQ(link_of(page, {.world = "default"}), page + "#world=default");
+    EXPECT_EQ(link_of(page, {.world = "a", .generation = 12, .tick = 600, .island = 1, .organism = 7}),
+              page + "#world=a&generation=12&tick=600&island=1&organism=7");
+    EXPECT_EQ(link_of(page, {.world = "a", .generation = 12}), page + "#world=a&generation=12&tick=0");
+    EXPECT_EQ(link_of(page, {.world = "a", .organism = 0}), page + "#world=a&island=0&organism=0");
+}
+
+TEST(PageLink, OfAReplayNamesItsOriginal) {
+    evod::v1::WorldInfo world;
+    world.set_name("default");
+    world.set_generation(3);
+    world.set_generation_tick(40);
+    world.set_tick(5000);
+    EXPECT_EQ(link_of("", moment_of(world)), "#world=default&generation=3&tick=40");
+    world.set_name("default.replay");
+    world.mutable_replay()->set_replay_of("default");
+    EXPECT_EQ(moment_of(world).world, "default");
+    world.mutable_replay()->set_replay_of(""); // evod replay
+    EXPECT_EQ(moment_of(world).world, "default.replay");
+}
+
+} // namespace
+} // namespace evod::core
