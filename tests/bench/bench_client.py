@@ -20,7 +20,7 @@ class Client:
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.key, self.id = secrets.token_hex(8), 0
         self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="benchmark")))
-        self.frame()
+        self.welcome = session_pb2.ServerMessage.FromString(bytes(self.frame()[1])).welcome
 
     def send(self, message):
         body = message.SerializeToString()
