@@ -1,5 +1,8 @@
-// `evod run`: runs one experiment from beginning to end without a network.
+// `evod run`: runs one experiment from beginning to end without a network. Processes that mpirun has started share its
+// islands; rank 0 prints and writes files.
 #include "proto/command_line/command.h"
+#include "server/base/packing.h"
+#include "server/commands/agreement.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
@@ -8,11 +11,15 @@
 #include "server/commands/report.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
+#include "server/experiments/run_recording.h"
 #include "server/network/random_ids.h"
 #include "server/replay/columns.h"
+#include "server/run_file/build.h"
+#include "server/runtime/processes.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
@@ -38,14 +45,19 @@ struct RunOptions {
     std::string population; // path of a CSV file; empty: draw the first generation at random
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> generations; // overrides generation_limit
-    std::size_t threads = default_thread_count();
+    std::optional<std::uint32_t> threads;
+    std::uint32_t rank_timeout_s = 60;
     std::vector<std::string> changes; // texts of the form "name=value"
     std::string csv;                  // path; empty: write no CSV file
+    std::string run_file;             // path; empty: write no run file
     bool ask = false;
 };
 
 /// Exit statuses of `evod run`, besides exit_error, exit_interrupted, and 0 for a limit or target that was reached.
 constexpr int exit_value_not_allowed = 2, exit_stagnated = 3, exit_extinct = 4;
+
+/// Ticks that processes simulate before they exchange results, and learn that one of them was interrupted.
+constexpr std::uint64_t ticks_per_slice = 240;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -54,6 +66,7 @@ double seconds_since(Clock::time_point start) {
 /// The computation time of a run.
 struct ComputationTime {
     double start_s = 0, tick_s = 0, turnover_s = 0;
+    double exchange_s = 0; // part of the other two: waiting for the processes of mpirun, and for what they send
     std::uint64_t organism_ticks = 0; // sum of the organisms alive at the start of each tick
 };
 
@@ -99,10 +112,88 @@ base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
     if (options.seed) {
         experiment.seed = base::Seed{*options.seed};
     }
-    if (!experiment.seed) {
-        experiment.seed = network::draw_seed();
-    }
     return experiment;
+}
+
+/// What a run begins with.
+struct Beginning {
+    parameters::Experiment experiment;
+    simulation::FirstPopulation first_population;
+};
+
+base::Result<Beginning> beginning_of(const RunOptions& options) {
+    auto experiment = experiment_of(options);
+    if (!experiment) {
+        return experiment.error();
+    }
+    auto first_population = experiments::load_population(options.population, experiment->parameters);
+    if (!first_population) {
+        base::Refusal refused = first_population.error();
+        refused.message = "--population: " + refused.message;
+        refused.code = base::RefusalCode::FailedPrecondition; // a file is at fault, not a value of the command line
+        return refused;
+    }
+    return Beginning{*std::move(experiment), *std::move(first_population)};
+}
+
+/// Everything that must be the same in all processes of a run, as text.
+std::string text_of(const Beginning& beginning) {
+    const parameters::Experiment& experiment = beginning.experiment;
+    base::StateHash genes;
+    for (std::size_t island = 0; beginning.first_population && island < beginning.first_population->size(); ++island) {
+        const evolution::GeneMatrix& there = (*beginning.first_population)[island];
+        for (Eigen::Index gene = 0; gene < there.size(); ++gene) {
+            genes += base::EntityHash{0, static_cast<std::uint64_t>(gene)}.add(there(gene), 0.0F).add(island).finish();
+        }
+    }
+    return run_file::build_text() + "\n" + parameters::to_experiment_text(experiment.parameters) +
+           parameters::to_schedule_text(experiment.schedule) + base::to_text(genes) +
+           (experiment.seed ? std::to_string(experiment.seed->value) : "");
+}
+
+/// Checks that all processes begin the same run. A refusal is the same in all of them.
+base::Result<Beginning> agree_on(base::Result<Beginning> mine, const RunOptions& options,
+                                 runtime::Processes& processes) {
+    const auto agreed =
+        agree(mine ? base::Result<std::string>{text_of(*mine) + "\n" + options.run_file} : mine.error(), processes);
+    if (!agreed) {
+        return agreed.error();
+    }
+    if (const std::uint32_t islands = mine->experiment.parameters.island_count; processes.size() > islands) {
+        return refusal(base::RefusalCode::InvalidArgument,
+                       std::to_string(processes.size()) + " processes cannot share " + std::to_string(islands) +
+                           (islands == 1 ? " island" : " islands") +
+                           ": start at most one process per island, or set island_count");
+    }
+    return mine;
+}
+
+using Recording = std::unique_ptr<experiments::RunRecording>; // nullptr: the run has no file
+
+/// Opens the file of the run, and sets the seed of the run if it has none: to the stored one, or to one that rank 0 draws.
+base::Result<Recording> open_recording(const RunOptions& options, Beginning& beginning, runtime::Processes& processes) {
+    parameters::Experiment& experiment = beginning.experiment;
+    Recording recording;
+    if (!options.run_file.empty()) {
+        auto opened =
+            experiments::RunRecording::open(options.run_file, experiment, beginning.first_population, processes);
+        if (!opened) {
+            base::Refusal refused = opened.error();
+            refused.code = base::RefusalCode::FailedPrecondition; // a file is at fault, not a value of the command line
+            return refused;
+        }
+        recording = *std::move(opened);
+        experiment.seed = recording->seed() ? recording->seed() : experiment.seed;
+    }
+    base::Packer packer;
+    packer.add(network::draw_seed());
+    const base::Seed drawn = base::Unpacker{processes.gather(packer.take()).front()}.next<base::Seed>();
+    experiment.seed = experiment.seed.value_or(drawn);
+    return recording;
+}
+
+std::size_t threads_of(const RunOptions& options, const runtime::Processes& processes) {
+    return options.threads.value_or(std::max<std::size_t>(default_thread_count() / processes.on_this_machine(), 1));
 }
 
 std::string progress_of(const simulation::World& world) {
@@ -125,6 +216,10 @@ void print_summary(const simulation::World& world, const ComputationTime& cost) 
                     real_time_text(world.moment().simulated_s / cost.tick_s).c_str(), cost.tick_s);
     }
     std::printf("start-up %.3f s, turnover of generations %.3f s\n", cost.start_s, cost.turnover_s);
+    if (cost.exchange_s > 0) {
+        std::printf("exchange between processes %.3f s, %.1f %%\n", cost.exchange_s,
+                    100 * cost.exchange_s / (cost.tick_s + cost.turnover_s));
+    }
 }
 
 int status_of(evolution::Outcome outcome) {
@@ -148,72 +243,236 @@ int status_of(evolution::Outcome outcome) {
     return exit_interrupted;
 }
 
-/// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
-int run(const RunOptions& options) {
-    const auto experiment = experiment_of(options);
-    if (!experiment) {
-        const int status = fail(experiment.error());
-        return experiment.error().code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
-    }
-    auto first_population = experiments::load_population(options.population, experiment->parameters);
-    if (!first_population) {
-        return fail("--population: " + base::to_text(first_population.error()));
-    }
-    const std::vector<std::string> gene_names = replay::gene_names_of(experiment->parameters);
-    std::ofstream csv;
-    std::optional<replay::Table> table;
-    if (!options.csv.empty()) {
-        errno = 0;
-        csv.open(options.csv);
-        table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns(gene_names));
-        if (!csv.flush()) {
-            return fail("--csv: cannot write " + options.csv + ": " + std::strerror(errno));
-        }
-    }
-    catch_interrupts();
-
-    ComputationTime cost;
-    const auto start = Clock::now();
-    const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
-    simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population),
-                            experiment->schedule};
-    cost.start_s = seconds_since(start);
-
-    const bool several_islands = world.islands().size() > 1;
-    std::printf("seed %llu\n%s\n", static_cast<unsigned long long>(world.seed().value),
-                table_heading(several_islands).c_str());
-    ProgressLine progress;
-    while (!interrupted() && world.outcome() == evolution::Outcome::Running) {
-        auto began = Clock::now();
-        world.turn_over(*executor);
-        cost.turnover_s += seconds_since(began);
-        began = Clock::now();
-        do {
-            cost.organism_ticks += world.has_bodies() ? world.alive_count() : 0;
-            world.advance_tick(*executor);
-            progress.show([&] { return progress_of(world); });
-        } while (!interrupted() && !world.generation_over());
-        cost.tick_s += seconds_since(began);
-        world.take_events();
-        if (!world.generation_over()) {
-            break;
-        }
-        progress.clear();
-        for (const simulation::GenerationStatistics& statistics : world.history().back()) {
-            std::puts(table_row(statistics, several_islands).c_str());
-            if (table) {
-                replay::write_row(*table, statistics, gene_names);
-            }
-        }
-        std::fflush(stdout);
-        if (table && !csv.flush()) {
-            return fail("--csv: cannot write " + options.csv + ": the disk may be full");
-        }
-    }
-    progress.clear();
+/// Prints why and how the run ended. Returns the exit status.
+int print_end(const simulation::World& world, const ComputationTime& cost) {
     const int status = status_of(world.outcome());
     print_summary(world, cost);
+    std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
     return status;
+}
+
+/// The output of a run: the table on stdout, and the CSV file. Only rank 0 has one.
+class Output {
+  public:
+    base::Result<void> open(const RunOptions& options, const parameters::Experiment& experiment,
+                            const Recording& recording) {
+        gene_names_ = replay::gene_names_of(experiment.parameters);
+        several_islands_ = experiment.parameters.island_count > 1;
+        csv_path_ = options.csv;
+        if (auto opened = open_csv(recording); !opened) {
+            return opened;
+        }
+        std::printf("seed %llu\n", static_cast<unsigned long long>(experiment.seed->value));
+        if (recording && recording->stored() == experiments::Stored::Whole) {
+            std::printf("%s is complete: %llu generations\n", recording->path().c_str(),
+                        static_cast<unsigned long long>(recording->continues_at()));
+            return {};
+        }
+        if (recording && recording->stored() == experiments::Stored::Part) {
+            std::printf("continues at generation %llu\n", static_cast<unsigned long long>(recording->continues_at()));
+        }
+        std::puts(table_heading(several_islands_).c_str());
+        std::fflush(stdout);
+        return {};
+    }
+    /// Writes the rows of the generation that has just ended.
+    base::Result<void> write(const simulation::World& world) {
+        for (const simulation::GenerationStatistics& statistics : world.history().back()) {
+            std::puts(table_row(statistics, several_islands_).c_str());
+        }
+        std::fflush(stdout);
+        add_to_csv(world.history().back());
+        return flush_csv();
+    }
+
+  private:
+    /// Creates the CSV file, and writes the rows of the stored generations.
+    base::Result<void> open_csv(const Recording& recording) {
+        if (csv_path_.empty()) {
+            return {};
+        }
+        errno = 0;
+        csv_.open(csv_path_);
+        table_.emplace(csv_, replay::Table::Format::Csv, replay::statistics_columns(gene_names_));
+        if (!csv_.flush()) {
+            return refusal(base::RefusalCode::FailedPrecondition,
+                           "--csv: cannot write " + csv_path_ + ": " + std::strerror(errno));
+        }
+        if (recording) {
+            if (auto read = recording->read_statistics([this](const auto& generation) { add_to_csv(generation); });
+                !read) {
+                return read;
+            }
+        }
+        return flush_csv();
+    }
+    void add_to_csv(const std::vector<simulation::GenerationStatistics>& generation) {
+        for (const simulation::GenerationStatistics& statistics : generation) {
+            if (table_) {
+                replay::write_row(*table_, statistics, gene_names_);
+            }
+        }
+    }
+    base::Result<void> flush_csv() {
+        if (table_ && !csv_.flush()) {
+            return refusal(base::RefusalCode::FailedPrecondition,
+                           "--csv: cannot write " + csv_path_ + ": the disk may be full");
+        }
+        return {};
+    }
+
+    std::vector<std::string> gene_names_;
+    bool several_islands_ = false;
+    std::string csv_path_;
+    std::ofstream csv_;
+    std::optional<replay::Table> table_;
+};
+
+/// A run while it is simulated. All processes call its functions in the same order.
+struct Simulation {
+    simulation::World world;
+    base::Executor& executor;
+    runtime::Processes& others;
+    experiments::RunRecording* recording; // nullptr: the run has no file
+    Output& output;
+    ComputationTime& cost;
+    base::Result<void> written = {}; // on rank 0: the first error of a file
+    ProgressLine progress = {};
+
+    bool prints() const { return others.rank() == 0; }
+    /// Calls write() unless there was an error, and keeps its error.
+    template <class Write>
+    void try_to(Write&& write) {
+        if (written) {
+            written = write();
+        }
+    }
+    void follow() {
+        if (recording != nullptr) {
+            const auto followed = recording->follow(world);
+            try_to([&] { return followed; });
+        }
+    }
+    void turn_over() {
+        const auto began = Clock::now();
+        world.turn_over(executor);
+        cost.turnover_s += seconds_since(began);
+        follow();
+    }
+    /// The tick before which the processes exchange results.
+    std::uint64_t next_stop() const {
+        const std::uint64_t tick = world.moment().tick;
+        const std::uint64_t slice = recording != nullptr ? run_file::ticks_per_hash : ticks_per_slice;
+        return others.size() > 1 ? tick - tick % slice + slice : tick + 1;
+    }
+    /// Simulates until the generation ends. Returns whether the run has to stop.
+    bool advance() {
+        const auto began = Clock::now();
+        bool stopped = false;
+        do {
+            const std::uint64_t before = world.moment().tick, alive = world.has_bodies() ? world.alive_count() : 0;
+            world.advance(next_stop(), executor);
+            cost.organism_ticks += alive * (world.moment().tick - before);
+            follow();
+            if (prints()) {
+                progress.show([&] { return progress_of(world); });
+            }
+            stopped = any(interrupted() || !written, others);
+        } while (!stopped && !world.generation_over());
+        cost.tick_s += seconds_since(began);
+        world.take_events();
+        return stopped;
+    }
+    /// Stores and prints the results of the generation that has ended. Returns whether the run has to stop.
+    bool finish_generation() {
+        if (recording != nullptr) {
+            if (world.outcome() == evolution::Outcome::Running) {
+                turn_over(); // the file of a run contains the beginning of the next generation
+            }
+            try_to([&] { return recording->commit(); });
+        }
+        if (prints()) {
+            progress.clear();
+            try_to([&] { return output.write(world); });
+        }
+        return any(!written, others);
+    }
+    /// Simulates until the run ends, is interrupted or cannot be written.
+    void run(bool stopped) {
+        while (!stopped && world.outcome() == evolution::Outcome::Running) {
+            if (world.generation_over()) {
+                turn_over();
+            }
+            stopped = advance();
+            if (!world.generation_over()) {
+                break;
+            }
+            stopped = finish_generation() || stopped;
+        }
+        progress.clear();
+        if (recording != nullptr) {
+            try_to([&] { return recording->close(world); });
+        }
+    }
+};
+
+/// Creates the world of a run, or continues the stored one.
+simulation::World make_world(const Beginning& beginning, const Recording& recording, base::Executor& executor,
+                             base::Exchange& others) {
+    const auto& [experiment, first_population] = beginning;
+    if (recording && recording->stored() == experiments::Stored::Part) {
+        return recording->continued_world(experiment, first_population, executor);
+    }
+    return {experiment.parameters, *experiment.seed, first_population, experiment.schedule, others};
+}
+
+/// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
+int run(const RunOptions& options) {
+    const auto processes = runtime::join_processes(std::chrono::seconds{options.rank_timeout_s});
+    if (!processes) {
+        return fail(processes.error());
+    }
+    runtime::Processes& others = **processes;
+    const bool prints = others.rank() == 0;
+    const auto failed = [prints](const base::Refusal& refused) {
+        const int status = prints ? fail(refused) : exit_error;
+        return refused.code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
+    };
+    if (options.ask && others.size() > 1) {
+        return failed(refusal(base::RefusalCode::InvalidArgument, "--ask: several processes cannot ask"));
+    }
+    auto beginning = agree_on(beginning_of(options), options, others);
+    if (!beginning) {
+        return failed(beginning.error());
+    }
+    catch_interrupts();
+    const auto recording = open_recording(options, *beginning, others);
+    if (!recording) {
+        return failed(recording.error());
+    }
+
+    Output output;
+    base::Result<void> written =
+        prints ? output.open(options, beginning->experiment, *recording) : base::Result<void>{};
+    const bool complete = *recording && (*recording)->stored() == experiments::Stored::Whole;
+    if (any(!written, others) || complete) {
+        return written ? (complete ? 0 : exit_error) : fail(written.error());
+    }
+    ComputationTime cost;
+    const auto start = Clock::now();
+    const std::unique_ptr<base::Executor> executor = runtime::make_executor(threads_of(options, others));
+    Simulation simulation{
+        make_world(*beginning, *recording, *executor, others), *executor, others, recording->get(), output, cost};
+    cost.start_s = seconds_since(start);
+    if (*recording) {
+        simulation.written = (*recording)->begin(simulation.world, network::draw_run_id());
+    }
+    simulation.run(any(!simulation.written, others));
+    if (!simulation.written) {
+        return fail(simulation.written.error());
+    }
+    cost.exchange_s = others.exchange_s();
+    return prints ? print_end(simulation.world, cost) : 0;
 }
 
 } // namespace
@@ -234,15 +493,25 @@ void add_run_command(command_line::Command& app) {
         .add_option("--generations", &options.generations,
                     "Number of generations, 0: no limit; default: the parameter generation_limit")
         .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    command.add_option("--threads", &options.threads, "Number of simulation threads")
-        .check(thread_count)
+    command
+        .add_option("--threads", &options.threads,
+                    "Number of simulation threads; default: the number of processors, divided by the number of "
+                    "processes that mpirun has started on this machine")
+        .check(thread_count);
+    command
+        .add_option("--rank-timeout", &options.rank_timeout_s,
+                    "Under mpirun: seconds that the processes wait for one that does not respond, before all end")
+        .check(command_line::WholeNumber{1, 1'000'000})
         .show_default();
     command.add_option("--set", &options.changes, "NAME=VALUE: set a parameter; evod parameters lists all parameters");
     command.add_option("--csv", &options.csv, "CSV file to which the statistics of every generation are written");
+    command.add_option("--run-file", &options.run_file,
+                       "Run file, NAME.evod, in which the run is stored; if it contains a part of this run, the run "
+                       "continues at the beginning of the last generation in it");
     command.add_flag("--ask", &options.ask,
                      "Prompt for population, food, poison, time and every setting of the genetic algorithm");
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
-                   "2 a value is not allowed.");
+                   "2 a value is not allowed, 5 a process of mpirun was lost.");
     command.action([&] { return run(options); });
 }
 

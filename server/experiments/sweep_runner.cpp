@@ -67,6 +67,15 @@ void SweepRunner::sort_by_work(std::vector<std::size_t>& runs) const {
     std::ranges::stable_sort(runs, std::ranges::greater{}, [&](std::size_t run) { return work[cell_of(run)]; });
 }
 
+std::vector<std::size_t> SweepRunner::share_of(std::vector<std::size_t> runs) const {
+    sort_by_work(runs); // so that every process gets long and short runs
+    std::vector<std::size_t> share;
+    for (std::size_t i = options_.rank; i < runs.size(); i += options_.processes) {
+        share.push_back(runs[i]);
+    }
+    return share;
+}
+
 Result<std::size_t> SweepRunner::execute(std::vector<std::size_t> runs) {
     sort_by_work(runs);
     std::atomic<std::size_t> finished = 0;

@@ -24,7 +24,8 @@ double work_of_generation(const parameters::Parameters& parameters);
 std::optional<double> work_of_run(const parameters::Parameters& parameters);
 
 struct SweepRunnerOptions {
-    std::size_t jobs = 1; // >= 1
+    std::size_t jobs = 1;                  // >= 1
+    std::uint32_t rank = 0, processes = 1; // several processes that execute a sweep together
     bool run_files = false;
     std::function<simulation::RunId()> draw_run_id = {};  // for run files
     std::function<bool()> stopped = [] { return false; }; // whether to stop; called in every tick
@@ -40,6 +41,9 @@ class SweepRunner {
     /// sweep, folder  must outlive the runner.
     SweepRunner(const Sweep& sweep, const SweepFolder& folder, SweepRunnerOptions options)
         : sweep_{sweep}, folder_{folder}, options_{std::move(options)} {}
+
+    /// Returns the runs that this process executes. All processes of the sweep must pass the same runs.
+    std::vector<std::size_t> share_of(std::vector<std::size_t> runs) const;
 
     /// Executes these runs; the runs with the most work begin first. Returns the number of finished runs, which is
     /// less than runs.size() if stopped() returned true. After the first error, no further run begins. A stopped run

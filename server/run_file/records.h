@@ -66,7 +66,7 @@ struct GenerationBegun {
     std::vector<evolution::NextGeneration> born; // one per island
     simulation::Founders founders = {};
 };
-/// The beginning of the current generation of a world.
+/// The beginning of the generation of a world. All processes that share it must call this; rank 0 gets all islands.
 GenerationBegun beginning_of(const simulation::World& world);
 
 /// The statistics that a fork copies from its origin. They belong to the generations before the fork's first one.
@@ -88,7 +88,7 @@ struct GenerationEnded {
     std::vector<IslandOutcome> outcomes;                      // one per island
     std::vector<simulation::GenerationStatistics> statistics; // one per island
 };
-/// Returns the outcome of the world's current generation, which must be complete.
+/// Returns the outcome of the world's generation, which must be complete. Shared worlds: as for beginning_of().
 GenerationEnded end_of(const simulation::World& world);
 /// "alive", "starved", "poisoned", "removed"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);

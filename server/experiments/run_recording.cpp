@@ -1,0 +1,342 @@
+#include "server/experiments/run_recording.h"
+
+#include "server/base/assert.h"
+#include "server/run_file/check.h"
+#include "server/run_file/data_folder.h"
+#include "server/simulation/share.h"
+#include "server/simulation/world_name.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <type_traits>
+#include <utility>
+
+namespace evod::experiments {
+namespace {
+
+using base::RefusalCode;
+using base::Result;
+using run_file::RunFile;
+
+bool are_equal(const simulation::FirstPopulation& a, const simulation::FirstPopulation& b) {
+    return a == b || (a && b && std::ranges::equal(*a, *b, [](const auto& one, const auto& other) {
+                          return one.rows() == other.rows() && one.cols() == other.cols() && (one == other).all();
+                      }));
+}
+
+/// Lists how the stored run differs from the requested one: "population_size is 50, not 60; its seed is 3, not 4".
+std::string differences_of(const run_file::RunIdentity& there, const parameters::Experiment& wanted,
+                           const simulation::FirstPopulation& first_population) {
+    std::string text;
+    const auto add = [&text](const std::string& difference) { text += (text.empty() ? "" : "; ") + difference; };
+    if (wanted.seed && *wanted.seed != there.seed) {
+        add("its seed is " + std::to_string(there.seed.value) + ", not " + std::to_string(wanted.seed->value));
+    }
+    for (const auto* parameter : parameters::parameters_that_differ(there.parameters, wanted.parameters)) {
+        add("its " + std::string{parameter->name} + " is " + parameters::to_text(parameter->get(there.parameters)) +
+            ", not " + parameters::to_text(parameter->get(wanted.parameters)));
+    }
+    if (!(there.schedule == wanted.schedule)) {
+        add("its schedule of parameters is another one");
+    }
+    if (!are_equal(there.first_population, first_population)) {
+        add("its first population is another one");
+    }
+    return text;
+}
+
+/// Why a run cannot be continued by `evod run`; nullopt if it can.
+std::optional<base::Refusal> refusal_of(RunFile& file, const parameters::Experiment& experiment,
+                                        const simulation::FirstPopulation& first_population) {
+    if (auto refused = file.other_model()) {
+        return refused;
+    }
+    const auto refused = [&](const std::string& why) {
+        return refusal(RefusalCode::FailedPrecondition, file.path() + why);
+    };
+    if (file.identity().forked_from) {
+        return refused(" contains a fork of another run, which only a server can continue: name another file");
+    }
+    if (file.journal().last_number() > 0) {
+        return refused(" contains commands of clients, so only a server can continue it: name another file");
+    }
+    if (const std::string text = differences_of(file.identity(), experiment, first_population); !text.empty()) {
+        return refused(" contains another run: " + text + "; name another file, or continue with the same values");
+    }
+    return std::nullopt;
+}
+
+/// Whether the run is over after the last generation in its file.
+Result<bool> is_over(RunFile& file, std::uint64_t generation) {
+    const auto opening = file.generations().opening_of(generation);
+    if (!opening) {
+        return opening.error();
+    }
+    const auto statistics = file.generations().statistics_of(generation);
+    if (!statistics) {
+        return statistics.error();
+    }
+    if (!*opening || statistics->empty()) {
+        return false;
+    }
+    const parameters::ParameterSet& set = (*opening)->parameters;
+    const auto active = parameters::taking_effect(set.active, set.requested, base::Effect::NextTick);
+    const bool lived = std::ranges::any_of(*statistics, [](const auto& island) { return island.alive_count > 0; });
+    const double best = std::ranges::max(*statistics, {}, &simulation::GenerationStatistics::fitness_best).fitness_best;
+    const evolution::Progress progress =
+        evolution::advance((*opening)->progress, {best, parameters::has_bodies(active) && !lived});
+    return evolution::outcome(progress, active) != evolution::Outcome::Running;
+}
+
+} // namespace
+
+Result<std::unique_ptr<RunRecording>> RunRecording::open(std::string path, const parameters::Experiment& experiment,
+                                                         const simulation::FirstPopulation& first_population,
+                                                         base::Exchange& exchange) {
+    std::unique_ptr<RunRecording> recording{new RunRecording{std::move(path), exchange}};
+    Result<void> examined;
+    base::Packer packer;
+    if (exchange.rank() == 0) {
+        examined = recording->examine(experiment, first_population);
+        packer.add(examined ? std::optional<RefusalCode>{} : std::optional{examined.error().code});
+        const std::string message = examined ? "" : examined.error().message;
+        packer.add_list(std::vector<char>(message.begin(), message.end()));
+    }
+    const std::string from_first = exchange.gather(packer.take()).front();
+    base::Unpacker unpacker{from_first};
+    if (const auto code = unpacker.next<std::optional<RefusalCode>>()) {
+        const auto message = unpacker.next_list<char>();
+        return refusal(*code, {message.begin(), message.end()});
+    }
+    recording->share();
+    return recording;
+}
+
+Result<void> RunRecording::examine(const parameters::Experiment& experiment,
+                                   const simulation::FirstPopulation& first_population) {
+    auto lock = run_file::RunFileLock::take(path_);
+    if (!lock) {
+        return lock.error();
+    }
+    lock_.emplace(*std::move(lock));
+    std::error_code error;
+    if (!exists(std::filesystem::symlink_status(path_, error))) {
+        return {};
+    }
+    const auto file = RunFile::open_checked(path_);
+    if (!file) {
+        return file.error();
+    }
+    if (auto single = run_file::expect_file_with_one_name(path_); !single) {
+        return single;
+    }
+    if (auto whole = check_end_mark(**file); !whole) {
+        return whole;
+    }
+    if (auto refused = refusal_of(**file, experiment, first_population)) {
+        return *std::move(refused);
+    }
+    return read_part(**file);
+}
+
+Result<void> RunRecording::read_part(RunFile& file) {
+    const std::uint64_t last = file.generations().last();
+    seed_ = file.identity().seed;
+    generations_ended_ = file.generations().last_ended();
+    const auto over = is_over(file, last);
+    if (!over) {
+        return over.error();
+    }
+    stored_ = *over ? Stored::Whole : Stored::Part;
+    auto begun = file.generations().beginning_of(last);
+    if (!begun) {
+        return begun.error();
+    }
+    if (!*begun) {
+        return file.damaged("the beginning of generation " + std::to_string(last));
+    }
+    begun_ = **std::move(begun);
+    auto hashes = file.hashes(begun_.opening.moment.tick, file.last_tick());
+    if (!hashes) {
+        return hashes.error();
+    }
+    hashes_ = *std::move(hashes);
+    return {};
+}
+
+std::string RunRecording::found_for(std::uint32_t rank) const {
+    base::Packer packer;
+    packer.add(stored_);
+    if (stored_ == Stored::Nothing) {
+        return packer.take();
+    }
+    static_assert(std::is_trivially_copyable_v<simulation::Opening>);
+    packer.add(seed_);
+    packer.add(begun_.opening);
+    packer.add(generations_ended_);
+    packer.add(!begun_.founders.empty());
+    const std::size_t islands = begun_.born.size();
+    const base::Range share = simulation::share_of(islands, rank, exchange_->size());
+    for (std::size_t island = share.begin; island < share.end; ++island) {
+        simulation::pack(packer, begun_.born[island]);
+        if (!begun_.founders.empty()) {
+            packer.add_list(begun_.founders[island]);
+        }
+    }
+    return packer.take();
+}
+
+void RunRecording::share() {
+    std::vector<std::string> parts(exchange_->size());
+    for (std::uint32_t rank = 1; exchange_->rank() == 0 && rank < exchange_->size(); ++rank) {
+        parts[rank] = found_for(rank);
+    }
+    parts = exchange_->swap(std::move(parts));
+    if (exchange_->rank() == 0) {
+        return;
+    }
+    base::Unpacker unpacker{parts.front()};
+    stored_ = unpacker.next<Stored>();
+    if (stored_ == Stored::Nothing) {
+        return;
+    }
+    seed_ = unpacker.next<base::Seed>();
+    begun_.opening = unpacker.next<simulation::Opening>();
+    generations_ended_ = unpacker.next<std::uint64_t>();
+    const bool founders_known = unpacker.next<bool>();
+    const std::size_t islands = begun_.opening.parameters.active.island_count;
+    begun_.born.resize(islands);
+    begun_.founders.resize(founders_known ? islands : 0);
+    const base::Range share = simulation::share_of(islands, exchange_->rank(), exchange_->size());
+    for (std::size_t island = share.begin; island < share.end; ++island) {
+        begun_.born[island] = simulation::unpack_generation(unpacker);
+        if (founders_known) {
+            begun_.founders[island] = unpacker.next_list<std::uint32_t>();
+        }
+    }
+}
+
+std::optional<base::Seed> RunRecording::seed() const {
+    return stored_ == Stored::Nothing ? std::nullopt : std::optional{seed_};
+}
+
+simulation::World RunRecording::continued_world(const parameters::Experiment& experiment,
+                                                simulation::FirstPopulation first_population,
+                                                base::Executor& executor) {
+    EVOD_ASSERT(stored_ == Stored::Part);
+    return {seed_,
+            begun_.opening,
+            std::exchange(begun_.born, {}),
+            {},
+            executor,
+            std::move(first_population),
+            std::exchange(begun_.founders, {}),
+            experiment.schedule,
+            *exchange_};
+}
+
+Result<void>
+RunRecording::read_statistics(const std::function<void(const std::vector<simulation::GenerationStatistics>&)>& use) {
+    if (stored_ == Stored::Nothing) {
+        return {};
+    }
+    const auto file = RunFile::open_read_only(path_);
+    if (!file) {
+        return file.error();
+    }
+    const std::uint64_t end = continues_at() + (stored_ == Stored::Whole ? 1 : 0);
+    for (std::uint64_t generation = (*file)->identity().first_generation; generation < end; ++generation) {
+        const auto statistics = (*file)->generations().statistics_of(generation);
+        if (!statistics) {
+            return statistics.error();
+        }
+        if (statistics->empty()) {
+            return (*file)->damaged("the statistics of generation " + std::to_string(generation));
+        }
+        use(*statistics);
+    }
+    return {};
+}
+
+Result<void> RunRecording::begin(const simulation::World& world, const simulation::RunId& run_id) {
+    const std::uint64_t generation = world.moment().generation;
+    if (stored_ == Stored::Nothing) {
+        const run_file::GenerationBegun begun = run_file::beginning_of(world);
+        news_ = {world.moment().tick, generation, 0};
+        return exchange_->rank() == 0 ? create(run_id, begun, world) : Result<void>{};
+    }
+    news_ = {hashes_.empty() ? world.moment().tick : hashes_.back().tick, generation, generations_ended_};
+    if (exchange_->rank() != 0) {
+        return {};
+    }
+    auto file = RunFile::open(path_, {});
+    if (!file) {
+        return file.error();
+    }
+    file_ = *std::move(file);
+    file_->begin();
+    return {};
+}
+
+Result<void> RunRecording::create(const simulation::RunId& run_id, const run_file::GenerationBegun& begun,
+                                  const simulation::World& world) {
+    const std::string stem = std::filesystem::path{path_}.stem().string();
+    auto file = RunFile::create(
+        path_, recording::identity_of(simulation::is_world_name(stem) ? stem : "run", run_id, world), {}, {begun});
+    if (!file) {
+        return file.error();
+    }
+    file_ = *std::move(file);
+    file_->begin();
+    return {};
+}
+
+Result<void> RunRecording::follow(const simulation::World& world) {
+    news_.report(world, [this](const auto& record) {
+        if (file_) {
+            file_->write(record);
+        }
+    });
+    if (compared_ < hashes_.size() && hashes_[compared_].tick == world.moment().tick &&
+        hashes_[compared_++].hash != world.hash()) {
+        return refusal(RefusalCode::DataLoss, path_ + " is damaged: the stored state hash of tick " +
+                                                  std::to_string(world.moment().tick) +
+                                                  " differs from that of a new simulation");
+    }
+    return {};
+}
+
+Result<void> RunRecording::commit() {
+    if (!file_) {
+        return {};
+    }
+    if (auto committed = file_->commit(); !committed) {
+        return committed;
+    }
+    if (auto thinned = file_->shrink_if_large(); !thinned) {
+        return thinned;
+    }
+    for (auto more = file_->purge_step(); !more || *more; more = file_->purge_step()) {
+        if (!more) {
+            return more.error();
+        }
+    }
+    run_file::Database& database = file_->database().database;
+    if (database.log_pages() > RunFile::Options{}.log_pages_max) {
+        database.copy_log();
+    }
+    file_->begin();
+    return {};
+}
+
+Result<void> RunRecording::close(const simulation::World& world) {
+    if (!file_) {
+        return {};
+    }
+    file_->write(run_file::EndMark{.tick = std::max(file_->last_tick(), world.moment().tick)});
+    auto committed = file_->commit();
+    file_.reset();
+    return committed;
+}
+
+} // namespace evod::experiments

@@ -1,0 +1,217 @@
+#include "server/experiments/run_recording.h"
+
+#include "server/base/inline_executor.h"
+#include "server/replay/verify.h"
+#include "server/run_file/check.h"
+#include "server/run_file/data_folder.h"
+#include "tests/support/threaded_exchange.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+
+namespace evod::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class RunRecordingTest : public testing::Test {
+  protected:
+    static parameters::Experiment three_generations() {
+        parameters::Experiment experiment;
+        experiment.parameters = recording::small_world();
+        experiment.parameters.island_count = 4;
+        experiment.parameters.generation_limit = 3;
+        experiment.seed = base::Seed{7};
+        return experiment;
+    }
+    base::Result<std::unique_ptr<RunRecording>> open(base::Exchange& exchange = base::no_exchange()) const {
+        return RunRecording::open(path, experiment, {}, exchange);
+    }
+    /// Simulates the run, or the rest of it, in so many slices. Without close(), it ends as if it was killed.
+    void simulate(base::Exchange& exchange, int slices, bool closes) const {
+        base::InlineExecutor executor;
+        const auto opened = open(exchange);
+        ASSERT_TRUE(opened) << to_text(opened.error());
+        RunRecording& run = **opened;
+        ASSERT_NE(run.stored(), Stored::Whole);
+        simulation::World world =
+            run.stored() == Stored::Part
+                ? run.continued_world(experiment, {}, executor)
+                : simulation::World{experiment.parameters, *experiment.seed, {}, experiment.schedule, exchange};
+        ASSERT_TRUE(run.begin(world, {1, 2}));
+        for (int slice = 0; slice < slices && world.outcome() == evolution::Outcome::Running; ++slice) {
+            const std::uint64_t tick = world.moment().tick, step = run_file::ticks_per_hash;
+            world.advance(exchange.size() > 1 ? tick - tick % step + step : tick + 1, executor);
+            ASSERT_TRUE(run.follow(world));
+            if (world.generation_over()) {
+                if (world.outcome() == evolution::Outcome::Running) {
+                    world.turn_over(executor);
+                    ASSERT_TRUE(run.follow(world));
+                }
+                ASSERT_TRUE(run.commit());
+            }
+        }
+        if (closes) {
+            ASSERT_TRUE(run.close(world));
+        }
+    }
+    void simulate(std::uint32_t processes, int slices, bool closes) const {
+        if (processes == 1) {
+            return simulate(base::no_exchange(), slices, closes);
+        }
+        support::ThreadedExchange{processes}.run([&](base::Exchange& exchange) { simulate(exchange, slices, closes); });
+    }
+    /// Expects a file that contains the whole run and equals a new simulation.
+    void expect_whole() const {
+        base::InlineExecutor executor;
+        const auto file = run_file::RunFile::open_checked(path);
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto verified = replay::verify(**file, executor, [](const replay::VerifyProgress&) {});
+        ASSERT_TRUE(verified) << to_text(verified.error());
+        EXPECT_FALSE(verified->difference);
+        EXPECT_EQ(verified->generations, 3u);
+        EXPECT_EQ(verified->hashes, 6u);
+        EXPECT_EQ((*open())->stored(), Stored::Whole);
+    }
+
+    const support::TemporaryFolder folder;
+    const std::string path = folder.path() + "/ring.evod";
+    parameters::Experiment experiment = three_generations();
+};
+
+constexpr int all = 1'000'000;
+
+TEST_F(RunRecordingTest, StoresAWholeRun) {
+    simulate(1, all, true);
+    expect_whole();
+    const auto file = run_file::RunFile::open_read_only(path);
+    EXPECT_EQ((*file)->identity().name, "ring");
+    EXPECT_TRUE((*file)->end_mark()->has_value());
+    EXPECT_FALSE(fs::exists(path + "-lock"));
+}
+
+TEST_F(RunRecordingTest, ContinuesWhatWasKilled) {
+    for (const int ticks : {0, 5, 119, 120, 121, 300}) { // a generation has 120 ticks
+        fs::remove(path);
+        simulate(1, ticks, false);
+        EXPECT_EQ((*open())->continues_at(), static_cast<std::uint64_t>(1 + ticks / 120));
+        simulate(1, all, true);
+        expect_whole();
+    }
+}
+
+TEST_F(RunRecordingTest, ContinuesWhatWasInterrupted) {
+    for (const int ticks : {1, 70, 120, 130}) {
+        fs::remove(path);
+        simulate(1, ticks, true);
+        EXPECT_TRUE(check_end_mark(**run_file::RunFile::open_checked(path))) << "after " << ticks << " ticks";
+        simulate(1, all, true);
+        expect_whole();
+    }
+}
+
+TEST_F(RunRecordingTest, ContinuesWithAnotherNumberOfProcesses) {
+    simulate(1, 130, false);
+    simulate(2, 2, false); // ends the second generation
+    EXPECT_EQ((*open())->continues_at(), 3u);
+    simulate(4, 1, true);
+    simulate(3, all, true);
+    expect_whole();
+}
+
+TEST_F(RunRecordingTest, ReadsTheStatisticsOfEarlierGenerations) {
+    simulate(1, 250, false);
+    const auto run = open();
+    std::vector<std::uint64_t> generations;
+    ASSERT_TRUE((*run)->read_statistics([&](const auto& islands) {
+        EXPECT_EQ(islands.size(), 4u);
+        generations.push_back(islands.front().generation);
+    }));
+    EXPECT_THAT(generations, testing::ElementsAre(1, 2));
+}
+
+TEST_F(RunRecordingTest, RefusesAnotherRun) {
+    simulate(1, 130, true);
+    const auto refusal_with = [&](auto&& change) {
+        parameters::Experiment other = experiment;
+        change(other);
+        const auto run = RunRecording::open(path, other, {}, base::no_exchange());
+        return run ? std::string{} : run.error().message;
+    };
+    EXPECT_THAT(refusal_with([](auto& other) { other.seed = base::Seed{8}; }), HasSubstr("its seed is 7, not 8"));
+    EXPECT_THAT(refusal_with([](auto& other) { other.parameters.food_count = 3; }),
+                HasSubstr("its food_count is 40, not 3"));
+    EXPECT_THAT(refusal_with([](auto& other) {
+                    other.schedule.add(2, {"mutation_chance", 0.5});
+                }),
+                HasSubstr("schedule"));
+    EXPECT_EQ(refusal_with([](auto& other) { other.seed.reset(); }), "");
+    const auto drawn = std::make_shared<const std::vector<evolution::GeneMatrix>>();
+    EXPECT_THAT(RunRecording::open(path, experiment, drawn, base::no_exchange()).error().message,
+                HasSubstr("first population"));
+}
+
+TEST_F(RunRecordingTest, RefusesAFileThatIsBeingWritten) {
+    const auto first = open();
+    ASSERT_TRUE(first);
+    EXPECT_THAT(open().error().message, HasSubstr("another program is writing to it"));
+}
+
+TEST_F(RunRecordingTest, RefusesAFolderThatAServerUses) {
+    const auto server = run_file::DataFolder::open(folder.path());
+    ASSERT_TRUE(server);
+    EXPECT_THAT(open().error().message, HasSubstr("a server uses its folder"));
+}
+
+TEST_F(RunRecordingTest, RefusesOtherFiles) {
+    std::ofstream{path} << "generation,island,best,mean,median\n";
+    EXPECT_THAT(open().error().message, HasSubstr(path));
+    EXPECT_EQ(fs::file_size(path), 35u);
+    EXPECT_FALSE(fs::exists(path + "-lock"));
+}
+
+TEST_F(RunRecordingTest, AllProcessesGetTheSameRefusal) {
+    std::ofstream{path} << "generation,island,best,mean,median\n";
+    std::mutex mutex; // guards `messages`
+    std::map<std::uint32_t, std::string> messages;
+    support::ThreadedExchange{2}.run([&](base::Exchange& exchange) {
+        const auto run = open(exchange);
+        const std::scoped_lock lock{mutex};
+        messages[exchange.rank()] = run ? "" : run.error().message;
+    });
+    EXPECT_NE(messages[0], "");
+    EXPECT_EQ(messages[0], messages[1]);
+}
+
+TEST_F(RunRecordingTest, ReportsAStateThatDiffersFromTheStoredOne) {
+    simulate(1, 70, true);
+    {
+        auto file = run_file::RunFile::open(path, {});
+        ASSERT_TRUE(file);
+        (*file)->begin();
+        (*file)->write(run_file::HashRecord{60, {1, 2}});
+        (*file)->write(run_file::EndMark{.tick = 70});
+        ASSERT_TRUE((*file)->commit());
+    }
+    base::InlineExecutor executor;
+    const auto run = open();
+    simulation::World world = (*run)->continued_world(experiment, {}, executor);
+    ASSERT_TRUE((*run)->begin(world, {1, 2}));
+    base::Result<void> followed;
+    for (int tick = 0; tick < 60; ++tick) {
+        ASSERT_TRUE(followed);
+        world.advance_tick(executor);
+        followed = (*run)->follow(world);
+    }
+    ASSERT_FALSE(followed);
+    EXPECT_THAT(followed.error().message, HasSubstr("the stored state hash of tick 60 differs"));
+}
+
+} // namespace
+} // namespace evod::experiments
