@@ -4,6 +4,7 @@
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/termination.h"
+#include "server/runtime/processes.h"
 
 #include <google/protobuf/stubs/logging.h>
 
@@ -11,6 +12,26 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <string>
+
+namespace evod {
+namespace {
+
+/// Runs the command that the user has given, and returns its exit status. Refuses commands that would do the same work in
+/// each process that mpirun has started.
+int run(command_line::Command& app) {
+    const command_line::Command* const command = app.given_command();
+    const std::string name = command == nullptr ? "" : command->name();
+    if (name != "run" && name != "sweep" && runtime::is_one_of_several()) {
+        command_line::print_error("evod", (command == nullptr ? "the server" : "evod " + name) +
+                                              " cannot share its work among processes: start it without mpirun");
+        return command_line::exit_usage;
+    }
+    return app.run();
+}
+
+} // namespace
+} // namespace evod
 
 int main(int argument_count, char** arguments) {
     using namespace evod::commands;
@@ -46,7 +67,7 @@ int main(int argument_count, char** arguments) {
         return 0;
     }
     const std::optional<int> ended = app.parse(argument_count, arguments);
-    const int status = ended ? *ended : use_instructions_of_environment() ? app.run() : exit_error;
+    const int status = ended ? *ended : use_instructions_of_environment() ? evod::run(app) : exit_error;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()) {
         return status;
     }

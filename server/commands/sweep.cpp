@@ -1,5 +1,7 @@
 // `evod sweep`: runs an experiment many times with different parameters and seeds, on one or several machines.
 #include "proto/command_line/command.h"
+#include "server/base/packing.h"
+#include "server/commands/agreement.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
@@ -9,12 +11,14 @@
 #include "server/experiments/sweep_runner.h"
 #include "server/experiments/trials.h"
 #include "server/network/random_ids.h"
+#include "server/runtime/processes.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <mutex>
 #include <numeric>
@@ -35,11 +39,11 @@ struct SweepOptions {
     std::string file; // path of the sweep file
     // Folder for the results; empty: the name of the sweep file without its extension.
     std::string out;
-    std::size_t jobs = default_thread_count(); // number of simultaneous runs, >= 1
-    bool run_files = false;                    // also write a run file for each run
-    std::optional<std::size_t> array_index;    // run only this cell
-    bool gather = false;                       // only write runs.csv
-    bool dry_run = false;                      // only print cells and seeds
+    std::optional<std::uint32_t> jobs;      // number of simultaneous runs of a process, >= 1
+    bool run_files = false;                 // also write a run file for each run
+    std::optional<std::size_t> array_index; // run only this cell
+    bool gather = false;                    // only write runs.csv
+    bool dry_run = false;                   // only print cells and seeds
 };
 
 /// Prints the progress of all runs to stderr. The threads of the runner call it.
@@ -161,30 +165,61 @@ Refusal missing_runs_refusal(const std::vector<std::size_t>& missing, const Swee
                        " are missing: " + names + (missing.size() > printed_max ? ", …" : ""));
 }
 
-/// Executes the runs and prints their duration. Returns the number of finished runs.
+/// The results of all processes together.
+struct Executed {
+    std::size_t runs = 0; // finished
+    double busy_s = 0;    // processor time
+};
+
+/// Adds up the results of all processes. Returns the same in all of them; after an error in any process, a refusal.
+Result<Executed> add_up(const Result<std::size_t>& made, double busy_s, runtime::Processes& processes) {
+    if (auto agreed = agree(made ? Result<std::string>{""} : made.error(), processes); !agreed) {
+        return agreed.error();
+    }
+    base::Packer packer;
+    packer.add(Executed{.runs = *made, .busy_s = busy_s});
+    Executed sum;
+    for (const std::string& part : processes.gather(packer.take())) {
+        const auto there = base::Unpacker{part}.next<Executed>();
+        sum.runs += there.runs;
+        sum.busy_s += there.busy_s;
+    }
+    return sum;
+}
+
+/// Executes the runs and prints their duration. Each process executes some of them. Returns the number of finished runs.
 Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Sweep& sweep, const SweepFolder& folder,
-                                 const SweepOptions& options) {
+                                 const SweepOptions& options, runtime::Processes& processes) {
+    const std::size_t jobs =
+        options.jobs.value_or(std::max<std::size_t>(default_thread_count() / processes.on_this_machine(), 1));
     std::optional<Progress> progress;
     experiments::SweepRunner runner{sweep,
                                     folder,
-                                    {.jobs = options.jobs,
+                                    {.jobs = jobs,
+                                     .rank = processes.rank(),
+                                     .processes = processes.size(),
                                      .run_files = options.run_files,
                                      .draw_run_id = network::draw_run_id,
                                      .stopped = interrupted,
                                      .on_generation = [&](double work) { progress->generation_done(work); },
                                      .on_run = [&](double work) { progress->run_done(work); }}};
-    progress.emplace(runs.size(), runner.work_of(runs));
+    const std::vector<std::size_t> share = runner.share_of(runs);
+    progress.emplace(share.size(), runner.work_of(share));
     const std::clock_t cpu = std::clock();
-    const auto made = runner.execute(runs);
+    const auto made = runner.execute(share);
+    const auto all = add_up(made, static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC, processes);
     progress->clear();
-    if (made && *made > 0) {
-        const double seconds = progress->seconds(), busy_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
-        const std::size_t jobs = std::min(options.jobs, runs.size());
-        std::printf("%s in %.2f s, %.3g per second; %zu at a time, each %.1f %% busy\n", counted(*made, "run").c_str(),
-                    seconds, static_cast<double>(*made) / seconds, jobs,
-                    100 * busy_s / (seconds * static_cast<double>(jobs)));
+    if (!all) {
+        return all.error();
     }
-    return made;
+    if (processes.rank() == 0 && all->runs > 0) {
+        const double seconds = progress->seconds();
+        const std::size_t at_once = std::min(jobs * processes.size(), runs.size());
+        std::printf("%s in %.2f s, %.3g per second; %zu at a time, each %.1f %% busy\n",
+                    counted(all->runs, "run").c_str(), seconds, static_cast<double>(all->runs) / seconds, at_once,
+                    100 * all->busy_s / (seconds * static_cast<double>(at_once)));
+    }
+    return all->runs;
 }
 
 Result<Sweep> load(const SweepOptions& options) {
@@ -204,45 +239,86 @@ std::vector<std::size_t> run_numbers(const Sweep& sweep, std::optional<std::size
     return runs;
 }
 
+/// Returns what rank 0 passes, in all processes.
+std::vector<std::size_t> of_rank_0(const std::vector<std::size_t>& runs, runtime::Processes& processes) {
+    base::Packer packer;
+    packer.add_list(runs);
+    return base::Unpacker{processes.gather(packer.take()).front()}.next_list<std::size_t>();
+}
+
 /// Executes the runs that are still missing. Returns the exit status.
 Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
-                                 const std::string& out) {
+                                 const std::string& out, runtime::Processes& processes) {
     if (options.run_files) {
         if (auto made = folder.create_run_file_folder(); !made) {
             return made.error();
         }
     }
     const std::vector<std::size_t> wanted = run_numbers(sweep, options.array_index);
-    const std::vector<std::size_t> missing = missing_runs(
-        wanted, folder, options.run_files ? SweepFolder::Wanted::RowsAndRunFile : SweepFolder::Wanted::Rows);
-    const std::string cell = options.array_index ? ", only cell " + std::to_string(*options.array_index) : "";
-    const std::size_t found = wanted.size() - missing.size();
-    std::printf("%s%s%s; into %s\n", plan_text(options, sweep).c_str(), cell.c_str(),
-                found > 0 ? (", " + std::to_string(found) + " finished before").c_str() : "", out.c_str());
-    print_seeds(sweep);
-    std::fflush(stdout);
+    // While one process looks for missing runs, another may already finish some; so all use the list of rank 0.
+    const std::vector<std::size_t> missing =
+        of_rank_0(missing_runs(wanted, folder,
+                               options.run_files ? SweepFolder::Wanted::RowsAndRunFile : SweepFolder::Wanted::Rows),
+                  processes);
+    if (processes.rank() == 0) {
+        const std::string cell = options.array_index ? ", only cell " + std::to_string(*options.array_index) : "";
+        const std::size_t found = wanted.size() - missing.size();
+        std::printf("%s%s%s; into %s\n", plan_text(options, sweep).c_str(), cell.c_str(),
+                    found > 0 ? (", " + std::to_string(found) + " finished before").c_str() : "", out.c_str());
+        print_seeds(sweep);
+        std::fflush(stdout);
+    }
 
     catch_interrupts();
     if (missing.empty()) {
         return 0;
     }
-    const auto made = execute_runs(missing, sweep, folder, options);
+    const auto made = execute_runs(missing, sweep, folder, options, processes);
     if (!made) {
         return made.error();
     }
     if (*made < missing.size()) {
-        std::printf("interrupted: %s left; the same command resumes the sweep\n",
-                    counted(missing.size() - *made, "run").c_str());
+        if (processes.rank() == 0) {
+            std::printf("interrupted: %s left; the same command resumes the sweep\n",
+                        counted(missing.size() - *made, "run").c_str());
+            std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
+        }
         return exit_interrupted;
     }
     return 0;
 }
 
+/// Checks that all processes see the same folder: rank 0 creates a file, for which the others look.
+Result<void> check_shared(const std::string& folder, runtime::Processes& processes) {
+    if (processes.size() == 1) {
+        return {};
+    }
+    const std::string file = folder + "/started-by-rank-0";
+    std::error_code error;
+    const bool created = processes.rank() > 0 || std::ofstream{file}.good();
+    (void)any(!created, processes); // the others look after rank 0 has created the file
+    const bool seen = created && std::filesystem::exists(file, error);
+    const auto agreed = agree(seen ? Result<std::string>{folder}
+                                   : refusal(base::RefusalCode::FailedPrecondition,
+                                             folder + " is not the same folder as that of rank 0: name a folder of a "
+                                                      "shared file system with --out"),
+                              processes);
+    if (processes.rank() == 0) {
+        std::filesystem::remove(file, error);
+    }
+    return agreed;
+}
+
 /// Executes `evod sweep`. Returns the exit status.
-Result<int> run_sweep(const SweepOptions& options) {
+Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes) {
+    if (processes.size() > 1 && (options.dry_run || options.gather || options.array_index)) {
+        return refusal(base::RefusalCode::InvalidArgument,
+                       "--dry-run, --gather and --array-index are for one process: start it without mpirun");
+    }
     const auto sweep = load(options);
-    if (!sweep) {
-        return sweep.error();
+    if (auto agreed = agree(sweep ? Result<std::string>{plan_text(options, *sweep)} : sweep.error(), processes);
+        !agreed) {
+        return agreed.error();
     }
     if (options.dry_run) {
         print_cells(options, *sweep);
@@ -253,8 +329,11 @@ Result<int> run_sweep(const SweepOptions& options) {
         return refusal(base::RefusalCode::NotFound, out + ": no such folder, so there are no results to gather");
     }
     const auto folder = SweepFolder::open(out, *sweep);
-    if (!folder) {
-        return folder.error();
+    if (auto agreed = agree(folder ? Result<std::string>{out} : folder.error(), processes); !agreed) {
+        return agreed.error();
+    }
+    if (auto shared = check_shared(out, processes); !shared) {
+        return shared.error();
     }
     if (options.gather) {
         const auto missing = missing_runs(run_numbers(*sweep, {}), *folder, SweepFolder::Wanted::Rows);
@@ -262,7 +341,7 @@ Result<int> run_sweep(const SweepOptions& options) {
             return missing_runs_refusal(missing, *sweep, *folder);
         }
     } else {
-        const auto status = execute_missing_runs(options, *sweep, *folder, out);
+        const auto status = execute_missing_runs(options, *sweep, *folder, out, processes);
         if (!status || *status != 0) {
             return status;
         }
@@ -272,11 +351,16 @@ Result<int> run_sweep(const SweepOptions& options) {
                     folder->table().c_str());
         return 0;
     }
-    if (auto gathered = gather(*folder); !gathered) {
-        return gathered.error();
+    if (processes.rank() == 0) {
+        if (auto gathered = gather(*folder); !gathered) {
+            return gathered.error();
+        }
     }
     return 0;
 }
+
+/// A process of a sweep waits for the others only at the end, when they may have much more work left.
+constexpr std::chrono::hours others_patience{24 * 365};
 
 } // namespace
 
@@ -293,9 +377,12 @@ void add_sweep_command(command_line::Command& app) {
         "Folder for the results, in which the same command resumes an interrupted sweep; default: the name "
         "of the sweep file without its extension");
     const auto with_jobs =
-        command.add_option("--jobs", &options.jobs, "Number of simultaneous runs, each on one thread")
-            .check(thread_count)
-            .show_default();
+        command
+            .add_option(
+                "--jobs", &options.jobs,
+                "Number of simultaneous runs, each on one thread; default: the number of processors, divided by "
+                "the number of processes that mpirun has started on this machine")
+            .check(thread_count);
     const auto with_run_files =
         command.add_flag("--run-files", &options.run_files, "Also write a run file for each run, in FOLDER/run-files");
     const auto with_array_index =
@@ -319,8 +406,12 @@ void add_sweep_command(command_line::Command& app) {
     command.footer("docs/CLUSTER.md describes sweep files and job arrays. Exit status: 0 all runs are done, 1 error or "
                    "--gather found missing runs, 130 interrupted: the same command resumes the sweep.");
     command.action([&] {
-        const Result<int> status = run_sweep(options);
-        return status ? *status : fail(status.error());
+        const auto processes = runtime::join_processes(others_patience);
+        if (!processes) {
+            return fail(processes.error());
+        }
+        const Result<int> status = run_sweep(options, **processes);
+        return status ? *status : (*processes)->rank() == 0 ? fail(status.error()) : exit_error;
     });
 }
 

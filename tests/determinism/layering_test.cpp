@@ -3,7 +3,7 @@
 // Covered      every .h and .cpp below server/, client/, proto/ and tests/: includes of this project. The core,
 //              server/{base, physics, evolution, parameters, simulation}: headers and calls that would make a run
 //              depend on time, disk, threads, a device or the last bits of the C library. server/{protocol, run_file,
-//              recording, replay}: sockets.
+//              recording, replay}: sockets. All: MPI.
 // Not covered  the contents of library headers; Python and scripts.
 
 #include <gtest/gtest.h>
@@ -371,6 +371,19 @@ TEST(ProtocolAndRunFiles, OpenNoSockets) {
             }
         }
     }
+}
+
+TEST(Mpi, IsUsedByOneSource) {
+    int found = 0;
+    for (const Source& source : sources()) {
+        for (const std::string& include : source.libraries) {
+            if (include.starts_with("mpi") || include.starts_with("boost/mpi")) {
+                EXPECT_EQ(source.path, "server/runtime/mpi_exchange.cpp") << "includes <" << include << ">";
+                ++found;
+            }
+        }
+    }
+    EXPECT_GT(found, 0);
 }
 
 TEST(ClientProtocol, UsesNoSocketThreadOrClock) {
