@@ -11,6 +11,7 @@ import evod
 PACKAGE = pathlib.Path(evod.__file__).parent.parent
 CONFIGURATION = pathlib.Path(__file__).resolve().parents[2] / "client" / "python" / "pyproject.toml"
 PROGRAM = '''
+from concurrent.futures import ProcessPoolExecutor
 from typing import Any, assert_type
 import evod, evod.aio
 from evod.v1 import stream_pb2
@@ -34,6 +35,9 @@ with evod.connect("host", token="") as lab:
 
 assert_type(evod.run({"population_size": 9}, generations=3, selection="random"), evod.RunFile)
 assert_type(evod.sweep("x.json", grid={"mutation_chance": [0.1]}).seeds, tuple[int, ...])
+with ProcessPoolExecutor() as executor:
+    assert_type(evod.sweep("x.json", list=[{"mutation_chance": 0.1}], executor=executor), evod.Sweep)
+    table = executor.submit(evod.run_table, "x.json", seed=1).result().fitness_mean
 assert_type(evod.compare("x.json", {}).differences, tuple[evod.Difference, ...])
 
 async def main() -> None:

@@ -11,7 +11,8 @@
 `evod.local()` starts a private server, for scripts and notebooks. `evod.open_run("x.evod")` reads a run file without a
 server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the messages of the protocol.
 
-`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call.
+`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call. `evod.run_table()` is made for tasks
+of an executor.
 
 evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
 """
@@ -35,7 +36,7 @@ from evod.errors import (
     Unimplemented,
     Violation,
 )
-from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, sweep
+from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
 from evod.generations import Generation, History, Life, Population
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
@@ -87,5 +88,5 @@ __all__ = [
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",
     "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
     "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local", "open_run",
-    "run", "sweep",
+    "run", "run_table", "sweep",
 ]  # fmt: skip

@@ -43,10 +43,15 @@ def values_of(experiment: Experiment) -> dict[str, object]:
 
 
 def write_json(path: str, values: Mapping[str, object]) -> str:
-    """Writes a file that the program evod reads; returns its path. NumPy numbers and arrays become JSON."""
+    """Writes a file with `json_text`; returns its path."""
     with open(path, "w", encoding="utf-8") as file:
-        json.dump(dict(values), file, default=_json_value)
+        file.write(json_text(values))
     return path
+
+
+def json_text(values: Mapping[str, object]) -> str:
+    """Returns the text of a file that the program evod reads. NumPy numbers and arrays become JSON."""
+    return json.dumps(dict(values), default=_json_value)
 
 
 def _json_value(value: object) -> Any:

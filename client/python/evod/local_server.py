@@ -11,7 +11,7 @@ import threading
 from typing import IO, Mapping
 
 from evod.experiment import Experiment, file_of, write_json
-from evod.program import failure, find_program
+from evod.program import environment, failure, find_program
 
 _STOP_TIMEOUT_S = 30  # time for the server to write its runs; after this time it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
@@ -63,7 +63,7 @@ class Server:
             stderr=subprocess.STDOUT,
             text=True,
             errors="replace",
-            env={**os.environ, "FOLDER": temporary},
+            env=environment(FOLDER=temporary),
             start_new_session=True,  # so that Ctrl-C on the terminal does not stop the server
         )
         self.lines: collections.deque[str] = collections.deque(maxlen=1000)

@@ -4,22 +4,25 @@ from __future__ import annotations
 import errno
 import os
 import re
+import selectors
 import shutil
 import subprocess
-import tempfile
-from typing import IO, Callable, Sequence
+from typing import IO, Callable, Container, Iterator, Mapping, Sequence
 
 from evod.errors import Error, FileNotFound, InvalidArgument, ProgramFailed, Violation
 
 _REFUSED = re.compile(r"^\s+(?P<field>.+?)(?: \(line \d+\))?: got (?P<got>.*?), allowed (?P<allowed>.*)$")
 _REFUSED_OPTION = re.compile(r"^(?:evod: )?--(?P<field>[a-z-]+): got (?P<got>.*?), allowed (?P<allowed>.*)$")
-_UNKNOWN = re.compile(r"^\s+(?P<field>.+?)(?: \(line \d+\))?: unknown name(?:; did you mean (?P<allowed>.*)\?)?$")
+_UNKNOWN = re.compile(
+    r"^\s+(?P<field>.+?)(?: \(line \d+\))?: unknown name(?:; did you mean (?P<meant>.*)\?|, allowed (?P<allowed>.*))?$"
+)
 _OPTION = re.compile(r"^--(?P<field>[a-z-]+): must be (?P<allowed>.*), not (?P<got>.*?)$")
 _REFUSED_USE = re.compile(r"^evod [a-z]+: --(?P<field>[a-z-]+): got (?P<got>.*?), allowed (?P<allowed>.*)$")
 _SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 _PROGRESS = re.compile(r"\r *(?:(\d+) of (\d+) runs|(\d+) % of)")
 _CLEARED = re.compile(r"\r[^\r\n]*\x1b\[K")  # a progress line, or its removal
+_OF_MPIRUN = ("OMPI_", "PMIX_", "PMI_")  # the first letters of the variables that mpirun and srun set for their processes
 
 
 def find_program(program: str | os.PathLike[str] | None) -> str:
@@ -29,6 +32,15 @@ def find_program(program: str | os.PathLike[str] | None) -> str:
     if found is None:
         raise FileNotFound(f"the program {name} was not found: add its folder to PATH, or set the variable EVOD to its path")
     return found
+
+
+def environment(**more: str) -> Mapping[str, str]:
+    """Returns the environment for the program: that of this process, without the variables of mpirun, and `more`.
+
+    If mpirun has started this process, these variables would make the program a process of the same job: it would wait for
+    the others, which do not start it.
+    """
+    return {**{name: value for name, value in os.environ.items() if not name.startswith(_OF_MPIRUN)}, **more}
 
 
 def failure(output: str, hidden: str = "") -> Error:
@@ -41,7 +53,7 @@ def failure(output: str, hidden: str = "") -> Error:
         if found := _REFUSED.match(line) or _REFUSED_OPTION.match(line):
             violations.append(Violation(_argument(found["field"]), found["allowed"], found["got"]))
         elif found := _UNKNOWN.match(line):
-            violations.append(Violation(_argument(found["field"]), found["allowed"] or "a known name", "an unknown name"))
+            violations.append(Violation(_argument(found["field"]), found["meant"] or found["allowed"] or "a known name", "an unknown name"))
         elif line.strip() and not _SEE_HELP.match(line):
             line = re.sub(r"^evod: ", "", line.strip())
             line = line.replace(hidden, "") if hidden else line
@@ -58,46 +70,62 @@ def _argument(option: str) -> str:
 class Program:
     """One execution of the program, with its output.
 
+    If this process is killed, the standard output of the program has no reader, and the next line that it prints ends it. So
+    `evod run` ends after at most one generation.
+
     hidden       as for `failure`.
     on_progress  called with the finished share of the work, 0 to 1. The program prints its progress only on a terminal, so
                  its standard error is then a pseudo-terminal.
+    accepted     the statuses of success.
     """
 
     def __init__(
-        self, command: Sequence[str], *, hidden: str = "", on_progress: Callable[[float], None] | None = None
+        self,
+        command: Sequence[str],
+        *,
+        hidden: str = "",
+        on_progress: Callable[[float], None] | None = None,
+        accepted: Container[int] = (0,),
     ) -> None:
-        self._command, self._hidden, self._on_progress = command, hidden, on_progress
+        self._command, self._hidden, self._on_progress, self._accepted = command, hidden, on_progress, accepted
         self._process: subprocess.Popen[bytes] | None = None
         self._stopped = False
 
     def run(self) -> str:
-        """Runs the program and returns its standard output. Raises `failure` if its status is not 0."""
+        """Runs the program and returns its standard output. Raises `failure` if its status is not accepted."""
         reading_end, writing_end = os.openpty() if self._on_progress else os.pipe()
-        printed = ""
-        with os.fdopen(reading_end, "rb", buffering=0) as errors, tempfile.TemporaryFile() as output:
+        output_end, output_writing_end = os.pipe()
+        printed, text = "", b""
+        with os.fdopen(reading_end, "rb", buffering=0) as errors, os.fdopen(output_end, "rb", buffering=0) as output:
             try:
                 self._process = process = subprocess.Popen(
-                    self._command, stdin=subprocess.DEVNULL, stdout=output, stderr=writing_end
+                    self._command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=output_writing_end,
+                    stderr=writing_end,
+                    env=environment(),
                 )
             finally:
                 os.close(writing_end)
+                os.close(output_writing_end)
             try:
                 if self._stopped:
                     process.terminate()
-                while part := _read(errors):
-                    printed += part.decode(errors="replace")
-                    self._report(part.decode(errors="replace"))
+                for file, part in _parts_of(errors, output):
+                    if file is output:
+                        text += part
+                    else:
+                        printed += part.decode(errors="replace")
+                        self._report(part.decode(errors="replace"))
                 process.wait()
             except BaseException:
                 self.stop()
                 raise
-            output.seek(0)
-            text = output.read().decode(errors="replace")
-        if process.returncode != 0:
+        if process.returncode not in self._accepted:
             raise failure(_CLEARED.sub("", printed.replace("\r\n", "\n")), self._hidden)
         if self._on_progress:
             self._on_progress(1.0)
-        return text
+        return text.decode(errors="replace")
 
     def stop(self) -> None:
         """Stops the program if it runs, and waits for its end. Another thread than that of run() may call it."""
@@ -110,6 +138,19 @@ class Program:
         if self._on_progress and (reported := _PROGRESS.findall(part)):
             done, total, percent = reported[-1]
             self._on_progress(int(done) / int(total) if total else int(percent) / 100)
+
+
+def _parts_of(*files: IO[bytes]) -> Iterator[tuple[IO[bytes], bytes]]:
+    """Yields what arrives at the files, until all of them have ended."""
+    with selectors.DefaultSelector() as selector:
+        for file in files:
+            selector.register(file, selectors.EVENT_READ, file)
+        while selector.get_map():
+            for key, _ in selector.select():
+                if part := _read(key.data):
+                    yield key.data, part
+                else:
+                    selector.unregister(key.data)
 
 
 def _read(file: IO[bytes]) -> bytes:

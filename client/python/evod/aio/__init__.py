@@ -12,7 +12,10 @@ allowed outside of functions.
 
 Threads      call everything on the event loop on which connect() or local() was awaited.
 """
-from evod.aio.experiments import compare, run, sweep
+from evod.aio.experiments import compare, run, run_table, sweep
 from evod.aio.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
 
-__all__ = ["Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "local", "run", "sweep"]
+__all__ = [
+    "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "local", "run", "run_table",
+    "sweep",
+]  # fmt: skip

@@ -1,9 +1,10 @@
 """Whole experiments in one call: a run, a parameter sweep, a comparison. evod.experiments is generated from this file.
 
-Sweeps and comparisons are computed by the program evod (`evod sweep`, `evod compare`).
+The program evod computes tables of runs, sweeps and comparisons (`evod run`, `evod sweep`, `evod compare`).
 """
 from __future__ import annotations
 
+import concurrent.futures
 import dataclasses
 import functools
 import os
@@ -11,12 +12,13 @@ import pathlib
 import re
 import shutil
 import tempfile
-from typing import Any, Mapping, Sequence
+from typing import Any, Mapping, Sequence, Union
 
 from evod.aio.lab import local
 from evod.aio.link import blocking_call
-from evod.errors import ProgramFailed, wrong_argument
-from evod.experiment import Experiment, file_of, values_of, with_parameters, write_json
+from evod.errors import InvalidArgument, wrong_argument
+from evod.executor_sweep import RUN_ENDED, ExecutorSweep, Plan, unreadable
+from evod.experiment import Experiment, file_of, json_text, values_of, with_parameters, write_json
 from evod.program import Program, find_program
 from evod.progress import progress_bar
 from evod.run_file import RunFile
@@ -85,8 +87,7 @@ async def run(
             if generations is None:
                 now = await world.get_parameters()
                 if not (now.generation_limit or now.stagnation_limit or now.stop_at_target_fitness or now.stop_at_extinction):
-                    allowed = "a number, or a termination criterion in the experiment, such as generation_limit"
-                    raise wrong_argument("generations", allowed, None)
+                    raise _endless(None)
             with progress_bar("run", generations, progress) as advance:
                 async for generation in world.run(generations):
                     if advance:
@@ -95,6 +96,75 @@ async def run(
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
+
+
+async def run_table(
+    experiment: Experiment = None,
+    *,
+    seed: int | None = None,
+    generations: int | None = None,
+    threads: int = 1,
+    program: str | os.PathLike[str] | None = None,
+    **parameters: object,
+) -> Any:
+    """Runs an experiment without a server and returns its statistics (`evod run --csv`).
+
+    This function is made for tasks: it can be pickled, uses one thread by default, and does not hold Python's global
+    interpreter lock during the run. So any executor can call it, on this machine or on others: those of concurrent.futures,
+    Dask or mpi4py, for example. `evod.run` returns all tables of a run.
+
+    Parameters
+    ----------
+    experiment
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+    seed
+        Seed of the run, 0 to 2**64 - 1. By default the seed in the experiment file, or a random seed.
+    generations
+        The number of generations. By default a termination criterion of the experiment ends the run.
+    threads
+        Number of threads for the simulation. The result does not depend on it.
+    program, **parameters
+        The same as for `evod.run`.
+
+    Returns
+    -------
+    DataFrame
+        One row per generation and island, with the columns of `evod run --csv`.
+
+    Raises
+    ------
+    InvalidArgument
+        An argument or a parameter is not allowed. `violations` lists all of them.
+
+    Examples
+    --------
+    >>> import evod.aio
+    >>> table = await evod.aio.run_table(seed=42, generations=3, selection="tournament")
+    >>> table[["generation", "fitness_best", "fitness_mean"]].round(1)
+       generation  fitness_best  fitness_mean
+    0           1         337.6          71.1
+    1           2         252.8          90.3
+    2           3         322.8          98.6
+    """
+    whole = with_parameters(experiment, parameters)
+    values = values_of(whole)
+    if generations == 0 or generations is None and not any(values.get(name) for name in _TERMINATION):
+        raise _endless(generations)
+    with tempfile.TemporaryDirectory(prefix="evod-run-") as folder:
+        path = whole if isinstance(whole, str) else write_json(os.path.join(folder, "experiment.json"), whole)
+        csv = pathlib.Path(folder) / "run.csv"
+        command = [find_program(program), "run", path, "--csv", str(csv), "--threads", str(threads)]
+        command += [*_option("seed", seed), *_option("generations", generations)]
+        await _output_of(Program(command, hidden=f"{folder}/experiment.json: ", accepted=RUN_ENDED))
+        return read_csv(csv.read_text(encoding="utf-8"))
+
+
+_TERMINATION = ("generation_limit", "stagnation_limit", "stop_at_target_fitness", "stop_at_extinction")
+
+
+def _endless(generations: int | None) -> InvalidArgument:
+    allowed = "a number, or a termination criterion in the experiment, such as generation_limit"
+    return wrong_argument("generations", allowed, generations)
 
 
 # ---- a sweep ----------------------------------------------------------------------------------------------------------
@@ -145,12 +215,13 @@ async def sweep(
     seed: int | None = None,
     generations: int | None = None,
     jobs: int | None = None,
+    executor: concurrent.futures.Executor | None = None,
     out: str | os.PathLike[str] | None = None,
     program: str | os.PathLike[str] | None = None,
     progress: bool | None = None,
     **parameters: object,
 ) -> Sweep:
-    """Runs an experiment many times with different parameters and seeds, on all cores (`evod sweep`).
+    """Runs an experiment many times with different parameters and seeds, on all cores or with an executor (`evod sweep`).
 
     Exactly one of `grid`, `list` and `latin_hypercube` is given. They have the form of the fields of a sweep file
     (docs/CLUSTER.md).
@@ -173,6 +244,11 @@ async def sweep(
         The number of generations of each run. By default a termination criterion of the experiment ends each run.
     jobs
         The number of simultaneous runs. By default one for each processor.
+    executor
+        An executor of concurrent.futures, or of a package with the same interface, such as
+        ``distributed.Client(…).get_executor()`` or ``mpi4py.futures.MPIPoolExecutor()``. Each run is a task, which executes
+        `evod run` with one thread. The workers need this package and the same build of evod, but no shared folder. The
+        result is the same as without an executor, byte for byte. By default one process `evod sweep` executes all runs.
     out
         The folder for the results, in which the same call resumes an interrupted sweep. By default a temporary folder.
     program, progress, **parameters
@@ -182,6 +258,9 @@ async def sweep(
     ------
     InvalidArgument
         An argument or a parameter is not allowed. `violations` lists all of them.
+    ProgramFailed
+        A run failed, or a worker of the executor was lost. The message names the cell and the replicate. The other runs are
+        cancelled; those in progress on this machine are stopped. The same call with `out` resumes the sweep.
 
     Examples
     --------
@@ -191,7 +270,18 @@ async def sweep(
     <sweep of selection: 2 cells of 2 replicates, seed 1>
     >>> result.last.groupby("selection").fitness_mean.mean().round(1).to_dict()
     {'random': 54.3, 'tournament': 167.7}
+    >>> import concurrent.futures
+    >>> with concurrent.futures.ThreadPoolExecutor(2) as threads:
+    ...     same = await evod.aio.sweep(grid={"selection": ["random", "tournament"]}, replicates=2, seed=1, generations=20,
+    ...                                 executor=threads)
+    >>> same.csv == result.csv
+    True
     """
+    if executor is not None and not isinstance(executor, concurrent.futures.Executor):
+        allowed = "an executor of concurrent.futures or with its interface, such as client.get_executor() of Dask"
+        raise wrong_argument("executor", allowed, repr(executor))
+    if executor is not None and jobs is not None:
+        raise wrong_argument("jobs", "no value if an executor is given: it determines how many runs execute at a time", jobs)
     given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations}
     whole = with_parameters(experiment, parameters)
     design: dict[str, object] = {name: value for name, value in given.items() if value is not None}
@@ -199,17 +289,19 @@ async def sweep(
     with tempfile.TemporaryDirectory(prefix="evod-sweep-") as folder:
         path = write_json(os.path.join(folder, "sweep.json"), design)
         results = pathlib.Path(folder if out is None else out)
-        command = [find_program(program), "sweep", path, "--out", str(results), *_option("jobs", jobs)]
+        command = [find_program(program), "sweep", path]
+        plan = Plan.parse(await _output_of(Program([*command, "--dry-run"], hidden=f"{path}: ")))
         with progress_bar("sweep", 1.0, progress) as advance:
-            printed = await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
+            if executor is None:
+                command += ["--out", str(results), *_option("jobs", jobs)]
+                await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
+            else:
+                text = pathlib.Path(whole).read_text(encoding="utf-8") if isinstance(whole, str) else json_text(whole)
+                runs = ExecutorSweep(executor, plan, path=path, experiment=text, generations=generations, results=results,
+                                     program=program, on_progress=advance)  # fmt: skip
+                await _output_of(runs)
         text = (results / "runs.csv").read_text(encoding="utf-8")
-    plan = re.search(r": (\d+) cells? of (\d+) replicates?, \d+ runs?, seed (\d+)", printed)
-    seeds = re.search(r"^seeds of the replicates: ([\d ]+)$", printed, re.MULTILINE)
-    head = re.search(r"^cell,replicate,seed,(.*?,)??generation,", text, re.MULTILINE)
-    if plan is None or seeds is None or head is None:
-        raise _unreadable("sweep")
-    swept = tuple(name for name in (head[1] or "").split(",") if name)
-    return Sweep(int(plan[1]), int(plan[2]), int(plan[3]), tuple(map(int, seeds[1].split())), swept, text)
+    return Sweep(len(plan.cells), len(plan.seeds), plan.seed, plan.seeds, plan.parameters, text)
 
 
 # ---- a comparison -------------------------------------------------------------------------------------------------------
@@ -381,23 +473,19 @@ def _comparison(report: str, csv: str) -> Comparison:
             numbers = {name: float(row[name]) for name in ("first", "last", "rise", "rise_low", "rise_high")}
             worlds.append(ComparedWorld(name=row["name"], **numbers, extinct=int(row["extinct"]), changes=row["changes"]))
         elif not _NOT_RUN.fullmatch(line):
-            raise _unreadable("compare")
+            raise unreadable("compare")
     if others and others[0].startswith("rise of "):
         for line in others.pop(0).splitlines()[2:]:
             found = _DIFFERENCE.fullmatch(line)
             if found is None:
-                raise _unreadable("compare")
+                raise unreadable("compare")
             numbers = {name: float(found[name]) for name in ("difference", "low", "high", "p", "adjusted")}
             g = None if found["g"] == "-" else float(found["g"])
             differences.append(Difference(other=found["other"], g=g, **numbers))
     return Comparison(tuple(worlds), tuple(differences), " ".join(" ".join(others).split()), report, csv)
 
 
-def _unreadable(command: str) -> ProgramFailed:
-    return ProgramFailed(f"cannot read the output of evod {command}: the program and the package must have the same version")
-
-
-async def _output_of(program: Program) -> str:
+async def _output_of(program: Union[Program, ExecutorSweep]) -> str:
     try:
         return await blocking_call(program.run)
     except BaseException:  # a cancelled task does not stop its thread
