@@ -193,6 +193,30 @@ class Output(Folder):
         self.assertIn(" info stopped\n", logged)
         self.assertEqual(printed, "")
 
+    def log_of_start(self, *options):
+        """The lines that a server logs until it listens."""
+        with subprocess.Popen([EVOD, "--port", "0", *options], stderr=subprocess.PIPE, text=True) as server:
+            lines = []
+            for line in server.stderr:
+                lines.append(line)
+                if " listening on " in line:
+                    break
+            server.terminate()
+            waiting.communicate(server)
+        return "".join(lines)
+
+    def test_the_log_names_the_page(self):
+        log = self.log_of_start("--keep-nothing", "--web", "--http-port", "0")
+        self.assertRegex(log, r" info page at http://127\.0\.0\.1:\d+/\n")
+        self.assertNotIn("token", log)
+
+    def test_the_log_says_how_others_open_the_page(self):
+        evod("token", "add", "anna", "--role", "viewer", "--data", self.folder.name)
+        log = self.log_of_start("--data", self.folder.name, "--http-port", "0", "--http-bind", "0.0.0.0", "--http-host", "lab.example")
+        self.assertRegex(log, r" info page at http://lab\.example:\d+/\n.* info other users open "
+                              r"http://lab\.example:\d+/#token=TOKEN; evod token add NAME --role viewer makes a token\n")
+        self.assertIn("without TLS, any machine on the network path to 0.0.0.0", log)
+
     def test_vector_instructions_that_are_unknown_are_an_error(self):
         done = waiting.run([EVOD, "parameters"], capture_output=True, text=True, env=os.environ | {"EVOD_INSTRUCTIONS": "mmx"})
         self.assertEqual(done.returncode, 1)

@@ -1,9 +1,10 @@
 """Real servers whose disk is full for a while: a small tmpfs, and a file that fills it.
 
-    EVOD=… EVOCTL=… MESSAGES=… full_disk_test.py     skipped with status 77 where nothing may be mounted
+    EVOD=… EVOCTL=… MESSAGES=… [MPIRUN=…] full_disk_test.py     skipped with status 77 where nothing may be mounted
 """
 import os
 import pathlib
+import re
 import select
 import sqlite3
 import struct
@@ -21,6 +22,8 @@ import waiting  # noqa: E402
 from recovery_test import Server, c, journal, set_parameter, session_pb2, until, w  # noqa: E402
 from evod.v1 import stream_pb2  # noqa: E402
 
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
+       "OMPI_MCA_plm": "isolated", "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 evoctl, UNAVAILABLE = os.environ["EVOCTL"], 14
 KEEPS_UP, BEHIND = w.STORAGE_STATE_KEEPS_UP, w.STORAGE_STATE_BEHIND
 FAILING, STALLED = w.STORAGE_STATE_FAILING, w.STORAGE_STATE_STALLED
@@ -284,6 +287,30 @@ class FullDisk(unittest.TestCase):
                                r"run files can be written again\n$")
         server.end()
         self.verify()
+
+    def test_a_run_without_a_server_ends_and_continues(self):
+        self.mount(1)
+        run = [recovery.evod, "run", "--set", "generation_s=2", "--set", "population_size=200", "--set", "island_count=2",
+               "--generations", "40", "--threads", "1", "--seed", "3", "--run-file"]
+        mpirun = os.environ.get("MPIRUN", "")
+        for kind, prefix in ("alone", []), ("shared", [mpirun, "-n", "2"]):
+            if prefix and not mpirun:
+                continue
+            file = f"{self.data}/{kind}.evod"
+            with self.subTest(kind):
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **MPI})
+                self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+                self.assertEqual(len(re.findall("^evod: ", done.stderr, re.MULTILINE)), 1, done.stderr)
+                self.assertIn("full", done.stderr)
+                printed = [line for line in done.stdout.splitlines() if line[:10].strip().isdigit()]
+                subprocess.run(["mount", "-o", "remount,size=100m", self.data], check=True)
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **MPI})
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                self.assertIn(f"\ncontinues at generation {len(printed) // 2 + 1}\n", done.stdout)
+                done = waiting.run([recovery.evod, "verify", file], capture_output=True, text=True)
+                self.assertIn("everything agrees: 40 generations", done.stdout + done.stderr)
+                os.remove(file)
+                subprocess.run(["mount", "-o", "remount,size=1m", self.data], check=True)
 
 
 if __name__ == "__main__":

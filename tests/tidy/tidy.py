@@ -45,7 +45,7 @@ BANNED_NAMES = {
     "Readout": "StatusText",
 }
 CODE = (".cpp", ".h", ".c", ".proto", ".py")
-TEXT = (*CODE, ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
+TEXT = (*CODE, ".ts", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
 # The changelog names what was renamed, and this test names what is banned. The rest is not ours to write, or not text.
 WITHOUT_WORDS = re.compile(r"CHANGELOG\.md|LICENSE|tests/tidy/|tests/fuzz/corpus/|proto/vectors/|\.gitignore")
 
@@ -177,10 +177,12 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
     ("server/commands", "parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
+    ("server/simulation", "world_sharing"): "tests/determinism/shared_world_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
-    ("server/network", "breeding_queries description exports http messages random_ids server_metrics transport"):
+    ("server/network", "breeding_queries description exports http http_connection messages random_ids server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
+    ("server/network", "session_sending"): "unit/network/session_test",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
     ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker waiting_record"):
@@ -188,7 +190,9 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/replay", "columns table"): "unit/replay/run_tables_test",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents run_database "
                         "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one file",
+    ("server/run_file", "run_file_lock"): "unit/experiments/run_recording_test and system/run_test: it excludes other programs",
     ("server/runtime", "demand"): "unit/network/streams_test",
+    ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
     ("server/runtime", "replays run_reader seeks shown_replays snapshot"): "unit/runtime/simulation_loop_test and system/past_test",
     ("server/simulation", "commands items_kernels organism_kernels statistics"):
         "unit/simulation/island_test and model_check, with every instruction set",

@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""Makes page.png and page_tablet.png, the images of the page in a browser: docs/images/page.py. Build the preset release first.
+
+They show a world of seed 7. The packages python3-selenium, python3-pil and
+chromium-driver are needed.
+"""
+import base64
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path[:0] = [str(ROOT / "tests/system/web"), str(ROOT / "tests/system")]
+import browser  # noqa: E402
+import waiting  # noqa: E402
+
+BIN = ROOT / "build/release/bin"
+PORT, HTTP_PORT = 7790, 7791
+BYTES_MAX = 200_000
+
+
+def evoctl(*arguments, check=True):
+    return subprocess.run([BIN / "evoctl", "--server", f"127.0.0.1:{PORT}", *arguments], check=check, stdout=subprocess.DEVNULL,
+                          stderr=None if check else subprocess.DEVNULL).returncode == 0
+
+
+def save(page, name):
+    page.run("document.activeElement.blur()")
+    shot = base64.b64decode(page.cdp("Page.captureScreenshot", format="png")["data"])
+    Image.open(io.BytesIO(shot)).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
+    size = (HERE / name).stat().st_size
+    assert size <= BYTES_MAX, f"{name}: {size} bytes, allowed at most {BYTES_MAX}"
+
+
+def show(page, tick, panel, shown):
+    """Runs the world to a tick, pauses it, and shows its healthiest organism and a panel."""
+    page.take_part()
+    page.click("Run" if page.value("evod.app.world().state") == "RUN_STATE_WAITING" else "Resume")
+    page.wait("evod.app.world().snapshot.tick >= arguments[0]", f"tick {tick}", tick)
+    page.wait("evod.app.world().state === 'RUN_STATE_RUNNING'", "the run")
+    page.click("Pause")
+    page.wait("evod.app.world().state === 'RUN_STATE_PAUSED'", "the pause")
+    page.click(page.element(".healthiest .link"))
+    page.panel(panel)
+    page.wait("document.querySelector('.panel-body').innerText.includes(arguments[0])", "the panel", shown)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed", "7",
+                                   "--speed", "max", "--data", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            waiting.until(lambda: evoctl("status", check=False), "the server")
+            evoctl("run", "14", "--wait")
+            evoctl("speed", "1")
+            page = browser.Browser("--lang=en")
+            page.open(f"http://127.0.0.1:{HTTP_PORT}/")
+            show(page, 33_900, "Worlds", "Islands of default")
+            save(page, "page.png")
+            page.cdp("Emulation.setTouchEmulationEnabled", enabled=True)
+            page.cdp("Emulation.setDeviceMetricsOverride", width=820, height=1180, deviceScaleFactor=1, mobile=True)
+            page.open(f"http://127.0.0.1:{HTTP_PORT}/")
+            show(page, 34_080, "Organism", "Parents: ")
+            save(page, "page_tablet.png")
+            page.close()
+        finally:
+            server.terminate()
+            server.wait()
+
+
+if __name__ == "__main__":
+    main()
