@@ -1,7 +1,6 @@
 """Whole experiments: evod.run, evod.sweep and evod.compare give what the programs give."""
 import asyncio
 import io
-import json
 import os
 import pathlib
 import subprocess
@@ -16,31 +15,13 @@ import pandas
 
 import evod
 import evod.aio
+from support import Temporary
 
 SMALL = {"population_size": 12, "generation_s": 2}
 
 
 def program(*arguments, **options):
     return subprocess.run([os.environ["EVOD"], *arguments], check=True, capture_output=True, text=True, **options).stdout
-
-
-class Temporary(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def file(self, name, values):
-        path = self.folder / name
-        path.write_text(json.dumps(values))
-        return path
-
-    def refused(self, call, *fields):
-        with self.assertRaises(evod.InvalidArgument) as raised:
-            call()
-        self.assertEqual(sorted(violation.field for violation in raised.exception.violations), sorted(fields))
-        self.assertNotIn("/tmp/evod-", str(raised.exception))
-        return raised.exception
 
 
 class Run(Temporary):

@@ -1,12 +1,17 @@
-"""Real servers and a relay for the tests of the Python package. The environment variable EVOD names the program."""
+"""Real servers, a relay and a folder of files for the tests of the Python package. The environment variable EVOD names the
+program."""
+import json
 import os
+import pathlib
 import re
 import signal
 import socket
 import subprocess
 import tempfile
 import threading
+import unittest
 
+import evod
 import waiting
 from evod import transport
 from waiting import until
@@ -94,3 +99,26 @@ class Relay:
         self._listener.shutdown(socket.SHUT_RDWR)  # wakes the accepting thread
         self._listener.close()
         self.cut()
+
+
+class Temporary(unittest.TestCase):
+    """A test case with a folder, which is removed at the end of each test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, name, values):
+        """The path of a new JSON file in the folder."""
+        path = self.folder / name
+        path.write_text(json.dumps(values))
+        return path
+
+    def refused(self, call, *fields):
+        """Asserts that the call raises InvalidArgument about exactly these fields. Returns the exception."""
+        with self.assertRaises(evod.InvalidArgument) as raised:
+            call()
+        self.assertEqual(sorted(violation.field for violation in raised.exception.violations), sorted(fields))
+        self.assertNotIn("/tmp/evod-", str(raised.exception))
+        return raised.exception

@@ -3,7 +3,6 @@ import asyncio
 import concurrent.futures
 import contextlib
 import importlib.util
-import json
 import multiprocessing
 import os
 import pathlib
@@ -12,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import unittest
 from unittest import mock
@@ -23,8 +21,8 @@ import evod
 import evod.aio
 import waiting
 from evod import executor_sweep
+from support import PROGRAM, Temporary
 
-PROGRAM = os.environ["EVOD"]
 SMALL = {"population_size": 12, "generation_s": 2}
 GRID = {"mutation_chance": {"from": 0.01, "to": 0.5, "steps": 3, "scale": "log"}, "shuffle_fitness": [True, False]}
 LONG = {"generation_limit": 1_000_000}  # takes an hour
@@ -64,25 +62,6 @@ def is_run(process):
 def runs_below():
     """The processes `evod run` that this process has started, also those of its workers."""
     return list(filter(is_run, waiting.descendants()))
-
-
-class Temporary(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def file(self, name, values):
-        path = self.folder / name
-        path.write_text(json.dumps(values))
-        return path
-
-    def refused(self, call, *fields):
-        with self.assertRaises(evod.InvalidArgument) as raised:
-            call()
-        self.assertEqual(sorted(violation.field for violation in raised.exception.violations), sorted(fields))
-        self.assertNotIn("/tmp/evod-", str(raised.exception))
-        return raised.exception
 
 
 class RunTable(Temporary):
