@@ -505,18 +505,22 @@ class Pages(Case):
                 self.assertEqual(plain_bytes.headers["Content-Encoding"], None)
                 self.assertNotEqual(plain_bytes.headers["ETag"], etag)
 
+    def answers_another_address(self, server):
+        """Asserts that the server answers ten requests from an address without other connections."""
+        for _ in range(10):
+            other = http.client.HTTPConnection("127.0.0.1", server.http_port, source_address=("127.0.0.2", 0))
+            with contextlib.closing(other) as connection:
+                connection.request("GET", "/metrics")
+                answer = connection.getresponse()
+                self.assertEqual((answer.status, bool(answer.read())), (200, True))
+
     def test_silent_connections_lock_no_client_out(self):
         server = self.serve()
         limit = plain.limit("http_connections_max")
 
         def crowd(_):
             silent = [self.raw(server, b"" if number % 2 else b"GET /healthz HT") for number in range(2 * limit)]
-            for _ in range(10):
-                with contextlib.closing(http.client.HTTPConnection("127.0.0.1", server.http_port, source_address=(
-                        "127.0.0.2", 0))) as connection:
-                    connection.request("GET", "/metrics")
-                    answer = connection.getresponse()
-                    self.assertEqual((answer.status, bool(answer.read())), (200, True))
+            self.answers_another_address(server)
             # The connections of the other address made room, the oldest first.
             self.assertEqual(metrics.read_all(silent[0]), b"")
         waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)
@@ -531,12 +535,7 @@ class Pages(Case):
             with metrics.stopped(threads["simulation"]), contextlib.ExitStack() as stack:  # so that answers take SIMULATION_S
                 for _ in range(2 * plain.limit("http_connections_max")):
                     stack.enter_context(contextlib.closing(self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")))
-                for _ in range(10):
-                    with contextlib.closing(http.client.HTTPConnection("127.0.0.1", server.http_port, source_address=(
-                            "127.0.0.2", 0))) as connection:
-                        connection.request("GET", "/metrics")
-                        answer = connection.getresponse()
-                        self.assertEqual((answer.status, bool(answer.read())), (200, True))
+                self.answers_another_address(server)
         waiting.quicker_than(metrics.SIMULATION_S, crowd)
 
     def test_unread_answers_are_discarded(self):
