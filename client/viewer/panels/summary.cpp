@@ -154,8 +154,9 @@ void Summary::build_buttons(Panel::Context& context) {
     if (widgets::button("One generation")) {
         world.commands.run_generations(1);
     }
-    widgets::explain(why_not.empty() ? "Runs until the generation has ended and the next one is bred, then waits."
-                                     : why_not);
+    widgets::explain(why_not.empty()
+                         ? "Runs the generation to its end, then waits. The next tick breeds the next generation."
+                         : why_not);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!control.known());

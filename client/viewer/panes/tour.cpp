@@ -24,7 +24,7 @@ constexpr Callout callouts[] = {
      "Here the organisms live, seek food and avoid poison. The legend in the sidebar explains the marks. Click an "
      "organism to inspect it; the wheel zooms."},
     {"Sidebar/Run or pause", "Run and pause",
-     "Starts and pauses the world, like the space bar. \"One generation\" runs it until the next organisms are bred."},
+     "Starts and pauses the world, like the space bar. \"One generation\" runs it to the end of the generation."},
     {"Sidebar/speed", "Speed",
      "Drag to run the world faster or slower. The key M switches to the maximum speed and back."},
     {"Sidebar/Fitness curve", "Fitness",

@@ -55,7 +55,7 @@ export class RunBar {
     const why_run = why_control || (world.state === "RUN_STATE_TERMINATED" ? "The run has ended." : world.at_end ? "This is the end of the replay." : "");
     set_text(this.#run, world.state === "RUN_STATE_RUNNING" ? "Pause" : world.state === "RUN_STATE_PAUSED" ? "Resume" : "Run");
     set_allowed(this.#run, why_run, "Runs or pauses the world (Space).");
-    set_allowed(this.#generation, why_run, "Runs until the generation has ended and the next one is bred, then waits.");
+    set_allowed(this.#generation, why_run, "Runs the generation to its end, then waits. The next tick breeds the next generation.");
     set_text(this.#replay, world.is_own_replay ? "Live" : "Replay");
     set_allowed(this.#replay, world.is_own_replay ? "" : world.past_problem,
       world.is_own_replay ? "Returns to the live world (P)." : "Shows earlier generations of this run, with a time line (P).");
