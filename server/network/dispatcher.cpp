@@ -69,7 +69,9 @@ runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t sessio
                              .request_name = protocol::name_of(request)};
     const std::string world = protocol::lookup_name(protocol::world_of(request));
     if (request.has_open_replay()) {
-        mail.request = runtime::OpenReplay{.world = world, .at = wanted(request.open_replay().at())};
+        const v1::OpenReplay& open = request.open_replay();
+        mail.request =
+            runtime::OpenReplay{.world = world, .at = open.has_at() ? std::optional{wanted(open.at())} : std::nullopt};
     } else if (request.has_seek()) {
         mail.request = runtime::Seek{.world = world, .to = wanted(request.seek().to())};
     } else {

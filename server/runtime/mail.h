@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -50,7 +51,7 @@ struct FindRun {
 /// A request to open a replay of the run of the world `world`.
 struct OpenReplay {
     std::string world;
-    replay::WantedMoment at; // the first moment to show; without fields: the first moment of the run
+    std::optional<replay::WantedMoment> at; // the moment to show at first; nullopt: the first moment of the run
 };
 /// A request to move a replay to another moment.
 struct Seek {

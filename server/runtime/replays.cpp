@@ -97,10 +97,6 @@ void Replays::open(const OpenReplay& request, const ReplayMail& mail) {
     if (!run) {
         return answer(mail, run.error());
     }
-    std::optional<replay::WantedMoment> at;
-    if (request.at.generation || request.at.tick) {
-        at = request.at;
-    }
     const auto done = [this, mail, name, run = *run](Result<SeekResult> result) {
         if (!result) {
             return answer(mail, within(result.error(), "at"));
@@ -113,7 +109,7 @@ void Replays::open(const OpenReplay& request, const ReplayMail& mail) {
     seeks_.begin(world, {.session = mail.session,
                          .opens = true,
                          .run = *run,
-                         .to = at,
+                         .to = request.at,
                          .known = recorded_until(world, run->run_id()),
                          .done = done});
 }

@@ -114,6 +114,13 @@ class OpenReplay(Case):
             self.assertEqual(refused.status.violations[0].allowed, allowed)
         self.assertEqual(viewer.world(past.name).tick, 421)
 
+    def test_an_empty_moment_opens_the_last_one(self):
+        viewer = self.client(self.served)
+        last = viewer.call(open_replay=c.OpenReplay(world="w", at=at())).world
+        self.assertEqual((last.tick, last.state_hash, last.state), (421, self.hashes[421], w.RUN_STATE_PAUSED))
+        first = viewer.call(open_replay=c.OpenReplay(world="w")).world
+        self.assertEqual((first.tick, first.state_hash), (0, self.hashes[0]))
+
     def test_a_replay_follows_the_running_world(self):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=100))).world.name

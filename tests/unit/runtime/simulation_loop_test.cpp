@@ -934,11 +934,11 @@ TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
     pass_until([&] { return tick("w") > 300; });
     std::size_t answered = 0, opened = 0;
     const auto open = [&](std::uint64_t owner) {
-        ask(OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}}, owner,
-            [&](const base::Result<std::string>& name) {
-                ++answered;
-                opened += name ? 1 : 0;
-            });
+        const replay::WantedMoment at{.generation = {}, .tick = 290};
+        ask(OpenReplay{.world = "w", .at = at}, owner, [&](const base::Result<std::string>& name) {
+            ++answered;
+            opened += name ? 1 : 0;
+        });
     };
     open(1);
     open(1);
@@ -954,6 +954,24 @@ TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
     mailbox.push(SessionEnded{2});
     kept.pass();
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
+}
+
+TEST_F(LoopWithDisk, ReplaysBeginAtTheWantedMoment) {
+    ask_create("w");
+    ask_run("w");
+    pass_until([&] { return tick("w") > 300; });
+    v1::Request pause;
+    pause.mutable_pause()->set_world("w");
+    ask(std::move(pause));
+    const auto opened_at = [&](std::optional<replay::WantedMoment> at) {
+        std::string replay;
+        ask(OpenReplay{.world = "w", .at = at}, 1, [&](const base::Result<std::string>& name) { replay = *name; });
+        pass_until([&] { return !replay.empty(); });
+        return tick(replay);
+    };
+    EXPECT_EQ(opened_at(std::nullopt), 0u);
+    EXPECT_EQ(opened_at(replay::WantedMoment{.generation = {}, .tick = 290}), 290u);
+    EXPECT_EQ(opened_at(replay::WantedMoment{}), tick("w")) << "without fields, it is the last moment";
 }
 
 /// The world begins a generation every six ticks and changes constantly, so that both happen while a seek waits for the

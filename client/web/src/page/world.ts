@@ -331,8 +331,7 @@ export class ViewedWorld {
         const { first_generation = 1, first_tick = 0 } = info.replay ?? {};
         this.#begin = { run_id: info.run_id, generation: Number(first_generation), tick: Number(first_tick) };
         this.#watch(info.name, this.island);
-        const is_last = moment.generation === undefined && moment.tick === undefined; // a replay opens at the first moment
-        if (number !== this.#seek_number || is_last) { // or another moment was asked for meanwhile
+        if (number !== this.#seek_number) { // another moment was asked for meanwhile
           return await this.show_moment(this.#moment);
         }
         await this.#drawn(Number(info.tick ?? 0));
