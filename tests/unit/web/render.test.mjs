@@ -307,13 +307,43 @@ test("a family keeps its colour while it is among the largest", () => {
 test("trails keep three simulated seconds", () => {
   const trails = new render.Trails();
   for (let tick = 0; tick <= 600; tick += 3) {
-    trails.add(snapshot({ tick, simulated_s: tick / 60 }, [[0, tick, 0]]));
+    const { info, organisms } = snapshot({ tick, simulated_s: tick / 60 }, [[0, tick, 0]]);
+    trails.add(info, organisms);
   }
   assert.equal(trails.segments.length, 12);
   assert.ok(Math.abs(trails.segments[0].from_s - 7) < 1e-9);
   assert.deepEqual([...trails.segments[11].lines.subarray(0, 4)], [585, 0, 600, 0]);
-  trails.add(snapshot({ generation: 2 }));
+  trails.add(snapshot({ generation: 2 }).info, snapshot().organisms);
   assert.equal(trails.segments.length, 0);
+});
+
+/** A renderer that draws into `scenes`. */
+function renderer_of(scenes) {
+  const renderer = new render.Renderer({ getContext: (kind) => kind === "2d" ? {} : null });
+  renderer.painter = { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene) };
+  renderer.resize(100, 100, 1);
+  return renderer;
+}
+
+test("large islands have traces where the camera is near", () => {
+  const scenes = [], renderer = renderer_of(scenes), side = 100, count = side * side; // an organism every 10 px
+  const food = (ids) => ({ id: Uint32Array.from(ids), x: Int32Array.from(ids, () => 8000), y: Int32Array.from(ids, () => 8000) });
+  const show = (tick, info) => {
+    const rows = Array.from({ length: count }, (_, i) => [i, 160 * (i % side) + 80 + tick, 160 * Math.floor(i / side) + 80]);
+    renderer.add(snapshot({ tick, simulated_s: tick / 60, width_px: 1000, ...info, items: { food: food(tick < 30 ? [1, 2] : [2]) } }, rows), tick);
+    renderer.draw(tick);
+    const { trails, flashes } = scenes.at(-1);
+    return { lines: trails.segments.reduce((sum, segment) => sum + segment.count, 0), flashes: flashes.length };
+  };
+  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 1 });
+  show(0); // the camera is limited to the island, whose size is not known before
+  show(15);
+  assert.deepEqual(show(30), { lines: 20 * 20, flashes: 1 }); // the region of 200 px around the visible 100 px
+  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 0.1 });
+  assert.deepEqual(show(45), { lines: 0, flashes: 0 });
+  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 1 });
+  show(60);
+  assert.deepEqual(show(75, { tile_px: 512 }), { lines: 0, flashes: 0 }); // a view would not contain so many
 });
 
 test("meals and deaths flash where they happened", () => {

@@ -8,7 +8,8 @@ import { Rectangle, Size, visible_part } from "./camera";
 export const typical_radius_px = 10;
 /** While organisms are too small to see, at most about this many dots of food are drawn, and of poison. */
 export const item_dots_max = 10_000;
-/** Trails and flashes are shown if a snapshot contains fewer organisms than this. */
+/** Trails and flashes are shown if a snapshot contains fewer organisms than this. On an island that is sent whole, those around the
+ *  visible part count. */
 export const traced_max = 5_000;
 /** The greatest number of visible organisms that are streamed and drawn as moving dots. */
 export const dots_max = 30_000;
@@ -19,8 +20,6 @@ export const ranked_max = 2_000;
 export const named_count = 3; // the labels of this many of the healthiest organisms contain their ids
 /** Organisms smaller than this on the screen are streamed as dots. */
 export const dots_radius_pixels = 2;
-/** Islands with at least this many organisms are streamed in part. */
-export const streamed_in_part_min = 5_000;
 
 export function too_small_to_see(camera: Camera): boolean {
   return typical_radius_px * camera.zoom < 1;

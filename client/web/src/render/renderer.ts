@@ -15,13 +15,13 @@ import { Interpolator, KeptSnapshot } from "./interpolator";
 import { healthiest, Label, place_labels } from "./labels";
 import { colours_of, css, default_look, island_colours, packed, ScaleTable, ShapeStyle, styles_of, unknown } from "./look";
 import {
-  dots_radius_pixels, health_scale_max, labels_are_readable, named_count, ranked_max, shown_health, shows_details, streamed_in_part_min, too_many_for_dots,
-  too_small_to_see, traced_max, typical_radius_px,
+  dots_radius_pixels, health_scale_max, labels_are_readable, named_count, ranked_max, shown_health, shows_details, too_many_for_dots, too_small_to_see,
+  traced_max, typical_radius_px,
 } from "./marks";
 import { circle_at } from "./picking";
 import { inside_walls, Painter, Scene } from "./scene";
-import { StreamedRegion, WantedView } from "./streamed_region";
-import { Flashes, Trails } from "./traces";
+import { region_around, StreamedRegion, WantedView } from "./streamed_region";
+import { Flashes, traced, Trails } from "./traces";
 
 export type { WantedView } from "./streamed_region";
 
@@ -59,7 +59,6 @@ export class Renderer {
   private readonly trails = new Trails();
   private readonly flashes = new Flashes();
   private readonly region = new StreamedRegion();
-  private in_part = false; // whether the island is large and therefore streamed in part
   private snapshot_version = 0;
   private population_version = 0;
   private health_max = 100;
@@ -151,23 +150,20 @@ export class Renderer {
 
   /** Shows a snapshot. `now_ms`: performance.now() when it arrived. */
   add(snapshot: Snapshot, now_ms: number): void {
-    const { info } = snapshot;
-    const camera = this.camera();
-    if (this.look.flashes && snapshot.organisms.id.length < traced_max && camera !== null && shows_details(camera)) {
-      this.flashes.add(this.at.latest, snapshot, visible_part(camera, this.canvas_size));
+    const { info, organisms } = snapshot, is_whole = info.tile_px === 0;
+    const camera = this.camera(), visible = camera === null ? null : visible_part(camera, this.canvas_size);
+    const with_trails = traced(snapshot, visible === null ? null : region_around(visible));
+    if (this.look.flashes && with_trails !== null && camera !== null && shows_details(camera)) {
+      this.flashes.add(this.at.latest, snapshot, is_whole && organisms.id.length < traced_max ? null : visible);
     } else {
       this.flashes.clear();
     }
-    if (this.at.latest.info !== null && this.at.latest.info.run_id !== info.run_id) {
-      this.in_part = false;
-    }
-    if (info.tile_px === 0) { // the whole island is streamed
+    if (is_whole) {
       this.whole_overview = null;
     }
     this.at.add(snapshot, now_ms);
-    this.trails.add(snapshot);
+    this.trails.add(info, with_trails);
     this.health_max = health_scale_max(this.at.latest.health, this.at.latest.count);
-    this.in_part ||= Math.max(info.counts.organisms, Number(info.live?.organism_count ?? 0)) >= streamed_in_part_min;
     ++this.snapshot_version;
     this.is_dirty = true;
   }
@@ -187,7 +183,6 @@ export class Renderer {
     this.flashes.clear();
     this.whole_overview = null;
     this.region.forget();
-    this.in_part = false;
     ++this.snapshot_version;
     this.is_dirty = true;
   }
@@ -264,10 +259,10 @@ export class Renderer {
     return this.drawn;
   }
 
-  /** The View to request now (SetView); null if the one returned last is still suitable, or if the island is streamed whole. */
+  /** The View to request now (SetView), if the island is streamed in part; null if the one returned last is still suitable. */
   view_to_request(now_ms: number): WantedView | null {
     const camera = this.camera();
-    if (camera === null || !this.in_part) {
+    if (camera === null) {
       return null;
     }
     const { look } = this;
@@ -346,7 +341,7 @@ export class Renderer {
       canvas, ratio, camera, look, colours, styles: styles_of(look), at, blend, shown_s: at.shown_s(blend), snapshot_version: this.snapshot_version,
       colours_version: this.colours_version, organism_colours: this.organism_colours, health_max: this.health_max,
       selected: latest.index_of(this.selected_id), pointed_at, population: population !== null && shows_details(camera) ? population : null,
-      trails: look.trails && shows_details(camera) && latest.count < traced_max ? this.trails : null,
+      trails: look.trails && shows_details(camera) ? this.trails : null,
       flashes: look.flashes ? this.flashes.all : [], shows: "organisms", density: this.density, density_scale: null, labels: [], minimap: null,
       preview: null,
     };
@@ -369,7 +364,7 @@ export class Renderer {
       scene.labels = this.labels(scene, painter);
     }
     if (look.minimap && !is_whole_island_visible(camera, canvas, island)) {
-      const whole = this.in_part ? this.whole_overview : null;
+      const whole = this.whole_overview;
       const version = whole === null ? this.snapshot_version : -1 - this.whole_overview_version;
       if (this.overview_version !== version) {
         this.overview_version = version;

@@ -1,5 +1,5 @@
-// StreamedRegion: the region and the level of detail in which a large island is streamed. The region is twice as wide and high as the
-// visible part, so that a small pan stays inside it. It changes at most once per 200 ms. As in evoview (island_view.cpp).
+// StreamedRegion: the region and the level of detail in which a large island is streamed. The region is larger than the visible part, so
+// that a small pan stays inside it. It changes at most once per 200 ms. As in evoview (island_view.cpp).
 import type { Camera } from "../messages";
 import { contains, Rectangle, Size, visible_part } from "./camera";
 
@@ -10,6 +10,11 @@ export interface WantedView {
 }
 
 const interval_ms = 200;
+
+/** Returns the region for a visible part: twice as wide and high, with the same middle. */
+export function region_around({ left, top, width, height }: Rectangle): Rectangle {
+  return { left: left - width / 2, top: top - height / 2, width: 2 * width, height: 2 * height };
+}
 
 export class StreamedRegion {
   private region: Rectangle | null = null;
@@ -26,7 +31,7 @@ export class StreamedRegion {
     if ((covered && !is_far_too_large && detail === this.detail) || (region !== null && now_ms - this.changed_ms < interval_ms)) {
       return null;
     }
-    this.region = { left: visible.left - visible.width / 2, top: visible.top - visible.height / 2, width: 2 * visible.width, height: 2 * visible.height };
+    this.region = region_around(visible);
     this.detail = detail;
     this.changed_ms = now_ms;
     return { region: { left_px: this.region.left, top_px: this.region.top, width_px: this.region.width, height_px: this.region.height }, detail };

@@ -6,6 +6,34 @@ import { contains, Rectangle } from "./camera";
 import { continues, KeptSnapshot, Points, with_room } from "./interpolator";
 import { traced_max } from "./marks";
 
+const in_region = { id: new Uint32Array(traced_max), x: new Int32Array(traced_max), y: new Int32Array(traced_max) };
+
+/** Returns the organisms that have trails; null if they are too many. On a large island that is sent whole, they are those in `region`,
+ *  which a View would contain. The result is valid until the next call. */
+export function traced({ info, organisms }: Snapshot, region: Rectangle | null): Items | null {
+  const { id, x, y } = organisms;
+  if (id.length < traced_max) {
+    return organisms;
+  }
+  if (info.tile_px > 0 || region === null) {
+    return null;
+  }
+  const left = region.left * steps_per_px, right = left + region.width * steps_per_px;
+  const top = region.top * steps_per_px, bottom = top + region.height * steps_per_px;
+  let count = 0;
+  for (let i = 0; i < id.length; ++i) {
+    if (x[i]! >= left && x[i]! <= right && y[i]! >= top && y[i]! <= bottom) {
+      in_region.id[count] = id[i]!;
+      in_region.x[count] = x[i]!;
+      in_region.y[count] = y[i]!;
+      if (++count === traced_max) {
+        return null;
+      }
+    }
+  }
+  return { id: in_region.id.subarray(0, count), x: in_region.x.subarray(0, count), y: in_region.y.subarray(0, count) };
+}
+
 export const trail_interval_s = 0.25;
 export const trail_kept_s = 3;
 
@@ -27,13 +55,14 @@ export class Trails {
   private serial = 0;
   private readonly spare: TrailSegment[] = [];
 
-  add({ info, organisms }: Snapshot): void {
-    const { id, x, y } = organisms;
-    const from = this.last_info;
-    if (id.length >= traced_max) {
+  /** organisms: what traced() has returned. */
+  add(info: SnapshotInfo, organisms: Items | null): void {
+    if (organisms === null) {
       this.clear();
       return;
     }
+    const { id, x, y } = organisms;
+    const from = this.last_info;
     if (from !== null && !continues(info, from)) {
       this.clear();
     } else if (from !== null && info.simulated_s - from.simulated_s < trail_interval_s - 1e-6) {
@@ -102,8 +131,10 @@ export class Flashes {
   /** Those that began at most flash_shown_s before the newest snapshot, oldest first. */
   all: Flash[] = [];
 
-  /** Compares the kept snapshot with the next one. `visible`: the part of the island in which both are complete. */
-  add(before: KeptSnapshot, next: Snapshot, visible: Rectangle): void {
+  /** Compares the kept snapshot with the next one.
+   *
+   *  within  the part of the island in which both are complete and flashes are wanted; null: the whole island */
+  add(before: KeptSnapshot, next: Snapshot, within: Rectangle | null): void {
     const now_s = next.info.simulated_s;
     if (before.info === null || !continues(next.info, before.info)) {
       this.all = [];
@@ -114,10 +145,9 @@ export class Flashes {
     if (now_s - before.info.simulated_s > flash_compared_s_max || has_dots) {
       return;
     }
-    const in_part = next.info.tile_px > 0;
     const flash = (kind: Flash["kind"], x: number, y: number, radius_px: number) => {
       const place = { x: x / steps_per_px, y: y / steps_per_px };
-      if (!in_part || contains(visible, place)) {
+      if (within === null || contains(within, place)) {
         this.all.push({ kind, x_px: place.x, y_px: place.y, radius_px, began_s: now_s });
       }
     };
