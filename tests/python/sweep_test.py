@@ -249,17 +249,28 @@ class Failures(Temporary):
                                                            r"sweep \(evod: \d.*, model: \d+\): install the same build"):
             evod.sweep(SMALL, grid={"mutation_chance": [0.1]}, generations=1, executor=executor)
 
+    def interrupted(self, executor, interrupt, before=""):
+        """Starts a sweep in a process of its own. Asserts that it ends after interrupt(process), with its runs."""
+        script = (f"import concurrent.futures, evod\n{before}with {executor} as executor:\n"
+                  f"    evod.sweep({LONG!r}, grid={{'mutation_chance': [0.1, 0.2, 0.3]}}, executor=executor)\n")
+        process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        waiting.until(lambda: len(runs_below()) == 2, "two runs")
+        interrupt(process)
+        _, errors = waiting.communicate(process)
+        self.assertEqual((process.returncode, errors.splitlines()[-1]), (-signal.SIGINT, "KeyboardInterrupt"), errors)
+        self.assertEqual(runs_below(), [])
+
     def test_an_interrupted_sweep_stops_its_runs(self):
-        for executor in ("concurrent.futures.ThreadPoolExecutor(2)",
-                         "concurrent.futures.ProcessPoolExecutor(2)"):
-            script = (f"import concurrent.futures, evod\nwith {executor} as executor:\n"
-                      f"    evod.sweep({LONG!r}, grid={{'mutation_chance': [0.1, 0.2, 0.3]}}, executor=executor)\n")
-            process = subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.PIPE, text=True)
-            waiting.until(lambda: len(runs_below()) == 2, "two runs")
-            process.send_signal(signal.SIGINT)  # only to this process, unlike Ctrl-C on a terminal
-            _, errors = waiting.communicate(process)
-            self.assertEqual((process.returncode, errors.splitlines()[-1]), (-signal.SIGINT, "KeyboardInterrupt"), errors)
-            self.assertEqual(runs_below(), [])
+        for executor in ("concurrent.futures.ThreadPoolExecutor(2)", "concurrent.futures.ProcessPoolExecutor(2)"):
+            # Only to this process, unlike Ctrl-C on a terminal.
+            self.interrupted(executor, lambda process: process.send_signal(signal.SIGINT))
+
+    def test_a_sweep_notices_a_signal_just_before_a_wait(self):
+        # Such a signal does not interrupt the wait. Neither does one that another thread receives.
+        before = ("import signal, sys, threading\n"
+                  "def interrupt():\n    sys.stdin.readline()\n    signal.pthread_kill(threading.get_ident(), signal.SIGINT)\n"
+                  "threading.Thread(target=interrupt, daemon=True).start()\n")
+        self.interrupted("concurrent.futures.ThreadPoolExecutor(2)", lambda process: print(file=process.stdin, flush=True), before)
 
     def test_a_cancelled_task_stops_its_runs(self):
         async def cancel(executor):

@@ -32,7 +32,7 @@ from evod.program import Program, find_program
 #: The statuses of `evod run` if the run ended by itself: by a limit or a target, stagnation, extinction.
 RUN_ENDED = (0, 3, 4)
 _STOP_TIMEOUT_S = 10  # after this time, runs that do not end continue without this process
-_LOOK_S = 0.2  # how often a worker checks whether the sweep has been stopped
+_LOOK_S = 0.2  # how often a worker checks whether the sweep has been stopped, and the sweep whether it has been interrupted
 
 _PLAN = re.compile(r": (\d+) cells? of (\d+) replicates?, \d+ runs?, seed (\d+)$")
 _MISSING = re.compile(r"\d+ of \d+ runs? are missing: ")
@@ -261,7 +261,7 @@ class ExecutorSweep:
                 self._submit(str(running), futures)
                 for count in range(1, len(futures) + 1):
                     self._report(count - 1, len(futures))
-                    future = self._ended.get()
+                    future = self._next_ended()
                     if future is None:
                         raise concurrent.futures.CancelledError
                     run = futures[future]
@@ -272,6 +272,15 @@ class ExecutorSweep:
                 left = [future for future in futures if not future.cancel()]
                 concurrent.futures.wait(left, _STOP_TIMEOUT_S)
                 raise
+
+    def _next_ended(self) -> concurrent.futures.Future[RunResult] | None:
+        """Waits for the end of a run and returns its future; returns None after stop().
+
+        A signal that arrives just before a wait does not interrupt it, so each wait is short: Ctrl-C then has its effect.
+        """
+        while True:
+            with contextlib.suppress(queue.Empty):
+                return self._ended.get(timeout=_LOOK_S)
 
     def _submit(self, running: str, futures: dict[concurrent.futures.Future[RunResult], SweepRun]) -> None:
         program = None if self._given is None else os.fspath(self._given)
