@@ -286,7 +286,7 @@ class Failures(Temporary):
         self.assertEqual(runs_below(), [])
 
 
-@unittest.skipUnless(has("dask", "distributed"), "Dask is not installed: python3-distributed on Debian")
+@unittest.skipUnless(has("dask", "distributed"), "Dask is not installed: scripts/setup mpi")
 class Dask(Temporary):
     def test_a_cluster_gives_the_same_table(self):
         import distributed
@@ -315,7 +315,7 @@ if __name__ == "__main__":
 """
 
 
-@unittest.skipUnless(has("mpi4py") and shutil.which("mpirun"), "mpi4py is not installed: python3-mpi4py on Debian")
+@unittest.skipUnless(has("mpi4py") and shutil.which("mpirun"), "mpi4py is not installed: scripts/setup mpi")
 class Mpi(Temporary):
     def test_processes_of_mpirun_give_the_same_table(self):
         arguments = {"grid": GRID, "replicates": 2, "seed": 4, "generations": 2}
