@@ -227,6 +227,14 @@ def untested_sources(names, text_of):
                f"UNIT_TESTED_ELSEWHERE: {folder}/{stem}.cpp has a unit test or does not exist: remove the exception")
 
 
+def unbuilt_tests(names, text_of):
+    """Tests in C++ that no CMakeLists.txt builds. Arguments as in untested_sources()."""
+    built = "\n".join(text_of(name) for name in names if pathlib.Path(name).name == "CMakeLists.txt")
+    for name in sorted(names):
+        if re.match(r"tests/.*_test\.cpp$", name) and not re.search(rf"\b{re.escape(pathlib.Path(name).name)}\b", built):
+            yield pathlib.Path(name), 1, "no CMakeLists.txt builds this test: add it to the sources of a test program"
+
+
 def findings(root):
     """(path, line, what is wrong) of every rule and every tracked file below `root`."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout.decode()
@@ -244,6 +252,7 @@ def findings(root):
                 continue
             yield from rule(path, text)
     yield from untested_sources(names, lambda name: (root / name).read_text())
+    yield from unbuilt_tests(names, lambda name: (root / name).read_text())
 
 
 if __name__ == "__main__":

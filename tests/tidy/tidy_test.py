@@ -73,6 +73,12 @@ class Rules(unittest.TestCase):
         self.assertEqual(untested({"tests/unit/network/a_test.cpp": ""}, [("server/network", "a")]),
                          ["tests/tidy/tidy.py"])
 
+    def test_every_test_is_built(self):
+        texts = {"tests/unit/CMakeLists.txt": "evod_test(unit_a SOURCES a_test.cpp aa_test.cpp)"}
+        names = [*texts, "tests/unit/a_test.cpp", "tests/unit/b_test.cpp", "tests/unit/support.cpp"]
+        self.assertEqual([str(path) for path, _, _ in tidy.unbuilt_tests(names, lambda name: texts.get(name, ""))],
+                         ["tests/unit/b_test.cpp"])
+
 
 if __name__ == "__main__":
     unittest.main()
