@@ -246,14 +246,29 @@ void resize(IslandState& island, const IslandShape& shape) {
     island.poison.resize(shape.poison);
 }
 
+/// The number of genes of each organism, if the state contains genes or their statistics.
+std::uint32_t gene_count_of(const simulation::WorldState& state) {
+    if (!state.ended.empty()) {
+        return static_cast<std::uint32_t>(state.ended.front().genes.size());
+    }
+    for (const IslandState& island : state.islands) {
+        if (!island.placed.empty()) {
+            return static_cast<std::uint32_t>(island.placed.front().genes.size());
+        }
+    }
+    return 0;
+}
+
 } // namespace
 
 std::string pack(const simulation::WorldState& state) {
+    const std::uint32_t gene_count = gene_count_of(state);
     // The shapes include the placed entities.
     std::vector<IslandShape> shapes;
     std::vector<PlacedCounts> placed;
     for (const IslandState& island : state.islands) {
-        shapes.push_back({.organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
+        shapes.push_back({.genes = gene_count,
+                          .organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
                           .has_bodies = !island.organisms.empty(),
                           .has_headings = !island.headings.empty(),
                           .crates = static_cast<std::uint32_t>(island.crates.size()),

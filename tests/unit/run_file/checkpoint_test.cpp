@@ -86,6 +86,31 @@ TEST(CheckpointState, ContainsFitnessFromClients) {
     EXPECT_FALSE(read_columns("\x08", shapes, again)) << "an unknown flag";
 }
 
+TEST(CheckpointState, ContainsChromosomesOfAnyLength) {
+    base::InlineExecutor executor;
+    parameters::Parameters parameters = small_world();
+    parameters.controller = evolution::Controller::Network;
+    simulation::World world{parameters, {7}};
+    const auto expect_the_same_again = [&] {
+        const simulation::WorldState state = world.state(executor);
+        simulation::WorldState again{.moment = {}, .parameters = state.parameters, .islands = {}, .ended = {}};
+        ASSERT_TRUE(unpack(pack(state), world.shapes(), again));
+        EXPECT_EQ(again.islands, state.islands);
+        ASSERT_EQ(again.ended.size(), state.ended.size());
+        for (std::size_t island = 0; island < state.ended.size(); ++island) {
+            EXPECT_EQ(again.ended[island].genes.back().mean, state.ended[island].genes.back().mean);
+        }
+    };
+    const evolution::ConstGenes genes = evolution::column(world.island(0).born().genes, 0);
+    ASSERT_GT(genes.size(), evolution::body_gene_count);
+    (void)world.place({.world = "w", .organisms = {{.x_px = 50, .y_px = 50, .genes = {genes.begin(), genes.end()}}}});
+    expect_the_same_again();
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+    }
+    expect_the_same_again();
+}
+
 TEST_F(CheckpointTest, TheNewestThreeAreKept) {
     RecordedRun run{data, *thread};
     for (int count = 0; count < 6; ++count) {
