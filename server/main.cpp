@@ -17,14 +17,14 @@
 namespace evod {
 namespace {
 
-/// Runs the command that the user has given, and returns its exit status. Refuses commands that would do the same work in
-/// each process that mpirun has started.
+/// Runs the command that the user has given, and returns its exit status. Refuses subcommands that would do the same work
+/// in each process that mpirun has started.
 int run(command_line::Command& app) {
     const command_line::Command* const command = app.given_command();
     const std::string name = command == nullptr ? "" : command->name();
-    if (name != "run" && name != "sweep" && runtime::is_one_of_several()) {
-        command_line::print_error("evod", (command == nullptr ? "the server" : "evod " + name) +
-                                              " cannot share its work among processes: start it without mpirun");
+    if (command != nullptr && name != "run" && name != "sweep" && runtime::is_one_of_several()) {
+        command_line::print_error("evod",
+                                  "evod " + name + " cannot share its work among processes: start it without mpirun");
         return command_line::exit_usage;
     }
     return app.run();

@@ -25,9 +25,16 @@ class Exchange {
     /// Returns the parts of all ranks, by rank.
     virtual std::vector<std::string> gather(std::string part) = 0;
     /// Returns the parts of all ranks, by rank, on rank 0; an empty vector on all others.
-    virtual std::vector<std::string> collect(std::string part) = 0;
+    std::vector<std::string> collect(std::string part) {
+        std::vector<std::string> parts(size());
+        parts.front() = std::move(part);
+        parts = swap(std::move(parts));
+        return rank() == 0 ? std::move(parts) : std::vector<std::string>{};
+    }
     /// Sends parts[r] to rank r. Returns what each rank has sent to this one, by rank.
     virtual std::vector<std::string> swap(std::vector<std::string> parts) = 0;
+    /// Returns the bytes that rank 0 passes.
+    virtual std::string broadcast(std::string from_first) = 0;
 };
 
 /// The exchange of a process that simulates its worlds alone.
@@ -35,13 +42,9 @@ class NoExchange final : public Exchange {
   public:
     std::uint32_t rank() const override { return 0; }
     std::uint32_t size() const override { return 1; }
-    std::vector<std::string> gather(std::string part) override { return collect(std::move(part)); }
-    std::vector<std::string> collect(std::string part) override {
-        std::vector<std::string> all;
-        all.push_back(std::move(part));
-        return all;
-    }
+    std::vector<std::string> gather(std::string part) override { return {std::move(part)}; }
     std::vector<std::string> swap(std::vector<std::string> parts) override { return parts; }
+    std::string broadcast(std::string from_first) override { return from_first; }
 };
 
 /// Returns the exchange of worlds that no other process shares.

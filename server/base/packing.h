@@ -25,12 +25,16 @@ class Packer {
     void add_values(std::span<const T> values) {
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
     }
-    /// Appends the number of values, then the values.
-    template <class T>
-    void add_list(const std::vector<T>& values) {
+    /// Appends the number of values, then the values, which lie side by side in memory: std::vector, base::Column,
+    /// std::string.
+    template <class Values>
+    void add_list(const Values& values) {
         add(std::uint64_t{values.size()});
-        add_values(std::span<const T>{values});
+        add_values(std::span<const typename Values::value_type>{values});
     }
+
+    /// Appends what another packer has written.
+    void append(Packer other) { bytes_ += other.bytes_; }
 
     std::string take() { return std::move(bytes_); }
 
@@ -60,11 +64,23 @@ class Unpacker {
     }
     template <class T>
     std::vector<T> next_list() {
+        std::vector<T> values;
+        next_list(values);
+        return values;
+    }
+    /// Replaces the contents of `values`.
+    template <class Values>
+    void next_list(Values& values) {
+        using T = typename Values::value_type;
         const auto count = next<std::uint64_t>();
         EVOD_ASSERT(count <= rest_.size() / sizeof(T));
-        std::vector<T> values(count);
+        values.resize(count);
         next_values(std::span<T>{values});
-        return values;
+    }
+    std::string next_text() {
+        std::string text;
+        next_list(text);
+        return text;
     }
     bool empty() const { return rest_.empty(); }
 

@@ -1,21 +1,17 @@
-// `evod run`: runs one experiment from beginning to end without a network. Processes that mpirun has started share its
-// islands; rank 0 prints and writes files.
+// `evod run`: runs one experiment from beginning to end without a network.
 #include "proto/command_line/command.h"
-#include "server/base/packing.h"
-#include "server/commands/agreement.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
 #include "server/commands/interview.h"
 #include "server/commands/progress_line.h"
 #include "server/commands/report.h"
+#include "server/commands/shared_worlds.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/experiments/run_recording.h"
 #include "server/network/random_ids.h"
 #include "server/replay/columns.h"
-#include "server/run_file/build.h"
-#include "server/runtime/processes.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
 
@@ -45,18 +41,17 @@ struct RunOptions {
     std::string population; // path of a CSV file; empty: draw the first generation at random
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> generations; // overrides generation_limit
-    std::optional<std::uint32_t> threads;
-    std::uint32_t rank_timeout_s = 60;
-    std::vector<std::string> changes; // texts of the form "name=value"
-    std::string csv;                  // path; empty: write no CSV file
-    std::string run_file;             // path; empty: write no run file
+    std::vector<std::string> changes;         // texts of the form "name=value"
+    std::string csv;                          // path; empty: write no CSV file
+    std::string run_file;                     // path; empty: write no run file
     bool ask = false;
+    SharingOptions sharing;
 };
 
 /// Exit statuses of `evod run`, besides exit_error, exit_interrupted, and 0 for a limit or target that was reached.
 constexpr int exit_value_not_allowed = 2, exit_stagnated = 3, exit_extinct = 4;
 
-/// Ticks that processes simulate before they exchange results, and learn that one of them was interrupted.
+/// Ticks that processes simulate before they exchange results.
 constexpr std::uint64_t ticks_per_slice = 240;
 
 double seconds_since(Clock::time_point start) {
@@ -136,64 +131,22 @@ base::Result<Beginning> beginning_of(const RunOptions& options) {
     return Beginning{*std::move(experiment), *std::move(first_population)};
 }
 
-/// Everything that must be the same in all processes of a run, as text.
-std::string text_of(const Beginning& beginning) {
-    const parameters::Experiment& experiment = beginning.experiment;
-    base::StateHash genes;
-    for (std::size_t island = 0; beginning.first_population && island < beginning.first_population->size(); ++island) {
-        const evolution::GeneMatrix& there = (*beginning.first_population)[island];
-        for (Eigen::Index gene = 0; gene < there.size(); ++gene) {
-            genes += base::EntityHash{0, static_cast<std::uint64_t>(gene)}.add(there(gene), 0.0F).add(island).finish();
-        }
-    }
-    return run_file::build_text() + "\n" + parameters::to_experiment_text(experiment.parameters) +
-           parameters::to_schedule_text(experiment.schedule) + base::to_text(genes) +
-           (experiment.seed ? std::to_string(experiment.seed->value) : "");
-}
-
-/// Checks that all processes begin the same run. A refusal is the same in all of them.
-base::Result<Beginning> agree_on(base::Result<Beginning> mine, const RunOptions& options,
-                                 runtime::Processes& processes) {
-    const auto agreed =
-        agree(mine ? base::Result<std::string>{text_of(*mine) + "\n" + options.run_file} : mine.error(), processes);
-    if (!agreed) {
-        return agreed.error();
-    }
-    if (const std::uint32_t islands = mine->experiment.parameters.island_count; processes.size() > islands) {
-        return refusal(base::RefusalCode::InvalidArgument,
-                       std::to_string(processes.size()) + " processes cannot share " + std::to_string(islands) +
-                           (islands == 1 ? " island" : " islands") +
-                           ": start at most one process per island, or set island_count");
-    }
-    return mine;
-}
-
 using Recording = std::unique_ptr<experiments::RunRecording>; // nullptr: the run has no file
 
-/// Opens the file of the run, and sets the seed of the run if it has none: to the stored one, or to one that rank 0 draws.
-base::Result<Recording> open_recording(const RunOptions& options, Beginning& beginning, runtime::Processes& processes) {
+/// Opens the file of the run, and sets the seed of the run if it has none: to the stored one, or to a random one.
+base::Result<Recording> open_recording(const RunOptions& options, Beginning& beginning) {
     parameters::Experiment& experiment = beginning.experiment;
     Recording recording;
     if (!options.run_file.empty()) {
-        auto opened =
-            experiments::RunRecording::open(options.run_file, experiment, beginning.first_population, processes);
+        auto opened = experiments::RunRecording::open(options.run_file, experiment, beginning.first_population);
         if (!opened) {
-            base::Refusal refused = opened.error();
-            refused.code = base::RefusalCode::FailedPrecondition; // a file is at fault, not a value of the command line
-            return refused;
+            return opened.error();
         }
         recording = *std::move(opened);
         experiment.seed = recording->seed() ? recording->seed() : experiment.seed;
     }
-    base::Packer packer;
-    packer.add(network::draw_seed());
-    const base::Seed drawn = base::Unpacker{processes.gather(packer.take()).front()}.next<base::Seed>();
-    experiment.seed = experiment.seed.value_or(drawn);
+    experiment.seed = experiment.seed.value_or(network::draw_seed());
     return recording;
-}
-
-std::size_t threads_of(const RunOptions& options, const runtime::Processes& processes) {
-    return options.threads.value_or(std::max<std::size_t>(default_thread_count() / processes.on_this_machine(), 1));
 }
 
 std::string progress_of(const simulation::World& world) {
@@ -251,7 +204,7 @@ int print_end(const simulation::World& world, const ComputationTime& cost) {
     return status;
 }
 
-/// The output of a run: the table on stdout, and the CSV file. Only rank 0 has one.
+/// The output of a run: the table on stdout, and the CSV file.
 class Output {
   public:
     base::Result<void> open(const RunOptions& options, const parameters::Experiment& experiment,
@@ -328,18 +281,16 @@ class Output {
     std::optional<replay::Table> table_;
 };
 
-/// A run while it is simulated. All processes call its functions in the same order.
+/// A run while it is simulated.
 struct Simulation {
     simulation::World world;
     base::Executor& executor;
-    runtime::Processes& others;
     experiments::RunRecording* recording; // nullptr: the run has no file
     Output& output;
     ComputationTime& cost;
-    base::Result<void> written = {}; // on rank 0: the first error of a file
+    base::Result<void> written = {}; // the first error of a file
     ProgressLine progress = {};
 
-    bool prints() const { return others.rank() == 0; }
     /// Calls write() unless there was an error, and keeps its error.
     template <class Write>
     void try_to(Write&& write) {
@@ -349,8 +300,7 @@ struct Simulation {
     }
     void follow() {
         if (recording != nullptr) {
-            const auto followed = recording->follow(world);
-            try_to([&] { return followed; });
+            try_to([&] { return recording->follow(world); });
         }
     }
     void turn_over() {
@@ -359,11 +309,11 @@ struct Simulation {
         cost.turnover_s += seconds_since(began);
         follow();
     }
-    /// The tick before which the processes exchange results.
+    /// The tick up to which the world advances at once.
     std::uint64_t next_stop() const {
         const std::uint64_t tick = world.moment().tick;
         const std::uint64_t slice = recording != nullptr ? run_file::ticks_per_hash : ticks_per_slice;
-        return others.size() > 1 ? tick - tick % slice + slice : tick + 1;
+        return world.is_shared() ? tick - tick % slice + slice : tick + 1;
     }
     /// Simulates until the generation ends. Returns whether the run has to stop.
     bool advance() {
@@ -374,10 +324,8 @@ struct Simulation {
             world.advance(next_stop(), executor);
             cost.organism_ticks += alive * (world.moment().tick - before);
             follow();
-            if (prints()) {
-                progress.show([&] { return progress_of(world); });
-            }
-            stopped = any(interrupted() || !written, others);
+            progress.show([&] { return progress_of(world); });
+            stopped = interrupted() || !written;
         } while (!stopped && !world.generation_over());
         cost.tick_s += seconds_since(began);
         world.take_events();
@@ -391,14 +339,13 @@ struct Simulation {
             }
             try_to([&] { return recording->commit(); });
         }
-        if (prints()) {
-            progress.clear();
-            try_to([&] { return output.write(world); });
-        }
-        return any(!written, others);
+        progress.clear();
+        try_to([&] { return output.write(world); });
+        return !written;
     }
     /// Simulates until the run ends, is interrupted or cannot be written.
-    void run(bool stopped) {
+    void run() {
+        bool stopped = !written;
         while (!stopped && world.outcome() == evolution::Outcome::Running) {
             if (world.generation_over()) {
                 turn_over();
@@ -418,61 +365,76 @@ struct Simulation {
 
 /// Creates the world of a run, or continues the stored one.
 simulation::World make_world(const Beginning& beginning, const Recording& recording, base::Executor& executor,
-                             base::Exchange& others) {
+                             simulation::Leader& leader) {
     const auto& [experiment, first_population] = beginning;
     if (recording && recording->stored() == experiments::Stored::Part) {
-        return recording->continued_world(experiment, first_population, executor);
+        return recording->continued_world(experiment, first_population, executor, leader);
     }
-    return {experiment.parameters, *experiment.seed, first_population, experiment.schedule, others};
+    return {experiment.parameters, *experiment.seed, first_population, experiment.schedule, &leader};
+}
+
+base::Result<void> fewer_processes_than_islands(std::uint32_t processes, std::uint32_t islands) {
+    if (processes <= islands) {
+        return {};
+    }
+    return refusal(base::RefusalCode::InvalidArgument,
+                   std::to_string(processes) + " processes cannot share " + std::to_string(islands) +
+                       (islands == 1 ? " island" : " islands") +
+                       ": start at most one process per island, or set island_count");
 }
 
 /// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
-int run(const RunOptions& options) {
-    const auto processes = runtime::join_processes(std::chrono::seconds{options.rank_timeout_s});
-    if (!processes) {
-        return fail(processes.error());
+int run(const RunOptions& options, const SharedWork& shared) {
+    if (options.ask && shared.processes.size() > 1) {
+        fail("--ask: several processes cannot ask");
+        return exit_value_not_allowed;
     }
-    runtime::Processes& others = **processes;
-    const bool prints = others.rank() == 0;
-    const auto failed = [prints](const base::Refusal& refused) {
-        const int status = prints ? fail(refused) : exit_error;
-        return refused.code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
-    };
-    if (options.ask && others.size() > 1) {
-        return failed(refusal(base::RefusalCode::InvalidArgument, "--ask: several processes cannot ask"));
-    }
-    auto beginning = agree_on(beginning_of(options), options, others);
-    if (!beginning) {
-        return failed(beginning.error());
+    auto beginning = beginning_of(options);
+    base::Result<void> sound =
+        beginning ? fewer_processes_than_islands(shared.processes.size(), beginning->experiment.parameters.island_count)
+                  : beginning.error();
+    if (!sound) {
+        const int status = fail(sound.error());
+        return sound.error().code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
     }
     catch_interrupts();
-    const auto recording = open_recording(options, *beginning, others);
+    const auto recording = open_recording(options, *beginning);
     if (!recording) {
-        return failed(recording.error());
+        return fail(recording.error());
     }
 
     Output output;
-    base::Result<void> written =
-        prints ? output.open(options, beginning->experiment, *recording) : base::Result<void>{};
-    const bool complete = *recording && (*recording)->stored() == experiments::Stored::Whole;
-    if (any(!written, others) || complete) {
-        return written ? (complete ? 0 : exit_error) : fail(written.error());
+    if (auto opened = output.open(options, beginning->experiment, *recording); !opened) {
+        return fail(opened.error());
+    }
+    if (*recording && (*recording)->stored() == experiments::Stored::Whole) {
+        return 0;
     }
     ComputationTime cost;
     const auto start = Clock::now();
-    const std::unique_ptr<base::Executor> executor = runtime::make_executor(threads_of(options, others));
-    Simulation simulation{
-        make_world(*beginning, *recording, *executor, others), *executor, others, recording->get(), output, cost};
+    const std::unique_ptr<base::Executor> executor = runtime::make_executor(shared.threads);
+    Simulation simulation{make_world(*beginning, *recording, *executor, shared.leader), *executor, recording->get(),
+                          output, cost};
     cost.start_s = seconds_since(start);
     if (*recording) {
         simulation.written = (*recording)->begin(simulation.world, network::draw_run_id());
     }
-    simulation.run(any(!simulation.written, others));
+    simulation.run();
     if (!simulation.written) {
         return fail(simulation.written.error());
     }
-    cost.exchange_s = others.exchange_s();
-    return prints ? print_end(simulation.world, cost) : 0;
+    cost.exchange_s = shared.processes.exchange_s();
+    return print_end(simulation.world, cost);
+}
+
+/// What was started, as text.
+std::string text_of(const RunOptions& options) {
+    std::string text = "run " + options.experiment + "\n" + options.population + "\n" + options.run_file + "\n" +
+                       std::to_string(options.seed.value_or(0)) + " " + std::to_string(options.generations.value_or(0));
+    for (const std::string& change : options.changes) {
+        text += "\n" + change;
+    }
+    return text;
 }
 
 } // namespace
@@ -493,16 +455,7 @@ void add_run_command(command_line::Command& app) {
         .add_option("--generations", &options.generations,
                     "Number of generations, 0: no limit; default: the parameter generation_limit")
         .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    command
-        .add_option("--threads", &options.threads,
-                    "Number of simulation threads; default: the number of processors, divided by the number of "
-                    "processes that mpirun has started on this machine")
-        .check(thread_count);
-    command
-        .add_option("--rank-timeout", &options.rank_timeout_s,
-                    "Under mpirun: seconds that the processes wait for one that does not respond, before all end")
-        .check(command_line::WholeNumber{1, 1'000'000})
-        .show_default();
+    add_sharing_options(command, options.sharing);
     command.add_option("--set", &options.changes, "NAME=VALUE: set a parameter; evod parameters lists all parameters");
     command.add_option("--csv", &options.csv, "CSV file to which the statistics of every generation are written");
     command.add_option("--run-file", &options.run_file,
@@ -512,7 +465,10 @@ void add_run_command(command_line::Command& app) {
                      "Prompt for population, food, poison, time and every setting of the genetic algorithm");
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
                    "2 a value is not allowed, 5 a process of mpirun was lost.");
-    command.action([&] { return run(options); });
+    command.action([&] {
+        return share_worlds(text_of(options), options.sharing, false,
+                            [&](const SharedWork& shared) { return run(options, shared); });
+    });
 }
 
 } // namespace evod::commands

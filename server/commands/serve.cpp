@@ -68,6 +68,17 @@ void warn_if_not_encrypted(std::initializer_list<boost::asio::ip::address> addre
     }
 }
 
+/// Logs which processes share the worlds.
+void log_processes(const SharedWork& shared) {
+    std::string others;
+    for (std::uint32_t rank = 1; rank < shared.processes.size(); ++rank) {
+        others += (others.empty() ? "" : ", ") + shared.processes.name_of(rank);
+    }
+    if (!others.empty()) {
+        log::info("worlds with at least {} islands are shared with {}", shared.processes.size(), others);
+    }
+}
+
 /// Runs the server until a signal or a ShutDown request ends it. Returns the exit status.
 int run_server(network::ServerOptions options) {
     raise_descriptor_limit();
@@ -106,6 +117,7 @@ bool is_server() {
 
 void add_server(Command& app) {
     auto& options = app.keep(ServeOptions{});
+    add_sharing_options(app, options.sharing);
     add_server_options(app, options);
     add_first_world_options(app, options);
     add_storage_options(app, options);
@@ -113,8 +125,17 @@ void add_server(Command& app) {
     app.hand_options_down("the server");
     app.action([&options] {
         begin_log(options);
-        auto server = server_options(options);
-        return server ? run_server(*std::move(server)) : fail(server.error());
+        return share_worlds("server", options.sharing, true, [&options](const SharedWork& shared) {
+            log_processes(shared);
+            auto server = server_options(options);
+            if (!server) {
+                return fail(server.error());
+            }
+            server->threads = shared.threads;
+            server->processes = &shared.processes;
+            server->leader = &shared.leader;
+            return run_server(*std::move(server));
+        });
     });
 }
 
@@ -128,6 +149,10 @@ void add_replay_command(Command& app) {
         .add_option("--generation", &run.generation,
                     "Generation that the replay shows first; default: the first one in the file")
         .check(generation_number);
+    command
+        .add_option("--threads", &options.sharing.threads,
+                    "Number of simulation threads; default: the number of processors")
+        .check(thread_count);
     command.add_option("--data", &options.data_folder,
                        "Folder with the token file; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
     add_server_options(command, options);

@@ -78,7 +78,7 @@ network::ServerOptions common_server_options(const ServeOptions& options) {
     network::ServerOptions server;
     server.bind_address = options.bind_address;
     server.port = options.port;
-    server.threads = options.threads;
+    server.threads = options.sharing.threads.value_or(default_thread_count());
     server.token_folder = data_folder_or_default(options.data_folder);
     server.session_bounds = options.session_bounds;
     server.token_needed = options.token_needed;
@@ -120,9 +120,6 @@ base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
 } // namespace
 
 void add_server_options(Command& command, ServeOptions& options) {
-    command.add_option("--threads", &options.threads, "Number of simulation threads")
-        .check(thread_count)
-        .show_default();
     command.option_group("Listening");
     command
         .add_option("--bind", &options.bind_address, "IP address on which the server listens; 0.0.0.0: all interfaces")

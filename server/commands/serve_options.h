@@ -4,6 +4,7 @@
 #pragma once
 
 #include "server/commands/common_options.h"
+#include "server/commands/shared_worlds.h"
 #include "server/network/server.h"
 
 #include <cstddef>
@@ -28,7 +29,7 @@ struct ServeOptions {
     std::optional<std::uint16_t> http_port;
     std::vector<std::string> http_host_names;
     std::string log_level = "info", log_format = "text";
-    std::size_t threads = default_thread_count();
+    SharingOptions sharing;
     std::string experiment_file, population_file;
     std::optional<std::uint64_t> seed;
     std::string speed; // a text that parse_speed() accepts; empty: the speed of the world stays

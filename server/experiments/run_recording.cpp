@@ -3,12 +3,10 @@
 #include "server/base/assert.h"
 #include "server/run_file/check.h"
 #include "server/run_file/data_folder.h"
-#include "server/simulation/share.h"
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <type_traits>
 #include <utility>
 
 namespace evod::experiments {
@@ -91,24 +89,11 @@ Result<bool> is_over(RunFile& file, std::uint64_t generation) {
 } // namespace
 
 Result<std::unique_ptr<RunRecording>> RunRecording::open(std::string path, const parameters::Experiment& experiment,
-                                                         const simulation::FirstPopulation& first_population,
-                                                         base::Exchange& exchange) {
-    std::unique_ptr<RunRecording> recording{new RunRecording{std::move(path), exchange}};
-    Result<void> examined;
-    base::Packer packer;
-    if (exchange.rank() == 0) {
-        examined = recording->examine(experiment, first_population);
-        packer.add(examined ? std::optional<RefusalCode>{} : std::optional{examined.error().code});
-        const std::string message = examined ? "" : examined.error().message;
-        packer.add_list(std::vector<char>(message.begin(), message.end()));
+                                                         const simulation::FirstPopulation& first_population) {
+    std::unique_ptr<RunRecording> recording{new RunRecording{std::move(path)}};
+    if (auto examined = recording->examine(experiment, first_population); !examined) {
+        return examined.error();
     }
-    const std::string from_first = exchange.gather(packer.take()).front();
-    base::Unpacker unpacker{from_first};
-    if (const auto code = unpacker.next<std::optional<RefusalCode>>()) {
-        const auto message = unpacker.next_list<char>();
-        return refusal(*code, {message.begin(), message.end()});
-    }
-    recording->share();
     return recording;
 }
 
@@ -164,65 +149,13 @@ Result<void> RunRecording::read_part(RunFile& file) {
     return {};
 }
 
-std::string RunRecording::found_for(std::uint32_t rank) const {
-    base::Packer packer;
-    packer.add(stored_);
-    if (stored_ == Stored::Nothing) {
-        return packer.take();
-    }
-    static_assert(std::is_trivially_copyable_v<simulation::Opening>);
-    packer.add(seed_);
-    packer.add(begun_.opening);
-    packer.add(generations_ended_);
-    packer.add(!begun_.founders.empty());
-    const std::size_t islands = begun_.born.size();
-    const base::Range share = simulation::share_of(islands, rank, exchange_->size());
-    for (std::size_t island = share.begin; island < share.end; ++island) {
-        simulation::pack(packer, begun_.born[island]);
-        if (!begun_.founders.empty()) {
-            packer.add_list(begun_.founders[island]);
-        }
-    }
-    return packer.take();
-}
-
-void RunRecording::share() {
-    std::vector<std::string> parts(exchange_->size());
-    for (std::uint32_t rank = 1; exchange_->rank() == 0 && rank < exchange_->size(); ++rank) {
-        parts[rank] = found_for(rank);
-    }
-    parts = exchange_->swap(std::move(parts));
-    if (exchange_->rank() == 0) {
-        return;
-    }
-    base::Unpacker unpacker{parts.front()};
-    stored_ = unpacker.next<Stored>();
-    if (stored_ == Stored::Nothing) {
-        return;
-    }
-    seed_ = unpacker.next<base::Seed>();
-    begun_.opening = unpacker.next<simulation::Opening>();
-    generations_ended_ = unpacker.next<std::uint64_t>();
-    const bool founders_known = unpacker.next<bool>();
-    const std::size_t islands = begun_.opening.parameters.active.island_count;
-    begun_.born.resize(islands);
-    begun_.founders.resize(founders_known ? islands : 0);
-    const base::Range share = simulation::share_of(islands, exchange_->rank(), exchange_->size());
-    for (std::size_t island = share.begin; island < share.end; ++island) {
-        begun_.born[island] = simulation::unpack_generation(unpacker);
-        if (founders_known) {
-            begun_.founders[island] = unpacker.next_list<std::uint32_t>();
-        }
-    }
-}
-
 std::optional<base::Seed> RunRecording::seed() const {
     return stored_ == Stored::Nothing ? std::nullopt : std::optional{seed_};
 }
 
 simulation::World RunRecording::continued_world(const parameters::Experiment& experiment,
-                                                simulation::FirstPopulation first_population,
-                                                base::Executor& executor) {
+                                                simulation::FirstPopulation first_population, base::Executor& executor,
+                                                simulation::Leader& leader) {
     EVOD_ASSERT(stored_ == Stored::Part);
     return {seed_,
             begun_.opening,
@@ -232,7 +165,7 @@ simulation::World RunRecording::continued_world(const parameters::Experiment& ex
             std::move(first_population),
             std::exchange(begun_.founders, {}),
             experiment.schedule,
-            *exchange_};
+            &leader};
 }
 
 Result<void>
@@ -261,14 +194,10 @@ RunRecording::read_statistics(const std::function<void(const std::vector<simulat
 Result<void> RunRecording::begin(const simulation::World& world, const simulation::RunId& run_id) {
     const std::uint64_t generation = world.moment().generation;
     if (stored_ == Stored::Nothing) {
-        const run_file::GenerationBegun begun = run_file::beginning_of(world);
         news_ = {world.moment().tick, generation, 0};
-        return exchange_->rank() == 0 ? create(run_id, begun, world) : Result<void>{};
+        return create(run_id, run_file::beginning_of(world), world);
     }
     news_ = {hashes_.empty() ? world.moment().tick : hashes_.back().tick, generation, generations_ended_};
-    if (exchange_->rank() != 0) {
-        return {};
-    }
     auto file = RunFile::open(path_, {});
     if (!file) {
         return file.error();
@@ -292,11 +221,7 @@ Result<void> RunRecording::create(const simulation::RunId& run_id, const run_fil
 }
 
 Result<void> RunRecording::follow(const simulation::World& world) {
-    news_.report(world, [this](const auto& record) {
-        if (file_) {
-            file_->write(record);
-        }
-    });
+    news_.report(world, [this](const auto& record) { file_->write(record); });
     if (compared_ < hashes_.size() && hashes_[compared_].tick == world.moment().tick &&
         hashes_[compared_++].hash != world.hash()) {
         return refusal(RefusalCode::DataLoss, path_ + " is damaged: the stored state hash of tick " +
@@ -307,9 +232,6 @@ Result<void> RunRecording::follow(const simulation::World& world) {
 }
 
 Result<void> RunRecording::commit() {
-    if (!file_) {
-        return {};
-    }
     if (auto committed = file_->commit(); !committed) {
         return committed;
     }
@@ -331,7 +253,7 @@ Result<void> RunRecording::commit() {
 
 Result<void> RunRecording::close(const simulation::World& world) {
     if (!file_) {
-        return {};
+        return {}; // begin() has failed
     }
     file_->write(run_file::EndMark{.tick = std::max(file_->last_tick(), world.moment().tick)});
     auto committed = file_->commit();

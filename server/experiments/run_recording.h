@@ -4,9 +4,6 @@
 // moment continues at the beginning of the generation that it was simulating, and loses only the ticks of that generation.
 // The file contains everything that a server would record, except checkpoints.
 //
-// Processes can share the world. All of them call the same functions in the same order; rank 0 alone uses the file. The
-// number of processes may differ from that of the interrupted run.
-//
 // Owner        the thread that advances the world.
 // Threads      only the owner.
 // Determinism  it reads the world and never changes it. A continued run has the same bits as an uninterrupted one; all
@@ -31,14 +28,12 @@ enum class Stored : std::uint8_t { Nothing, Part, Whole };
 
 class RunRecording {
   public:
-    /// Opens the run file of a run; it need not exist. All processes must call it. A refusal is the same in all of them,
-    /// and leaves the file unchanged. Refused if the file is no run file, is damaged, is being written, or contains
-    /// another run than that of this experiment.
+    /// Opens the run file of a run; it need not exist. A refusal leaves the file unchanged. Refused if the file is no run
+    /// file, is damaged, is being written, or contains another run than that of this experiment.
     ///
     /// experiment  if it has no seed, the file may have any.
     static base::Result<std::unique_ptr<RunRecording>> open(std::string path, const parameters::Experiment& experiment,
-                                                            const simulation::FirstPopulation& first_population,
-                                                            base::Exchange& exchange);
+                                                            const simulation::FirstPopulation& first_population);
 
     const std::string& path() const { return path_; }
     Stored stored() const { return stored_; }
@@ -46,45 +41,44 @@ class RunRecording {
     std::optional<base::Seed> seed() const;
     /// The generation at whose beginning a run continues. Only if a part of it is stored.
     std::uint64_t continues_at() const { return begun_.opening.moment.generation; }
-    /// The world at the beginning of that generation. All processes must call it, once. Its history is empty.
+    /// The world at the beginning of that generation; called once. Its history is empty.
+    ///
+    /// leader  the number of processes that share the world may differ from that of the interrupted run.
     simulation::World continued_world(const parameters::Experiment& experiment,
-                                      simulation::FirstPopulation first_population, base::Executor& executor);
+                                      simulation::FirstPopulation first_population, base::Executor& executor,
+                                      simulation::Leader& leader);
     /// Calls use(statistics) for every island of every stored generation before the one at which the run continues; of a
-    /// whole run, for all generations. Only on rank 0.
+    /// whole run, for all generations.
     base::Result<void>
     read_statistics(const std::function<void(const std::vector<simulation::GenerationStatistics>&)>& use);
 
-    /// Begins to write. Creates the file if it does not exist. All processes must call it.
+    /// Begins to write. Creates the file if it does not exist.
     ///
     /// world   at its first moment, or as continued_world() has returned it.
     /// run_id  for a new file.
     base::Result<void> begin(const simulation::World& world, const simulation::RunId& run_id);
-    /// Adds the new records of the world to the transaction. All processes must call it after every multiple of
+    /// Adds the new records of the world to the transaction. To be called after every multiple of
     /// run_file::ticks_per_hash and at the beginning and end of every generation.
     ///
     /// returns  a refusal if the state differs from that of the interrupted run.
     base::Result<void> follow(const simulation::World& world);
-    /// Makes everything durable that follow() has added. Does nothing on ranks other than 0.
+    /// Makes everything durable that follow() has added.
     base::Result<void> commit();
-    /// Closes the file after the last call of the others. Does nothing on ranks other than 0.
+    /// Closes the file after the last call of the others.
     base::Result<void> close(const simulation::World& world);
 
   private:
-    RunRecording(std::string path, base::Exchange& exchange) : path_{std::move(path)}, exchange_{&exchange} {}
-    /// On rank 0: finds out what the file contains.
+    explicit RunRecording(std::string path) : path_{std::move(path)} {}
+    /// Finds out what the file contains.
     base::Result<void> examine(const parameters::Experiment& experiment,
                                const simulation::FirstPopulation& first_population);
     base::Result<void> read_part(run_file::RunFile& file);
     base::Result<void> create(const simulation::RunId& run_id, const run_file::GenerationBegun& begun,
                               const simulation::World& world);
-    /// Sends what examine() has found from rank 0 to all others.
-    void share();
-    std::string found_for(std::uint32_t rank) const;
 
     const std::string path_;
-    base::Exchange* exchange_;
-    std::optional<run_file::RunFileLock> lock_; // on rank 0
-    std::unique_ptr<run_file::RunFile> file_;   // on rank 0, after begin()
+    std::optional<run_file::RunFileLock> lock_;
+    std::unique_ptr<run_file::RunFile> file_; // nullptr before begin() and after close()
     Stored stored_ = Stored::Nothing;
     base::Seed seed_{};
     run_file::GenerationBegun begun_; // the beginning of the generation at which the run continues

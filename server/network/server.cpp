@@ -277,6 +277,9 @@ bool Server::run() {
             }
         }
     }
+    if (options_.leader != nullptr) {
+        worlds.share(*options_.leader, *executor_);
+    }
     begin_first_world();
     simulation_ = std::make_unique<runtime::SimulationThread>(
         mailbox_, demand_, *executor_, clock_,

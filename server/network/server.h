@@ -9,6 +9,7 @@
 #include "server/network/http.h"
 #include "server/network/listener.h"
 #include "server/replay/archive.h"
+#include "server/runtime/processes.h"
 #include "server/runtime/simulation_thread.h"
 
 #include <boost/asio/io_context.hpp>
@@ -46,6 +47,10 @@ struct ServerOptions {
     };
     std::optional<HttpOptions> http; // nullopt: neither the browser viewer nor the metrics are served over HTTP
     std::optional<Replay> replay;    // a run file to serve as a replay, without live worlds and data folder
+
+    // The processes that share the worlds, and their leader; nullptr: there are none.
+    const runtime::Processes* processes = nullptr;
+    simulation::Leader* leader = nullptr;
 
     simulation::CreateWorld first_world; // created if no world has this name
     bool first_world_asked = false;      // false: first_world is created only if there is no world at all

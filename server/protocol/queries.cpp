@@ -37,11 +37,11 @@ base::Result<FoundIsland> find_island(const simulation::Laboratory& laboratory, 
     if (!entry) {
         return entry.error();
     }
-    const auto islands = (*entry)->world.islands();
-    if (island >= islands.size()) {
-        return not_found_refusal("island", field, islands.size(), island, base::Reason::IslandNotFound);
+    const simulation::World& there = (*entry)->world;
+    if (island >= there.island_count()) {
+        return not_found_refusal("island", field, there.island_count(), island, base::Reason::IslandNotFound);
     }
-    return FoundIsland{(*entry)->world, islands[island]};
+    return FoundIsland{there, there.island(island)};
 }
 
 /// Appends one little-endian number of 4 or 8 bytes for each row.
@@ -96,8 +96,9 @@ base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& labora
     v1::Statistics statistics;
     *statistics.mutable_world() = to_proto(**entry);
     if (world.has_bodies()) {
-        for (const simulation::Island& island : world.islands()) {
-            *statistics.add_live() = to_proto(island.live_statistics(), island.index());
+        std::uint32_t island = 0;
+        for (const simulation::LiveStatistics& live : world.live_statistics()) {
+            *statistics.add_live() = to_proto(live, island++);
         }
     }
     if (!world.history().empty()) {
@@ -128,8 +129,8 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
         return entry.error();
     }
     const simulation::World& world = (*entry)->world;
-    if (query.has_island() && query.island() >= world.islands().size()) {
-        return not_found_refusal("island", "get_history.island", world.islands().size(), query.island(),
+    if (query.has_island() && query.island() >= world.island_count()) {
+        return not_found_refusal("island", "get_history.island", world.island_count(), query.island(),
                                  base::Reason::IslandNotFound);
     }
 
@@ -298,7 +299,7 @@ base::Result<FoundWorld> find_world(const simulation::Laboratory& laboratory, co
     if (!entry) {
         return entry.error();
     }
-    const auto island_count = static_cast<std::uint32_t>((*entry)->world.islands().size());
+    const auto island_count = (*entry)->world.island_count();
     const v1::SubscribeSnapshots& snapshots = request.subscribe_snapshots();
     if (snapshots.has_island() && snapshots.island() >= island_count) {
         return not_found_refusal("island", "subscribe_snapshots.island", island_count, snapshots.island(),

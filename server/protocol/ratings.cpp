@@ -30,9 +30,9 @@ void add_awaited_islands(const simulation::World& world, google::protobuf::Repea
     if (!world.awaits_fitness()) {
         return;
     }
-    for (const simulation::Island& island : world.islands()) {
-        if (!world.is_rated(island.index())) {
-            islands.Add(island.index());
+    for (std::uint32_t island = 0; island < world.island_count(); ++island) {
+        if (!world.is_rated(island)) {
+            islands.Add(island);
         }
     }
 }

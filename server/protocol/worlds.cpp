@@ -86,7 +86,7 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     to.set_name(entry.name);
     to.set_run_id(to_text(entry.run_id));
     to.set_seed(world.seed().value);
-    to.set_island_count(static_cast<std::uint32_t>(world.islands().size()));
+    to.set_island_count(world.island_count());
     to.set_tick(moment.tick);
     to.set_generation(moment.generation);
     to.set_generation_tick(moment.generation_tick);

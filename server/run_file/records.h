@@ -66,7 +66,7 @@ struct GenerationBegun {
     std::vector<evolution::NextGeneration> born; // one per island
     simulation::Founders founders = {};
 };
-/// The beginning of the generation of a world. All processes that share it must call this; rank 0 gets all islands.
+/// The beginning of the generation of a world.
 GenerationBegun beginning_of(const simulation::World& world);
 
 /// The statistics that a fork copies from its origin. They belong to the generations before the fork's first one.
@@ -76,19 +76,13 @@ struct Inherited {
 /// Returns the statistics that a fork has copied. `world` must be a fork in its first generation.
 Inherited inherited_by(const simulation::World& world);
 
-/// The outcome of a generation on one island. Every vector is indexed by organism id.
-struct IslandOutcome {
-    std::vector<double> fitness;
-    std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for an organism that lived to the end
-    std::vector<simulation::CauseOfDeath> cause;
-    friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
-};
+using simulation::IslandOutcome;
 struct GenerationEnded {
     std::uint64_t generation = 0;
-    std::vector<IslandOutcome> outcomes;                      // one per island
+    std::vector<simulation::IslandOutcome> outcomes;          // one per island
     std::vector<simulation::GenerationStatistics> statistics; // one per island
 };
-/// Returns the outcome of the world's generation, which must be complete. Shared worlds: as for beginning_of().
+/// Returns the outcome of the world's generation, which must be complete.
 GenerationEnded end_of(const simulation::World& world);
 /// "alive", "starved", "poisoned", "removed"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);

@@ -5,7 +5,7 @@
 // arrive, and because it must not use a processor while it waits. Boost.MPI has no such operations, so it only starts
 // and ends MPI.
 //
-// Threads      one: MPI is started with MPI_THREAD_FUNNELED.
+// Threads      one at a time: MPI is started with MPI_THREAD_SERIALIZED.
 // Source       MPI: A Message-Passing Interface Standard, version 3.1, chapter 5.12.
 #include "server/runtime/mpi_component.h"
 
@@ -15,8 +15,12 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -35,9 +39,10 @@ constexpr std::chrono::seconds answer_patience{5};
 
 class MpiExchange final : public Processes {
   public:
-    explicit MpiExchange(std::chrono::seconds patience)
-        : environment_{boost::mpi::threading::funneled}
+    MpiExchange(std::chrono::seconds patience, bool first_may_rest)
+        : environment_{boost::mpi::threading::serialized}
         , patience_{patience}
+        , first_may_rest_{first_may_rest}
         , rank_{static_cast<std::uint32_t>(world_.rank())}
         , size_{static_cast<std::uint32_t>(world_.size())} {
         // The messages to one rank that does not receive must not block the others.
@@ -57,14 +62,21 @@ class MpiExchange final : public Processes {
     std::string name_of(std::uint32_t rank) const override {
         return "rank " + std::to_string(rank) + " on " + nodes_[rank];
     }
-    double exchange_s() const override { return std::chrono::duration<double>(waited_).count(); }
+    double exchange_s() const override { return std::chrono::duration<double>(Clock::duration{waited_}).count(); }
 
     std::vector<std::string> gather(std::string part) override {
-        const std::uint64_t bytes = part.size();
-        std::vector<std::uint64_t> sizes(size_);
+        const Head head{part};
+        std::vector<Head> heads(size_);
         MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Iallgather(&bytes, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, world_, &request);
+        MPI_Iallgather(&head, sizeof head, MPI_BYTE, heads.data(), sizeof head, MPI_BYTE, world_, &request);
         wait(request);
+        std::vector<std::string> parts;
+        if (std::ranges::all_of(heads, &Head::is_whole)) {
+            std::ranges::transform(heads, std::back_inserter(parts), &Head::text);
+            return parts;
+        }
+        std::vector<std::uint64_t> sizes;
+        std::ranges::transform(heads, std::back_inserter(sizes), &Head::bytes);
         if (std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0}) > std::numeric_limits<int>::max()) {
             return swap(std::vector<std::string>(size_, std::move(part)));
         }
@@ -74,18 +86,10 @@ class MpiExchange final : public Processes {
         MPI_Iallgatherv(part.data(), counts[rank_], MPI_CHAR, together.data(), counts.data(), places.data(), MPI_CHAR,
                         world_, &request);
         wait(request);
-        std::vector<std::string> parts;
         for (std::uint32_t from = 0; from < size_; ++from) {
             parts.push_back(together.substr(static_cast<std::size_t>(places[from]), sizes[from]));
         }
         return parts;
-    }
-
-    std::vector<std::string> collect(std::string part) override {
-        std::vector<std::string> parts(size_);
-        parts.front() = std::move(part);
-        parts = swap(std::move(parts));
-        return rank_ == 0 ? std::move(parts) : std::vector<std::string>{};
     }
 
     std::vector<std::string> swap(std::vector<std::string> parts) override {
@@ -115,7 +119,40 @@ class MpiExchange final : public Processes {
         return all;
     }
 
+    std::string broadcast(std::string from_first) override {
+        Head head{from_first};
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ibcast(&head, sizeof head, MPI_BYTE, 0, world_, &request);
+        if (rank_ > 0 && first_may_rest_) {
+            wait_until(request, [](Clock::duration) {});
+        } else {
+            wait(request);
+        }
+        if (head.is_whole()) {
+            return head.text();
+        }
+        std::vector<std::string> parts(size_);
+        if (rank_ == 0) {
+            std::fill(parts.begin(), parts.end(), std::move(from_first));
+        }
+        return std::move(swap(std::move(parts)).front());
+    }
+
   private:
+    /// The beginning of a message, which nearly always is the whole message. Its fixed size makes one operation of MPI
+    /// out of two.
+    struct Head {
+        Head() = default;
+        explicit Head(const std::string& message) : bytes{message.size()} {
+            std::memcpy(first.data(), message.data(), std::min(message.size(), first.size()));
+        }
+        bool is_whole() const { return bytes <= first.size(); }
+        std::string text() const { return {first.data(), bytes}; }
+
+        std::uint64_t bytes = 0; // of the whole message
+        std::array<char, 504> first{};
+    };
+
     /// Calls start() for pieces of `bytes` that are short enough for the int in which MPI counts.
     template <class Start>
     static void start_pieces(std::string& bytes, std::vector<MPI_Request>& requests, Start&& start) {
@@ -128,12 +165,20 @@ class MpiExchange final : public Processes {
 
     void wait(MPI_Request& request) {
         const auto begun = Clock::now();
-        wait_since(begun, request);
-        waited_ += Clock::now() - begun;
+        wait_until(request, [&](Clock::duration waited) {
+            if (rank_ == 0 && waited > patience_) {
+                name_the_lost(request);
+            } else if (waited > patience_ + 2 * answer_patience) {
+                give_up(name_of_or_number(0), request);
+            }
+        });
+        waited_ += (Clock::now() - begun).count();
     }
 
-    void wait_since(Clock::time_point begun, MPI_Request& request) {
-        std::chrono::microseconds pause{0};
+    /// Waits until the request is done. Calls check(time waited so far) from time to time.
+    template <class Check>
+    void wait_until(MPI_Request& request, Check&& check) {
+        const auto begun = Clock::now();
         for (std::uint64_t turn = 0;; ++turn) {
             int done = 0;
             MPI_Test(&request, &done, MPI_STATUS_IGNORE);
@@ -144,14 +189,10 @@ class MpiExchange final : public Processes {
                 continue;
             }
             const auto waited = Clock::now() - begun;
-            pause = std::min(pause + 5us, 500us);
-            std::this_thread::sleep_for(pause);
+            // A pause makes a wait at most a quarter longer, and by at most a millisecond while work goes on.
+            std::this_thread::sleep_for(std::clamp<Clock::duration>(waited / 4, 5us, waited > 1s ? 5'000us : 1'000us));
             answer_question();
-            if (rank_ == 0 && waited > patience_) {
-                name_the_lost(request);
-            } else if (waited > patience_ + 2 * answer_patience) {
-                give_up(name_of_or_number(0), request);
-            }
+            check(waited);
         }
     }
 
@@ -216,9 +257,10 @@ class MpiExchange final : public Processes {
     boost::mpi::environment environment_;
     boost::mpi::communicator world_;
     const std::chrono::seconds patience_;
+    const bool first_may_rest_; // the others wait for a broadcast without limit
     const std::uint32_t rank_, size_;
     std::uint32_t on_this_machine_ = 1;
-    Clock::duration waited_{};
+    std::atomic<Clock::rep> waited_ = 0; // ticks of the clock
     MPI_Comm questions_ = MPI_COMM_NULL;
     std::vector<std::string> nodes_; // the name of each rank's machine; empty until all have sent theirs
 };
@@ -230,6 +272,6 @@ extern "C" const char* evod_mpi_version() {
     return EVOD_VERSION;
 }
 
-extern "C" evod::runtime::Processes* evod_mpi_join(long long patience_s) {
-    return new evod::runtime::MpiExchange{std::chrono::seconds{patience_s}};
+extern "C" evod::runtime::Processes* evod_mpi_join(long long patience_s, bool first_may_rest) {
+    return new evod::runtime::MpiExchange{std::chrono::seconds{patience_s}, first_may_rest};
 }

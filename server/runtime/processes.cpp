@@ -17,8 +17,8 @@ class Alone final : public Processes {
     std::uint32_t rank() const override { return 0; }
     std::uint32_t size() const override { return 1; }
     std::vector<std::string> gather(std::string part) override { return base::no_exchange().gather(std::move(part)); }
-    std::vector<std::string> collect(std::string part) override { return base::no_exchange().collect(std::move(part)); }
     std::vector<std::string> swap(std::vector<std::string> parts) override { return parts; }
+    std::string broadcast(std::string from_first) override { return from_first; }
     std::uint32_t on_this_machine() const override { return 1; }
     std::string name_of(std::uint32_t) const override { return "this process"; }
     double exchange_s() const override { return 0; }
@@ -45,7 +45,7 @@ bool is_one_of_several() {
     return !value("PMIX_RANK").empty() && value("SLURM_STEP_NUM_TASKS") != "1"; // srun --mpi=pmix
 }
 
-base::Result<std::unique_ptr<Processes>> join_processes(std::chrono::seconds patience) {
+base::Result<std::unique_ptr<Processes>> join_processes(std::chrono::seconds patience, bool first_may_rest) {
     if (!is_one_of_several()) {
         return std::unique_ptr<Processes>{std::make_unique<Alone>()};
     }
@@ -60,7 +60,7 @@ base::Result<std::unique_ptr<Processes>> join_processes(std::chrono::seconds pat
     if (version == nullptr || join == nullptr || std::string_view{version()} != EVOD_VERSION) {
         return unusable(component.string() + " is not the component of evod " EVOD_VERSION);
     }
-    return std::unique_ptr<Processes>{join(patience.count())};
+    return std::unique_ptr<Processes>{join(patience.count(), first_may_rest)};
 }
 
 } // namespace evod::runtime

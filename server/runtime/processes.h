@@ -22,7 +22,8 @@ class Processes : public base::Exchange {
     virtual std::uint32_t on_this_machine() const = 0;
     /// Returns a rank and its machine, as users know them: "rank 2 on node7".
     virtual std::string name_of(std::uint32_t rank) const = 0;
-    /// Returns for how long this process has waited for the others and for what they send, in seconds.
+    /// Returns for how long this process has waited for the others and for what they send, in seconds. May be called on
+    /// any thread.
     virtual double exchange_s() const = 0;
 };
 
@@ -31,10 +32,11 @@ bool is_one_of_several();
 
 /// Joins the other processes of this job; they leave it when the object is destroyed. A process outside a job is alone.
 ///
-/// patience  time for which a process waits for the others. If one of them does not arrive in time, rank 0 names it on
-///           stderr, and all processes end with the status exit_rank_lost.
-/// returns   a refusal if a launcher has started the process, but evod_mpi is missing or is that of another version.
-base::Result<std::unique_ptr<Processes>> join_processes(std::chrono::seconds patience);
+/// patience        time for which a process waits for the others. If one of them does not arrive in time, rank 0 names it
+///                 on stderr, and all processes end with the status exit_rank_lost.
+/// first_may_rest  whether the others wait for a broadcast() of rank 0 without limit.
+/// returns         a refusal if a launcher has started the process, but evod_mpi is missing or is that of another version.
+base::Result<std::unique_ptr<Processes>> join_processes(std::chrono::seconds patience, bool first_may_rest = false);
 
 constexpr int exit_rank_lost = 5;
 

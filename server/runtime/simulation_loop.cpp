@@ -21,13 +21,9 @@ Clock::duration seconds(double s) {
 
 constexpr std::chrono::milliseconds measuring_time{1000};
 
-/// Returns how many ticks a world at full speed simulates between two readings of the clock.
-///
-/// tick  the duration of one tick.
-std::uint32_t ticks_per_clock_reading(Clock::duration tick) {
-    constexpr std::int64_t most = 100;
-    return static_cast<std::uint32_t>(
-        tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_clock_readings / tick, 1, most) : 1);
+/// Returns how many ticks take about `time`, at least 1 and at most `most`.
+std::uint64_t ticks_in(Clock::duration time, Clock::duration tick, std::int64_t most) {
+    return static_cast<std::uint64_t>(tick.count() > 0 ? std::clamp<std::int64_t>(time / tick, 1, most) : 1);
 }
 
 /// Whether the command creates a world and changes nothing if that fails.
@@ -523,10 +519,11 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
     const bool paced = entry.control.speed.has_value();
     auto before = clock_.now();
     do {
-        std::uint32_t taken = 0;
+        const std::uint64_t ticks_per_clock_reading = ticks_in(between_clock_readings, track.tick_time, 100);
+        std::uint64_t taken = 0;
         bool stopped = false;
         do {
-            laboratory_.advance(entry, executor_);
+            taken += advance(entry, track);
             if (track.recorder) {
                 track.recorder->follow(entry.world);
             }
@@ -534,10 +531,9 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
                 replays_.shown().follow(entry);
                 laboratory_.settle(entry);
             }
-            ++taken;
             stopped = !entry.wants_tick();
             publish_events();
-        } while (!paced && taken < track.ticks_per_clock_reading && !stopped && !mailbox_.pending());
+        } while (!paced && taken < ticks_per_clock_reading && !stopped && !mailbox_.pending());
         track.ticks += taken;
         if (stopped) {
             track.changed = true; // the world has reached a goal
@@ -553,15 +549,26 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         measure(entry, track, now);
         show(entry, track, now);
         const auto spent = now - std::exchange(before, now);
+        track.tick_time = spent / taken;
         if (track.counted) {
-            track.counted->tick_time.add(spent / taken, taken);
+            track.counted->tick_time.add(track.tick_time, taken);
         }
-        track.ticks_per_clock_reading = ticks_per_clock_reading(spent / taken);
         make_due_checkpoint(entry, track, spent);
         if (stopped || now >= end || (paced && track.due > now)) {
             return;
         }
     } while (!mailbox_.pending() && !demand_.changed());
+}
+
+std::uint64_t SimulationLoop::advance(simulation::Entry& entry, Track& track) {
+    const std::uint64_t before = entry.world.moment().tick;
+    std::uint64_t ticks = 1;
+    if (entry.world.is_shared() && !entry.control.speed) {
+        const std::uint64_t to_next_hash = run_file::ticks_per_hash - before % run_file::ticks_per_hash;
+        ticks = std::min(ticks_in(between_exchanges, track.tick_time, run_file::ticks_per_hash), to_next_hash);
+    }
+    laboratory_.advance(entry, ticks, executor_);
+    return entry.world.moment().tick - before;
 }
 
 void SimulationLoop::make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
@@ -603,7 +610,7 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
         }
     }
     island_indices_.clear();
-    const auto island_count = static_cast<std::uint32_t>(entry.world.islands().size());
+    const auto island_count = entry.world.island_count();
     if (watch.all_islands) {
         island_indices_.resize(island_count);
         std::iota(island_indices_.begin(), island_indices_.end(), 0u);

@@ -55,6 +55,9 @@ class SimulationLoop {
     /// A world at full speed simulates ticks for about this time between two readings of the clock, because in a small
     /// world one tick takes only as long as one reading.
     static constexpr std::chrono::microseconds between_clock_readings{20};
+    /// A shared world at full speed simulates ticks for about this time before its processes exchange results. Mail waits
+    /// for as long.
+    static constexpr std::chrono::milliseconds between_exchanges{15};
     /// A paced world counts as slowed if it falls behind its speed by more than this fraction of the elapsed time.
     static constexpr double slowed_from = 0.02;
     /// A short wait for a working disk is normal. A longer wait is reported.
@@ -94,8 +97,8 @@ class SimulationLoop {
         // Measurements since the time `measured_since`.
         Clock::time_point measured_since;
         std::uint64_t ticks = 0;
-        Clock::duration lost{};                    // time by which the world fell behind its speed
-        std::uint32_t ticks_per_clock_reading = 1; // ticks between two readings of the clock, at full speed
+        Clock::duration lost{};            // time by which the world fell behind its speed
+        Clock::duration tick_time = slice; // the time that one of the last ticks took
         // State for viewers.
         const WorldDemand* watch = nullptr;
         std::uint64_t newcomers_served = 0;
@@ -136,6 +139,9 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
+    /// Advances a world by one tick or, if processes share it, by as many as it should before they exchange results.
+    /// Returns the number of ticks.
+    std::uint64_t advance(simulation::Entry& entry, Track& track);
     /// Creates a checkpoint if one is due.
     ///
     /// spent  time that the last ticks and the work after them took.

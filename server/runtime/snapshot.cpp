@@ -73,11 +73,12 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     taken->ticks_per_s = entry.ticks_per_s;
     taken->slowed = entry.slowed;
     taken->item_radius_px = entry.world.parameters().active.item_radius_px;
-    taken->island_count = static_cast<std::uint32_t>(entry.world.islands().size());
+    taken->island_count = entry.world.island_count();
     taken->after_change = after_change;
+    entry.world.bring(islands);
     taken->islands.resize(islands.size());
     for (std::size_t i = 0; i < islands.size(); ++i) {
-        copy(entry.world.islands()[islands[i]], entry.world.parameters().active, taken->islands[i]);
+        copy(entry.world.island(islands[i]), entry.world.parameters().active, taken->islands[i]);
     }
 
     return {taken.release(), [spare = spare_](const Snapshot* snapshot) {

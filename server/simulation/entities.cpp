@@ -36,11 +36,11 @@ std::optional<Refusal> refusal_of(const World& world, std::uint32_t island, cons
     const auto refused = [](const char* why, base::Reason reason) {
         return refusal(RefusalCode::FailedPrecondition, why, reason);
     };
-    if (island >= world.islands().size()) {
+    if (island >= world.island_count()) {
         return Refusal{
             .code = RefusalCode::NotFound,
             .message = "no such island",
-            .violations = {{field, "0 to " + std::to_string(world.islands().size() - 1), std::to_string(island)}},
+            .violations = {{field, "0 to " + std::to_string(world.island_count() - 1), std::to_string(island)}},
             .reason = base::Reason::IslandNotFound};
     }
     if (!world.has_bodies()) {
@@ -206,7 +206,7 @@ Result<void> check(const World& world, const PlaceEntities& command) {
     if (auto refused = refusal_of(world, command.island, "place.island")) {
         return *refused;
     }
-    const Island& island = world.islands()[command.island];
+    const Island& island = world.island(command.island);
     if (auto refused = refusal_of_counts(island, command)) {
         return *refused;
     }
@@ -246,7 +246,7 @@ Result<void> check(const World& world, const RemoveEntities& command) {
                                        std::to_string(*command.generation)}},
                        .reason = base::Reason::GenerationChanged};
     }
-    const Island& island = world.islands()[command.island];
+    const Island& island = world.island(command.island);
     const auto is_present = [](const Items& items) {
         return [&items](std::uint32_t item) { return item < items.size() && items.present(item); };
     };

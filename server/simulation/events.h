@@ -29,6 +29,7 @@ struct MigrationHappened {
 struct Extinction {
     std::uint32_t island;
     std::uint64_t generation;
+    std::uint64_t tick; // ticks since the run began
 };
 struct RunTerminated {
     evolution::Outcome outcome;

@@ -1,5 +1,6 @@
 #include "server/simulation/laboratory.h"
 
+#include "server/base/inline_executor.h"
 #include "server/simulation/entities.h"
 #include "server/simulation/rating.h"
 
@@ -156,14 +157,25 @@ RunState Entry::state() const {
     return control.paused ? RunState::Paused : RunState::Waiting;
 }
 
-void Laboratory::advance(Entry& entry, base::Executor& executor) {
-    entry.world.advance_tick(executor);
+void Laboratory::advance(Entry& entry, std::uint64_t ticks, base::Executor& executor) {
+    const World& world = entry.world;
+    const std::uint64_t now = world.moment().tick;
+    std::uint64_t last = now + (world.generation_over() ? 1 : ticks);
+    if (entry.control.until_tick) {
+        last = std::min(last, *entry.control.until_tick);
+    }
+    for (const parameters::PlannedChange& change : world.planned()) {
+        last = std::min(last, change.at.tick.value_or(last));
+    }
+    entry.world.advance(last, executor);
     settle(entry);
 }
 
 void Laboratory::settle(Entry& entry) {
     for (EventKind& kind : entry.world.take_events()) {
-        events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, std::move(kind)});
+        const auto* extinction = std::get_if<Extinction>(&kind);
+        const std::uint64_t tick = extinction != nullptr ? extinction->tick : entry.world.moment().tick;
+        events_.push_back({entry.name, entry.run_id, tick, std::move(kind)});
     }
     if (remove_reached_goals(entry.control, entry.world)) {
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
@@ -260,7 +272,7 @@ Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
     }
     auto entry = std::make_unique<Entry>(
         Entry{command.name, command.run_id, RunControl{},
-              World{command.parameters, command.seed, command.first_population, command.schedule}});
+              World{command.parameters, command.seed, command.first_population, command.schedule, leader_}});
     return add(std::move(entry));
 }
 
@@ -297,7 +309,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
             .reason = base::Reason::ResetImpossible};
     }
     Applied applied = applied_now(entry);
-    entry.world.reset(command.seed.value_or(entry.world.seed()));
+    entry.world.reset(command.seed.value_or(entry.world.seed()), leader_);
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;
     entry.control = {};
@@ -467,13 +479,16 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
             "fork the world as it is now, or start the server without --keep-nothing",
             base::Reason::RunsNotKept);
     }
-    return fork(command, entry.world);
+    base::InlineExecutor executor; // a command is applied between two ticks, where no executor is available
+    return fork(command, entry.world.copy(executor, leader_));
 }
 
 Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
     if (auto refused = refusal_of(command.name)) {
         return *refused;
     }
+    base::InlineExecutor executor;
+    share(world, executor);
     (void)world.take_events(); // the events of the original have already been reported
     world.become_fork();
     return add(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
@@ -484,6 +499,21 @@ Applied Laboratory::add(std::unique_ptr<Entry> entry) {
     Applied applied = applied_now(*entry);
     entries_.push_back(std::move(entry)); // last, so that nothing needs to be undone if memory does not suffice
     return applied;
+}
+
+void Laboratory::share(Leader& leader, base::Executor& executor) {
+    leader_ = &leader;
+    for (const auto& entry : entries_) {
+        if (!entry->replay) {
+            share(entry->world, executor);
+        }
+    }
+}
+
+void Laboratory::share(World& world, base::Executor& executor) const {
+    if (leader_ != nullptr && !world.is_shared() && world.island_count() >= leader_->exchange().size()) {
+        world = world.copy(executor, leader_);
+    }
 }
 
 void Laboratory::set_storage(const Storage& storage) {

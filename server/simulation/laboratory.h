@@ -101,6 +101,12 @@ class Laboratory {
     /// ForkWorld throw std::bad_alloc, with nothing changed, if memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
 
+    /// Shares the live worlds with the other processes, also those that are created later. A world with fewer islands
+    /// than processes is not shared.
+    ///
+    /// leader  must outlive the laboratory.
+    void share(Leader& leader, base::Executor& executor);
+
     /// Adds a world that was created elsewhere; its name must be unused.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
     /// Removes a world that was added by adopt().
@@ -116,7 +122,10 @@ class Laboratory {
     const std::optional<Storage>& storage() const { return storage_; }
 
     /// Advances a world that wants a tick by one tick, then calls settle().
-    void advance(Entry& entry, base::Executor& executor);
+    void advance(Entry& entry, base::Executor& executor) { advance(entry, 1, executor); }
+    /// Advances a world that wants a tick by at most `ticks` >= 1, then calls settle(). Stops at goals, after the first
+    /// and the last tick of a generation, and where planned changes take effect, so that every event has its tick.
+    void advance(Entry& entry, std::uint64_t ticks, base::Executor& executor);
     /// Collects the events of a world, and removes the goals that it has reached. To be called after a world has changed.
     void settle(Entry& entry);
 
@@ -151,6 +160,8 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const SetFitness&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
+    /// Shares a world that is not shared, if there are processes to share it with.
+    void share(World& world, base::Executor& executor) const;
     /// Returns why no world with that name can be created; nullopt if one can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;
@@ -158,6 +169,7 @@ class Laboratory {
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Event> events_;
     std::optional<Storage> storage_;
+    Leader* leader_ = nullptr; // nullptr: worlds are not shared
     std::uint64_t leases_granted_ =
         0; // a number is never used again, also after a reset or a new world of the same name
 };

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/base/inline_executor.h"
+#include "server/simulation/packed.h"
 
 #include <algorithm>
 #include <bit>
@@ -39,10 +40,10 @@ base::Result<void> check(const World& world, const SetFitness& command) {
         return not_awaited("generation " + std::to_string(generation) +
                            (world.generation_over() ? " has been rated already" : " has not ended yet"));
     }
-    if (command.island >= world.islands().size()) {
-        return refusal_of(RefusalCode::NotFound, "no such island", base::Reason::IslandNotFound,
-                          {"set_fitness.island", "0 to " + std::to_string(world.islands().size() - 1),
-                           std::to_string(command.island)});
+    if (command.island >= world.island_count()) {
+        return refusal_of(
+            RefusalCode::NotFound, "no such island", base::Reason::IslandNotFound,
+            {"set_fitness.island", "0 to " + std::to_string(world.island_count() - 1), std::to_string(command.island)});
     }
     if (world.is_rated(command.island)) {
         return not_awaited("island " + std::to_string(command.island) + " has been rated already in generation " +
@@ -55,7 +56,7 @@ base::Result<void> check(const World& world, const SetFitness& command) {
                           {"set_fitness.first_organism", given == 0 ? "0" : "0 or " + std::to_string(given),
                            std::to_string(command.first_organism)});
     }
-    const std::size_t most = world.islands()[command.island].fate().cause.size() - command.first_organism;
+    const std::size_t most = world.organism_count(command.island) - command.first_organism;
     if (command.fitness.size() > most) {
         return refusal_of(RefusalCode::InvalidArgument, "there are more numbers than organisms",
                           base::Reason::FieldInvalid,
@@ -68,10 +69,11 @@ base::Result<void> check(const World& world, const SetFitness& command) {
 }
 
 bool World::is_rated(std::uint32_t island) const {
-    return !fitness_.empty() && fitness_[island].size() == islands_[island].fate().cause.size();
+    return !fitness_.empty() && fitness_[island].size() == organism_count(island);
 }
 
 void World::set_fitness(const SetFitness& command) {
+    sharing_.order(Order::SetFitness, [&](base::Packer& order) { pack(order, command); });
     std::vector<double>& fitness = fitness_[command.island];
     if (command.first_organism == 0) {
         fitness.clear();
@@ -79,8 +81,8 @@ void World::set_fitness(const SetFitness& command) {
     EVOD_ASSERT(fitness.size() == command.first_organism);
     fitness.insert(fitness.end(), command.fitness.begin(), command.fitness.end());
     update_hash();
-    for (const Island& island : islands_) {
-        if (!is_rated(island.index())) {
+    for (std::uint32_t island = 0; island < island_count(); ++island) {
+        if (!is_rated(island)) {
             return;
         }
     }

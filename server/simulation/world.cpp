@@ -4,45 +4,83 @@
 #include "server/base/inline_executor.h"
 #include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
+#include "server/simulation/packed.h"
 #include "server/simulation/rating.h"
 
 #include <algorithm>
-#include <cmath>
+#include <new>
 #include <numeric>
 #include <string>
 #include <utility>
 
 namespace evod::simulation {
+template <class Make>
+void World::begin_generation(Make&& make, base::Executor& executor) {
+    opening_ = {moment_, parameters_, progress_};
+    fitness_.clear();
+    brought_.clear();
+    bool fits = true;
+    try {
+        std::vector<evolution::NextGeneration> bred = make();
+        find_founders(bred);
+        for_each_island(share_, executor, [&](std::size_t i) {
+            islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
+        });
+    } catch (const std::bad_alloc&) {
+        if (!is_shared()) {
+            throw;
+        }
+        fits = false; // the other processes have to learn it
+    }
+    exchange_summaries(fits);
+    update_hash();
+}
+
 World::World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population,
-             parameters::Schedule schedule, base::Exchange& exchange)
+             parameters::Schedule schedule, Leader* leader)
     : World{parameters::ParameterSet{parameters, parameters, 1}, seed, std::move(first_population), std::move(schedule),
-            exchange} {}
+            Sharing{leader, parameters.island_count}} {}
 
 World::World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
-             parameters::Schedule schedule, base::Exchange& exchange)
+             parameters::Schedule schedule, Sharing sharing)
     : seed_{seed}
     , parameters_{std::move(parameters)}
     , first_population_{std::move(first_population)}
     , schedule_{std::move(schedule)}
-    , exchange_{&exchange} {
+    , sharing_{std::move(sharing)} {
+    order_creation();
     begin_run();
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
              base::Executor& executor, FirstPopulation first_population, Founders founders,
-             parameters::Schedule schedule, base::Exchange& exchange)
+             parameters::Schedule schedule, Leader* leader)
+    : World{seed,
+            opening,
+            std::move(born),
+            std::move(history),
+            executor,
+            std::move(first_population),
+            std::move(founders),
+            std::move(schedule),
+            Sharing{leader, opening.parameters.active.island_count}} {}
+
+World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
+             base::Executor& executor, FirstPopulation first_population, Founders founders,
+             parameters::Schedule schedule, Sharing sharing)
     : seed_{seed}
     , parameters_{opening.parameters}
     , first_population_{std::move(first_population)}
     , schedule_{std::move(schedule)}
     , moment_{opening.moment}
-    , exchange_{&exchange}
+    , sharing_{std::move(sharing)}
     , history_{std::move(history)}
     , progress_{opening.progress} {
     EVOD_ASSERT(born.size() == parameters_.active.island_count);
     EVOD_ASSERT(moment_.generation_tick == 0);
     make_islands();
-    begin_generation(std::move(born), executor);
+    order_opening(born, founders);
+    begin_generation([&] { return std::move(born); }, executor);
     if (moment_.generation > 1) {
         founders_ = std::move(founders);
     }
@@ -50,26 +88,49 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
 }
 
 World World::at_its_opening(base::Executor& executor, bool keep_requests) const {
-    EVOD_ASSERT(!is_shared());
     Opening opening = opening_;
     if (keep_requests && moment_.generation_tick == 0) {
         opening.parameters = parameters_;
     }
-    std::vector<evolution::NextGeneration> born;
-    for (const Island& island : islands_) {
-        born.push_back(island.bred());
-    }
+    BredIslands bred = this->bred();
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation) {
         before.pop_back();
     }
-    return {seed_,    opening,           std::move(born),    std::move(before),
-            executor, first_population_, founders_of_bred(), schedule_};
+    return {seed_,
+            opening,
+            std::move(bred.islands),
+            std::move(before),
+            executor,
+            first_population_,
+            std::move(bred.founders),
+            schedule_,
+            sharing_.leader()};
+}
+
+World World::copy(base::Executor& executor, Leader* leader) const {
+    if (!is_shared() && leader == nullptr) {
+        World copy = *this;
+        copy.events_.clear();
+        return copy;
+    }
+    BredIslands bred = this->bred();
+    const WorldState now = state(executor);
+    History before = history_;
+    if (!now.ended.empty()) {
+        before.pop_back();
+    }
+    World copy{seed_,    opening_,          std::move(bred.islands),  std::move(before),
+               executor, first_population_, std::move(bred.founders), schedule_,
+               leader};
+    copy.restore_shared(now, executor);
+    copy.set_planned(planned_, planned_count_);
+    copy.changes_ = changes_;
+    return copy;
 }
 
 void World::become_fork() {
-    planned_.clear();
-    planned_count_ = 0;
+    set_planned({}, 0);
     changes_.clear();
     const auto is_inherited = [&](const GenerationRows& rows) {
         return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
@@ -83,10 +144,10 @@ base::Result<parameters::Parameters> World::beginning() const {
     return parameters::assign(parameters_.requested, schedule_.at(1));
 }
 
-void World::reset(base::Seed seed) {
+void World::reset(base::Seed seed, Leader* leader) {
     const parameters::Parameters first = beginning().value();
     World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_,
-                *exchange_};
+                Sharing{leader, first.island_count}};
     *this = std::move(fresh);
 }
 
@@ -97,13 +158,16 @@ void World::begin_run() {
     generation_over_ = false;
     make_islands();
     EVOD_ASSERT(!first_population_ || first_population_->size() == p.island_count);
-    std::vector<evolution::NextGeneration> first(p.island_count);
-    for (auto island = static_cast<std::uint32_t>(share_.begin); island < share_.end; ++island) {
-        first[island].genes = first_population_ ? (*first_population_)[island]
-                                                : evolution::initial_population(p.population_size, p, seed_, island);
-    }
+    const auto first = [&] {
+        std::vector<evolution::NextGeneration> born(p.island_count);
+        for (auto island = static_cast<std::uint32_t>(share_.begin); island < share_.end; ++island) {
+            born[island].genes = first_population_ ? (*first_population_)[island]
+                                                   : evolution::initial_population(p.population_size, p, seed_, island);
+        }
+        return born;
+    };
     base::InlineExecutor executor; // a run begins between two ticks, where no executor is available
-    begin_generation(std::move(first), executor);
+    begin_generation(first, executor);
 }
 
 void World::make_islands() {
@@ -111,29 +175,8 @@ void World::make_islands() {
     for (std::uint32_t island = 0; island < parameters_.active.island_count; ++island) {
         islands_.emplace_back(seed_, island);
     }
-    share_ = share_of(islands_.size(), exchange_->rank(), exchange_->size());
-    summaries_.resize(exchange_->size() > 1 ? islands_.size() : 0);
-}
-
-/// Calls body(i) for every island i of `share`.
-template <class Body>
-void for_each_island(base::Range share, base::Executor& executor, Body&& body) {
-    executor.parallel_for(share.end - share.begin, 1, [&](base::Range range) {
-        for (std::size_t i = share.begin + range.begin; i < share.begin + range.end; ++i) {
-            body(i);
-        }
-    });
-}
-
-void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
-    opening_ = {moment_, parameters_, progress_};
-    fitness_.clear();
-    find_founders(bred);
-    for_each_island(share_, executor, [&](std::size_t i) {
-        islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
-    });
-    exchange_summaries();
-    update_hash();
+    share_ = share_of(islands_.size(), sharing_.exchange().rank(), sharing_.exchange().size());
+    summaries_.resize(is_shared() ? islands_.size() : 0);
 }
 
 void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
@@ -156,23 +199,12 @@ void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
     }
 }
 
-Founders World::founders_of_bred() const {
-    Founders bred = founders_;
-    for (std::size_t i = 0; i < bred.size(); ++i) {
-        bred[i].resize(islands_[i].bred_count());
-    }
-    return bred;
-}
-
-std::span<const std::uint32_t> World::founders(const Island& island) const {
-    return founders_.empty() ? std::span<const std::uint32_t>{} : founders_[island.index()];
-}
-
 void World::record_change(const parameters::Parameters& requested, const std::string& by) {
     changes_.add(moment_.generation + (is_after_last_tick() ? 1 : 0), by, parameters_.requested, requested);
 }
 
 void World::request_parameters(const parameters::Parameters& requested, const std::string& by) {
+    sharing_.order(Order::Request, [&](base::Packer& order) { order.add(requested); });
     record_change(requested, by);
     parameters_ = parameters::after_request(parameters_, requested);
 }
@@ -214,6 +246,7 @@ std::uint64_t World::alive_count() const {
 
 std::uint64_t World::plan(parameters::PlannedChange change) {
     EVOD_ASSERT(is_in_future(change.at));
+    sharing_.order(Order::Plan, [&](base::Packer& order) { pack(order, change); });
     return add_planned(std::move(change));
 }
 
@@ -224,6 +257,7 @@ std::uint64_t World::add_planned(parameters::PlannedChange change) {
 }
 
 std::optional<parameters::PlannedChange> World::cancel(std::uint64_t id) {
+    sharing_.order(Order::Cancel, [&](base::Packer& order) { order.add(id); });
     const auto found = std::ranges::find(planned_, id, &parameters::PlannedChange::id);
     if (found == planned_.end()) {
         return std::nullopt;
@@ -288,8 +322,18 @@ void World::apply_planned(std::span<const parameters::Assignment> changes,
 }
 
 EntityIds World::place(const PlaceEntities& command) {
-    EVOD_ASSERT(!is_shared());
-    Island& island = islands_[command.island];
+    Island* const island = island_here(command.island);
+    sharing_.order(Order::Place, [&](base::Packer& order) { pack(order, command); });
+    EntityIds ids{.island = command.island, .generation = moment_.generation};
+    if (island != nullptr) {
+        ids = place_here(*island, command);
+    }
+    exchange_summaries();
+    update_hash();
+    return ids;
+}
+
+EntityIds World::place_here(Island& island, const PlaceEntities& command) {
     EntityIds ids{.island = command.island, .generation = moment_.generation};
     for (const PlaceEntities::Item& item : command.items) {
         (item.kind == ItemKind::Food ? ids.food : ids.poison)
@@ -305,40 +349,58 @@ EntityIds World::place(const PlaceEntities& command) {
         ids.organisms.resize(organisms.size());
         std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters_.active));
         if (!founders_.empty()) {
-            founders_[command.island].resize(founders_[command.island].size() + organisms.size(), no_founder);
+            std::vector<std::uint32_t>& founders =
+                is_mine(command.island) ? founders_[command.island] : brought(command.island).founders;
+            founders.resize(founders.size() + organisms.size(), no_founder);
         }
     }
-    update_hash();
     return ids;
 }
 
 EntityIds World::remove(const RemoveEntities& command) {
-    EVOD_ASSERT(!is_shared());
-    Island& island = islands_[command.island];
-    for (const std::uint32_t item : command.food) {
-        island.remove(ItemKind::Food, item);
+    Island* const island = island_here(command.island);
+    sharing_.order(Order::Remove, [&](base::Packer& order) { pack(order, command); });
+    if (island != nullptr) {
+        for (const std::uint32_t item : command.food) {
+            island->remove(ItemKind::Food, item);
+        }
+        for (const std::uint32_t item : command.poison) {
+            island->remove(ItemKind::Poison, item);
+        }
+        for (const std::uint32_t organism : command.organisms) {
+            island->remove_organism(organism, static_cast<std::uint32_t>(moment_.generation_tick));
+        }
+        if (!command.organisms.empty() && island->alive_count() == 0) {
+            events_.push_back(
+                Extinction{.island = command.island, .generation = moment_.generation, .tick = moment_.tick});
+        }
     }
-    for (const std::uint32_t item : command.poison) {
-        island.remove(ItemKind::Poison, item);
-    }
-    for (const std::uint32_t organism : command.organisms) {
-        island.remove_organism(organism, static_cast<std::uint32_t>(moment_.generation_tick));
-    }
-    if (!command.organisms.empty() && island.alive_count() == 0) {
-        events_.push_back(Extinction{.island = command.island, .generation = moment_.generation});
-    }
+    exchange_summaries();
     update_hash();
     return {command.island, moment_.generation, command.food, command.poison, command.organisms};
 }
 
 bool World::is_as_begun() const {
-    return moment_.generation_tick == 0 && std::ranges::all_of(islands_, &Island::is_as_begun);
+    if (moment_.generation_tick != 0) {
+        return false;
+    }
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        if (!(is_mine(i) ? islands_[i].is_as_begun() : summaries_[i].is_as_begun)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 void World::turn_over(base::Executor& executor) {
     if (!generation_over_) {
         return;
     }
+    sharing_.order(Order::TurnOver);
+    turn_over_share(executor);
+}
+
+void World::turn_over_share(base::Executor& executor) {
     apply_planned_for(moment_.generation + 1);
     parameters_.active = parameters::breeding_with(parameters_.active, parameters_.requested);
     const parameters::Parameters& p = parameters_.active;
@@ -364,7 +426,7 @@ void World::turn_over(base::Executor& executor) {
     ++moment_.generation;
     moment_.generation_tick = 0;
     generation_over_ = false;
-    begin_generation(std::move(bred), executor);
+    begin_generation([&] { return std::move(bred); }, executor);
 }
 
 std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::GeneMatrix>& migrated) {
@@ -405,7 +467,10 @@ void World::advance(std::uint64_t tick, base::Executor& executor) {
     EVOD_ASSERT(tick > moment_.tick);
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     EVOD_ASSERT(!awaits_fitness());
-    turn_over(executor);
+    sharing_.order(Order::Advance, [&](base::Packer& order) { order.add(tick); });
+    if (generation_over_) {
+        turn_over_share(executor);
+    }
     if (moment_.generation_tick == 0) {
         parameters_.active =
             parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
@@ -449,7 +514,7 @@ std::uint64_t World::advance_share(base::Executor& executor) {
         if (died_out_[i] && is_shared()) {
             died_out_since_meeting_.push_back({moment_.tick, i});
         } else if (died_out_[i]) {
-            events_.push_back(Extinction{.island = i, .generation = moment_.generation});
+            events_.push_back(Extinction{.island = i, .generation = moment_.generation, .tick = moment_.tick});
         }
     }
     return alive;
@@ -474,7 +539,6 @@ void World::find_fitness(base::Executor& executor) {
 
 void World::end_generation(base::Executor& executor) {
     if (is_fitness_external()) {
-        EVOD_ASSERT(!is_shared());
         fitness_.assign(islands_.size(), {});
         events_.push_back(FitnessAwaited{moment_.generation});
         return;
@@ -498,7 +562,7 @@ void World::finish_generation(base::Executor& executor) {
         for (const GenerationStatistics& s : std::exchange(statistics, {})) {
             pack(packer, s);
         }
-        for (const std::string& part : exchange_->gather(packer.take())) {
+        for (const std::string& part : sharing_.exchange().gather(packer.take())) {
             for (base::Unpacker unpacker{part}; !unpacker.empty();) {
                 statistics.push_back(unpack_statistics(unpacker));
             }
@@ -519,117 +583,6 @@ void World::close_generation(const std::vector<GenerationStatistics>& statistics
     if (history_.size() > history_generations_kept_here()) {
         history_.pop_front();
     }
-}
-
-WorldState World::state(base::Executor& executor) const {
-    EVOD_ASSERT(!is_shared());
-    WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
-    if (is_fitness_external()) {
-        state.given_fitness = fitness_;
-    }
-    state.islands.resize(islands_.size());
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            state.islands[i] = islands_[i].state(executor);
-        }
-    });
-    if (generation_over_) {
-        state.ended = history_.back();
-    }
-    return state;
-}
-
-std::vector<IslandShape> World::shapes() const {
-    std::vector<IslandShape> shapes;
-    for (const Island& island : islands_) {
-        shapes.push_back(island.shape());
-    }
-    return shapes;
-}
-
-base::Result<void> World::restore(const WorldState& state, base::Executor& executor) {
-    EVOD_ASSERT(!is_shared());
-    EVOD_ASSERT(moment_.generation_tick == 0);
-    const auto wrong = [](const char* what) {
-        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = std::string{"impossible state for this generation: wrong "} + what,
-                             .violations = {}};
-    };
-    const Moment& moment = state.moment;
-    const parameters::ParameterSet& set = state.parameters;
-    if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
-        moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
-        moment.simulated_s < moment_.simulated_s) {
-        return wrong("moment");
-    }
-    // Parameters that take effect at a generation must still have the values from the beginning of this generation.
-    if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
-        !parameters::validate(set.active).empty() ||
-        !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
-             .empty()) {
-        return wrong("parameters");
-    }
-    if (state.islands.size() != islands_.size()) {
-        return wrong("number of islands");
-    }
-    // No tick of a generation follows its last one, so the previous tick must not have ended the generation.
-    if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
-        return wrong("moment");
-    }
-    const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
-    std::uint64_t alive = 0, removed = 0;
-    for (std::size_t i = 0; i < islands_.size(); ++i) {
-        if (auto checked = islands_[i].check(state.islands[i], tick); !checked) {
-            return checked;
-        }
-        if (tick == 0 && !differ_only_by_commands(islands_[i].state(executor), state.islands[i])) {
-            return wrong("beginning of the generation");
-        }
-        alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
-        removed += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Removed));
-    }
-    // If a command has removed the last living organism after this tick, the generation ends with the next tick.
-    const bool removed_last =
-        alive == 0 && removed > 0 && state.ended.empty() && state.given_fitness.empty() && !ends(tick, 1);
-    const bool after_last_tick = ends(tick, alive) && !removed_last;
-    if (!can_be_given(state, after_last_tick && is_fitness_external())) {
-        return wrong("fitness");
-    }
-    const bool over = after_last_tick && is_whole(state);
-    if (state.ended.size() != (over ? islands_.size() : 0)) {
-        return wrong("end of the generation");
-    }
-    for (std::size_t i = 0; i < state.ended.size(); ++i) {
-        if (state.ended[i].generation != moment.generation || state.ended[i].island != i ||
-            !std::isfinite(state.ended[i].fitness_best)) {
-            return wrong("statistics");
-        }
-    }
-
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            islands_[i].restore(state.islands[i], tick, parameters_.active, executor);
-        }
-    });
-    for (std::size_t i = 0; i < founders_.size(); ++i) {
-        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
-    }
-    moment_ = moment;
-    parameters_ = set;
-    if (is_fitness_external()) {
-        fitness_ = state.given_fitness;
-    } else if (over) {
-        find_fitness(executor);
-    }
-    if (over) {
-        std::vector<GenerationStatistics> ended = state.ended;
-        for (std::size_t i = 0; i < ended.size(); ++i) {
-            ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
-        }
-        close_generation(ended);
-    }
-    update_hash();
-    return {};
 }
 
 void World::update_hash() {

@@ -12,10 +12,8 @@
 // If the fitness comes from clients, the generation ends in two steps. After its last tick the world awaits fitness and
 // cannot advance. When clients have rated all islands (rating.h), statistics are computed, and the generation is over.
 //
-// Several processes can share a world: each simulates some of its islands (share.h), and all advance the world by the
-// same calls. Moment, hash, outcome, parameters, history and events are then the same in all of them. The islands of the
-// other processes are empty here. Such a world is only advanced: it has no commands, forks, checkpoints and fitness from
-// clients.
+// Several processes can share a world: each simulates some of its islands (sharing.h). Code that uses the world on rank 0
+// need not know it: the world has the other processes do their part of every call.
 //
 // Threads      called on the simulation thread; work is passed to the given executor.
 // Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
@@ -23,8 +21,8 @@
 //              not depend on how islands are shared.
 #pragma once
 
-#include "server/base/exchange.h"
 #include "server/base/executor.h"
+#include "server/base/packing.h"
 #include "server/base/random.h"
 #include "server/base/result.h"
 #include "server/base/state_hash.h"
@@ -37,11 +35,13 @@
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
 #include "server/simulation/share.h"
+#include "server/simulation/sharing.h"
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -78,6 +78,20 @@ class GenerationRows {
 using Founders = std::vector<std::vector<std::uint32_t>>;
 constexpr std::uint32_t no_founder = ~0U;
 
+/// The organisms with which a generation began.
+struct BredIslands {
+    std::vector<evolution::NextGeneration> islands; // one per island
+    Founders founders;
+};
+
+/// The outcome of a generation on one island. Every vector is indexed by organism id.
+struct IslandOutcome {
+    std::vector<double> fitness;
+    std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for an organism that lived to the end
+    std::vector<CauseOfDeath> cause;
+    friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
+};
+
 class World {
   public:
     /// The maximum number of generations, and of rows, whose statistics are kept in memory. A generation has one row
@@ -103,22 +117,27 @@ class World {
     /// parameters        the parameters of generation 1; must be valid.
     /// first_population  the chromosomes of generation 1, valid for these parameters; nullptr: drawn from the seed.
     /// schedule          the schedule of the run; must have the values of `parameters` in generation 1.
-    /// exchange          connects the processes that share the world, at most one per island.
+    /// leader            orders the other processes to share the world; nullptr: it is not shared.
+    ///
+    /// Throws std::bad_alloc if memory does not suffice in one of the processes that share the world.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
-          parameters::Schedule schedule = {}, base::Exchange& exchange = base::no_exchange());
+          parameters::Schedule schedule = {}, Leader* leader = nullptr);
 
     /// Creates a world at the beginning of a generation of an existing run. It continues exactly as that run did.
     ///
-    /// born              the organisms of the generation; shape (opening.parameters.active.island_count). Those of
-    ///                   islands that other processes simulate are not read.
+    /// born              the organisms of the generation; shape (opening.parameters.active.island_count).
     /// history           statistics of the previous generations that are available.
     /// first_population  the first population of the run, for resets; nullptr: drawn from the seed.
     /// founders          founders of the organisms in `born`; not needed for the first generation.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
-          parameters::Schedule schedule = {}, base::Exchange& exchange = base::no_exchange());
+          parameters::Schedule schedule = {}, Leader* leader = nullptr);
 
-    /// Returns a copy of this world as it was at the first moment of its generation.
+    /// Returns a copy of this world, without its events. A constructor cannot copy a shared world.
+    ///
+    /// leader  as for a new world.
+    World copy(base::Executor& executor, Leader* leader = nullptr) const;
+    /// Returns a copy of this world as it was at the first moment of its generation. It is shared like this one.
     ///
     /// keep_requests  if true, the copy keeps the parameters that were requested after that moment; ignored once the
     ///                generation has had a tick.
@@ -130,7 +149,7 @@ class World {
     std::vector<IslandShape> shapes() const;
     /// Brings a world at the beginning of a generation to a later moment of that generation. It then continues as the
     /// world on which state() was called. Refused, with nothing changed, if the state is impossible. Does not check the
-    /// state hash; a caller that knows it compares it with hash().
+    /// state hash; a caller that knows it compares it with hash(). The world must not be shared.
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// Returns the parameters that the run begins with after a reset: the requested parameters, with the schedule's
@@ -139,7 +158,9 @@ class World {
     /// Restarts the run with the parameters of beginning(), the same schedule and, if one was given, the same first
     /// population. That population must be valid for these parameters. Throws std::bad_alloc, with nothing changed, if
     /// memory does not suffice for the new world beside the old one.
-    void reset(base::Seed seed);
+    ///
+    /// leader  as for a new world.
+    void reset(base::Seed seed, Leader* leader = nullptr);
 
     /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running, and the
     /// world not to await fitness.
@@ -204,17 +225,30 @@ class World {
     /// The opening of the present generation. Island::bred() contains its organisms.
     const Opening& opening() const { return opening_; }
 
+    std::uint32_t island_count() const { return static_cast<std::uint32_t>(islands_.size()); }
+    /// Returns an island in its present state. If another process simulates it, this is a copy, which is brought here
+    /// at the first call after a tick, and is valid until the next tick.
+    const Island& island(std::size_t island) const { return is_mine(island) ? islands_[island] : brought(island).now; }
+    /// Brings several islands here at once, so that island() returns them without waiting.
+    void bring(std::span<const std::uint32_t> islands) const;
+    /// The islands of a world; those that other processes simulate are empty.
     std::span<const Island> islands() const { return islands_; }
     /// The islands that this process simulates: [begin, end).
     base::Range share() const { return share_; }
-    base::Exchange& exchange() const { return *exchange_; }
+    bool is_shared() const { return sharing_.is_shared(); }
+    /// The number of organisms of this generation on an island, with those that were placed.
+    std::uint32_t organism_count(std::size_t island) const;
     /// The founders of the organisms in Island::born(). Empty if this world began with a later generation and received no
-    /// founders.
+    /// founders. Those of islands that other processes simulate are not here.
     const Founders& founders() const { return founders_; }
-    /// The founders of the organisms in Island::bred().
-    Founders founders_of_bred() const;
-    /// The founders of the organisms of one island.
+    /// The founders of the organisms of one island, which island() has returned.
     std::span<const std::uint32_t> founders(const Island& island) const;
+    /// Returns the organisms of all islands as the generation began, without those that were placed.
+    BredIslands bred() const;
+    /// Returns the outcome of the generation on every island. The generation must be over.
+    std::vector<IslandOutcome> outcomes() const;
+    /// Returns the live statistics of every island.
+    std::vector<LiveStatistics> live_statistics() const;
     /// false if the fitness needs only the chromosomes: the islands contain no bodies.
     bool has_bodies() const { return parameters::has_bodies(parameters_.active); }
     /// Predicts what organisms [ids.begin, ids.end) of an island will do next, if no item reappears before that. The
@@ -240,9 +274,44 @@ class World {
     /// Returns and removes the events since the last call, oldest first.
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
+    // For processes that follow (sharing.h). They read the arguments of the order.
+    static World created(base::Unpacker& order, base::Exchange& exchange);
+    static World opened(base::Unpacker& order, base::Exchange& exchange, base::Executor& executor);
+    void restore_share(base::Unpacker& order, base::Executor& executor);
+    /// Sends those of the islands that this process simulates to rank 0.
+    void send_islands(std::span<const WantedIsland> islands) const;
+    /// Sets the planned changes.
+    ///
+    /// planned_count  number of changes planned in this run so far.
+    void set_planned(std::vector<parameters::PlannedChange> planned, std::uint64_t planned_count);
+
   private:
     World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
-          parameters::Schedule schedule, base::Exchange& exchange);
+          parameters::Schedule schedule, Sharing sharing);
+    World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
+          base::Executor& executor, FirstPopulation first_population, Founders founders, parameters::Schedule schedule,
+          Sharing sharing);
+    /// Orders the other processes to create their share.
+    void order_creation() const;
+    void order_opening(const std::vector<evolution::NextGeneration>& born, const Founders& founders) const;
+    /// Orders the other processes to restore their share, and restores that of this process.
+    void restore_shared(const WorldState& state, base::Executor& executor);
+    /// Restores a state that has been checked. The islands of other processes are not read.
+    void apply_state(const WorldState& state, base::Executor& executor);
+    /// A copy of an island that another process simulates.
+    struct BroughtIsland {
+        Island begun; // as its generation began
+        Island now;
+        std::uint64_t tick; // `now` is its state after this tick of the run
+        std::vector<std::uint32_t> founders;
+    };
+    BroughtIsland& brought(std::size_t island) const;
+    /// Reads what send_islands() has sent.
+    void receive(const WantedIsland& wanted, base::Unpacker& unpacker) const;
+    EntityIds place_here(Island& island, const PlaceEntities& command);
+    void turn_over_share(base::Executor& executor);
+    /// Returns an island that this process may change: its own, or a copy that has been brought; otherwise nullptr.
+    Island* island_here(std::size_t island);
     void begin_run();
     parameters::Parameters parameters_of_next_tick() const;
     void make_islands();
@@ -258,7 +327,10 @@ class World {
     /// id, by  ParametersChanged::planned and ParametersChanged::by.
     void apply_planned(std::span<const parameters::Assignment> changes,
                        const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
-    void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
+    /// Begins a generation with the organisms that make() returns. If memory does not suffice for them in one of the
+    /// processes that share the world, throws TooLargeToShare in all of them.
+    template <class Make>
+    void begin_generation(Make&& make, base::Executor& executor);
     /// Returns whether a generation ends after `generation_tick` if `alive` organisms are then alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
     bool is_fitness_external() const { return parameters_.active.fitness == parameters::FitnessFunction::External; }
@@ -271,11 +343,10 @@ class World {
     std::uint64_t advance_share(base::Executor& executor);
     /// Brings all processes to the tick that the last of them has reached, and exchanges summaries and extinctions.
     void meet(base::Executor& executor);
-    void exchange_summaries();
+    /// Throws TooLargeToShare in all processes if `fits` is false in one of them.
+    void exchange_summaries(bool fits = true);
     std::vector<IslandSummary> summaries_of_share() const;
-    bool is_shared() const { return exchange_->size() > 1; }
     bool is_mine(std::size_t island) const { return share_.begin <= island && island < share_.end; }
-    std::uint32_t organism_count(std::size_t island) const;
     /// Records the statistics of the ended generation.
     void close_generation(const std::vector<GenerationStatistics>& statistics);
     /// Returns the chromosomes to breed from, one matrix per island. If migrants arrive, these are new matrices, which
@@ -297,9 +368,10 @@ class World {
     bool generation_over_ = false;
     base::StateHash hash_;
     std::vector<Island> islands_;
-    base::Exchange* exchange_;
+    Sharing sharing_;
     base::Range share_{0, 0};
     std::vector<IslandSummary> summaries_; // of all islands, as other processes have reported them; empty if not shared
+    mutable std::map<std::size_t, BroughtIsland> brought_; // of this generation, by index; only on rank 0
     Opening opening_;
     History history_;
     Changes changes_;

@@ -1,12 +1,16 @@
 #include "server/simulation/world_state.h"
 
-#include "server/simulation/island.h"
+#include "server/base/assert.h"
+#include "server/simulation/packed.h"
+#include "server/simulation/rating.h"
+#include "server/simulation/world.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace evod::simulation {
 namespace {
@@ -239,6 +243,120 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
     alive_count_ -= static_cast<std::uint32_t>(gone.size());
     hash_ = whole_hash();
     hash_ -= uncovered;
+}
+
+WorldState World::state(base::Executor& executor) const {
+    sharing_.order(Order::State);
+    WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
+    if (is_fitness_external()) {
+        state.given_fitness = fitness_;
+    }
+    state.islands.resize(islands_.size());
+    for_each_island(share_, executor, [&](std::size_t i) { state.islands[i] = islands_[i].state(executor); });
+    collect_islands(
+        sharing_.exchange(), share_, [&](base::Packer& packer, std::size_t i) { pack(packer, state.islands[i]); },
+        [&](base::Unpacker& unpacker, std::size_t i) { state.islands[i] = unpack_island_state(unpacker); });
+    if (generation_over_) {
+        state.ended = history_.back();
+    }
+    return state;
+}
+
+std::vector<IslandShape> World::shapes() const {
+    EVOD_ASSERT(!is_shared());
+    std::vector<IslandShape> shapes;
+    for (const Island& island : islands_) {
+        shapes.push_back(island.shape());
+    }
+    return shapes;
+}
+
+base::Result<void> World::restore(const WorldState& state, base::Executor& executor) {
+    EVOD_ASSERT(!is_shared());
+    EVOD_ASSERT(moment_.generation_tick == 0);
+    const auto wrong = [](const char* what) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = std::string{"impossible state for this generation: wrong "} + what,
+                             .violations = {}};
+    };
+    const Moment& moment = state.moment;
+    const parameters::ParameterSet& set = state.parameters;
+    if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
+        moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
+        moment.simulated_s < moment_.simulated_s) {
+        return wrong("moment");
+    }
+    // Parameters that take effect at a generation must still have the values from the beginning of this generation.
+    if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
+        !parameters::validate(set.active).empty() ||
+        !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
+             .empty()) {
+        return wrong("parameters");
+    }
+    if (state.islands.size() != islands_.size()) {
+        return wrong("number of islands");
+    }
+    // No tick of a generation follows its last one, so the previous tick must not have ended the generation.
+    if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
+        return wrong("moment");
+    }
+    const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
+    std::uint64_t alive = 0, removed = 0;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        if (auto checked = islands_[i].check(state.islands[i], tick); !checked) {
+            return checked;
+        }
+        if (tick == 0 && !differ_only_by_commands(islands_[i].state(executor), state.islands[i])) {
+            return wrong("beginning of the generation");
+        }
+        alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
+        removed += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Removed));
+    }
+    // If a command has removed the last living organism after this tick, the generation ends with the next tick.
+    const bool removed_last =
+        alive == 0 && removed > 0 && state.ended.empty() && state.given_fitness.empty() && !ends(tick, 1);
+    const bool after_last_tick = ends(tick, alive) && !removed_last;
+    if (!can_be_given(state, after_last_tick && is_fitness_external())) {
+        return wrong("fitness");
+    }
+    const bool over = after_last_tick && is_whole(state);
+    if (state.ended.size() != (over ? islands_.size() : 0)) {
+        return wrong("end of the generation");
+    }
+    for (std::size_t i = 0; i < state.ended.size(); ++i) {
+        if (state.ended[i].generation != moment.generation || state.ended[i].island != i ||
+            !std::isfinite(state.ended[i].fitness_best)) {
+            return wrong("statistics");
+        }
+    }
+
+    apply_state(state, executor);
+    return {};
+}
+
+void World::apply_state(const WorldState& state, base::Executor& executor) {
+    const auto tick = static_cast<std::uint32_t>(state.moment.generation_tick);
+    for_each_island(share_, executor,
+                    [&](std::size_t i) { islands_[i].restore(state.islands[i], tick, parameters_.active, executor); });
+    for (std::size_t i = share_.begin; i < share_.end && !founders_.empty(); ++i) {
+        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
+    }
+    moment_ = state.moment;
+    parameters_ = state.parameters;
+    exchange_summaries();
+    if (is_fitness_external()) {
+        fitness_ = state.given_fitness;
+    } else if (!state.ended.empty()) {
+        find_fitness(executor);
+    }
+    if (!state.ended.empty()) {
+        std::vector<GenerationStatistics> ended = state.ended;
+        for (std::size_t i = share_.begin; i < share_.end; ++i) {
+            ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
+        }
+        close_generation(ended);
+    }
+    update_hash();
 }
 
 } // namespace evod::simulation

@@ -3,16 +3,13 @@
 
 #include "server/base/inline_executor.h"
 #include "server/parameters/experiment.h"
-#include "server/simulation/share.h"
+#include "server/simulation/packed.h"
 #include "tests/determinism/scenarios.h"
-#include "tests/support/thread_executor.h"
-#include "tests/support/threaded_exchange.h"
+#include "tests/support/shared_worlds.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -22,8 +19,8 @@ namespace {
 using simulation::World;
 
 /// Creates the world of a scenario. Its changes are planned for the ticks before which Play makes them.
-World world_of(const Scenario& scenario, base::Exchange& exchange) {
-    World world{parameters_of(scenario.experiment), scenario.seed, {}, {}, exchange};
+World world_of(const Scenario& scenario, simulation::Leader* leader) {
+    World world{parameters_of(scenario.experiment), scenario.seed, {}, {}, leader};
     for (const Change& change : scenario.changes) {
         const parameters::Parameters values = parameters_of(change.parameters);
         parameters::PlannedChange planned{
@@ -86,25 +83,17 @@ void expect_equal(const Seen& shared, const Seen& alone) {
 
 void compare(const Scenario& scenario, std::uint32_t processes, std::uint64_t slice, std::size_t threads) {
     base::InlineExecutor one;
-    World reference = world_of(scenario, base::no_exchange());
+    World reference = world_of(scenario, nullptr);
     const Seen alone = advance(reference, scenario.ticks, 1, one);
-    std::mutex mutex; // guards `seen`
-    std::vector<Seen> seen;
-    support::ThreadedExchange exchange{processes};
-    exchange.run([&](base::Exchange& rank) {
-        support::ThreadExecutor executor{threads};
-        World world = world_of(scenario, rank);
-        Seen here = advance(world, scenario.ticks, slice, executor);
-        const std::scoped_lock lock{mutex};
-        seen.push_back(std::move(here));
-        for (std::size_t i = world.share().begin; i < world.share().end; ++i) {
-            EXPECT_EQ(world.founders()[i], reference.founders()[i]);
-            EXPECT_EQ(world.islands()[i].hash(), reference.islands()[i].hash());
+    support::share_worlds(processes, threads, [&](simulation::Leader& leader, base::Executor& executor) {
+        World world = world_of(scenario, &leader);
+        ASSERT_TRUE(world.is_shared());
+        expect_equal(advance(world, scenario.ticks, slice, executor), alone);
+        EXPECT_EQ(world.bred().founders, reference.bred().founders);
+        for (std::size_t i = 0; i < world.island_count(); ++i) {
+            EXPECT_EQ(world.island(i).hash(), reference.island(i).hash());
         }
     });
-    for (const Seen& here : seen) {
-        expect_equal(here, alone);
-    }
 }
 
 struct Sharing {

@@ -40,12 +40,6 @@ class ThreadedExchange {
         std::vector<std::string> gather(std::string part) override {
             return swap(std::vector<std::string>(size(), part));
         }
-        std::vector<std::string> collect(std::string part) override {
-            std::vector<std::string> parts(size());
-            parts.front() = std::move(part);
-            parts = swap(std::move(parts));
-            return rank_ == 0 ? parts : std::vector<std::string>{};
-        }
         std::vector<std::string> swap(std::vector<std::string> parts) override {
             all_.sent_[rank_] = std::move(parts);
             all_.barrier_.arrive_and_wait();
@@ -55,6 +49,10 @@ class ThreadedExchange {
             }
             all_.barrier_.arrive_and_wait();
             return received;
+        }
+
+        std::string broadcast(std::string from_first) override {
+            return swap(std::vector<std::string>(size(), from_first)).front();
         }
 
       private:

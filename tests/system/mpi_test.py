@@ -1,8 +1,4 @@
-"""evod under mpirun: shared runs, shared sweeps, refusals, lost processes. EVOD names the program.
-
-All processes run on this machine, more of them than it has processors.
-"""
-import contextlib
+"""evod under mpirun: shared runs, shared sweeps, refusals, lost processes. EVOD names the program."""
 import json
 import os
 import pathlib
@@ -12,19 +8,10 @@ import subprocess
 import tempfile
 import unittest
 
+import mpi_jobs as jobs
 import waiting
+from mpi_jobs import EVOD
 
-EVOD = os.environ["EVOD"]
-# As root, without a network, with more processes than processors, and without a processor of its own for each of them.
-OPEN_MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_btl": "self,vader",
-    "OMPI_MCA_plm": "isolated",
-    "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-}
 ISLANDS = {"island_count": 8, "population_size": 10, "food_count": 10, "poison_count": 10, "generation_s": 2,
            "migration_epoch": 1, "migrant_count": 2, "generation_limit": 4}
 EXPERIMENTS = {
@@ -35,12 +22,11 @@ EXPERIMENTS = {
     # Islands die out at different ticks, and some generations end before their time.
     "extinctions": {**ISLANDS, "migration": "ring", "food_count": 2, "health_loss_per_s": 45},
 }
-LOST = "(--rank-timeout): all ranks end"
 
 
 def mpirun(processes, *words, **options):
-    return ["mpirun", "-n", str(processes), *map(str, words)], {
-        "text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": {**os.environ, **OPEN_MPI}, **options}
+    return [*jobs.mpirun(processes), *map(str, words)], {
+        "text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": jobs.ENVIRONMENT, **options}
 
 
 def run(command, status=0):
@@ -60,18 +46,6 @@ def results(output):
     lines = output.splitlines()
     last = next(number for number, line in enumerate(lines) if "; state " in line)
     return lines[:last + 1]
-
-
-def processes_by_rank(job):
-    """The processes of evod that a mpirun has started."""
-    ranks = {}
-    for process in waiting.descendants(job.pid):
-        with contextlib.suppress(OSError, ValueError):
-            with open(f"/proc/{process}/environ") as environment:
-                variables = dict(line.split("=", 1) for line in environment.read().split("\0") if "=" in line)
-            if os.readlink(f"/proc/{process}/exe") == os.path.realpath(EVOD):
-                ranks[int(variables["OMPI_COMM_WORLD_RANK"])] = int(process)
-    return ranks
 
 
 class Folder(unittest.TestCase):
@@ -99,10 +73,7 @@ class Folder(unittest.TestCase):
         job = subprocess.Popen(words, **options)
 
         def end():
-            with contextlib.suppress(OSError):
-                for process in processes_by_rank(job).values():
-                    os.kill(process, signal.SIGCONT)
-            job.kill()
+            jobs.kill(job)
             job.communicate()
         self.addCleanup(end)
         return job
@@ -132,7 +103,15 @@ class Run(Folder):
                 expected = results(run(evod("run", file, "--seed", 7), status).stdout)
                 self.assertEqual(results(run(mpirun(3, EVOD, "run", file, "--seed", 7), status).stdout), expected)
 
-    def test_processes_draw_one_seed(self):
+    def test_only_rank_0_reads_files(self):
+        file = self.file(EXPERIMENTS["ring"])
+        expected = results(run(evod("run", file, "--seed", 7)).stdout)
+        script = self.script(f'mkdir "{self.folder}/$OMPI_COMM_WORLD_RANK" && cd "{self.folder}/$OMPI_COMM_WORLD_RANK" && '
+                             f'[ $OMPI_COMM_WORLD_RANK = 0 ] && cp "{file}" .\n'
+                             f'exec "{EVOD}" run experiment.json --seed 7\n')
+        self.assertEqual(results(run(mpirun(3, script)).stdout), expected)
+
+    def test_a_run_without_a_seed_can_be_repeated(self):
         done = run(mpirun(2, EVOD, "run", self.file(EXPERIMENTS["ring"])))
         seed = done.stdout.split()[1]
         again = run(evod("run", self.folder / "experiment.json", "--seed", seed))
@@ -211,14 +190,15 @@ class Refused(Folder):
         self.refused(mpirun(3, EVOD, "run", file, "--csv", self.folder / "x.csv"), 2,
                      "evod: 3 processes cannot share 2 islands: start at most one process per island, or set island_count\n")
 
-    def test_processes_with_different_experiments(self):
+    def test_processes_with_different_commands(self):
         self.file(ISLANDS, "0.json")
-        self.file({**ISLANDS, "mutation_chance": 0.25}, "1.json")
+        self.file(ISLANDS, "1.json")
         script = self.script(f'cd "{self.folder}" && exec "{EVOD}" run "$OMPI_COMM_WORLD_RANK.json" --csv x.csv\n')
         self.refused(mpirun(2, script), 1, "evod: rank 1 on .* has read other files or options, or is another build of evod, "
                                            "than rank 0 on .*: start all processes with the same program and files\n")
-        (self.folder / "1.json").unlink()
-        self.refused(mpirun(2, script), 1, r"evod: rank 1 on .*: .*1\.json.*\n")
+
+    def test_a_missing_experiment_is_named_once(self):
+        self.refused(mpirun(3, EVOD, "run", "0.json"), 1, r"^evod: .*0\.json.*\n(?!.*evod: )")
 
     def test_a_missing_component(self):
         alone = self.folder / "evod"
@@ -241,14 +221,12 @@ class Refused(Folder):
             with self.subTest(option):
                 self.refused(mpirun(2, EVOD, "sweep", sweep, *option), 1, "are for one process: start it without mpirun\n")
 
-    def test_the_server_and_all_other_commands(self):
-        data = self.folder / "data"
-        for name, words in {"the server": ["--data", data], "evod verify": ["verify", "no.evod"],
-                            "evod compare": ["compare", "no.json", "--controls"], "evod check": ["check"]}.items():
+    def test_all_other_commands(self):
+        for name, words in {"evod verify": ["verify", "no.evod"], "evod compare": ["compare", "no.json", "--controls"],
+                            "evod check": ["check"], "evod replay": ["replay", "no.evod"]}.items():
             with self.subTest(name):
                 self.refused(mpirun(2, EVOD, *words), 2, f"evod: {name} cannot share its work among processes: start it "
                                                          "without mpirun\n")
-        self.assertFalse(data.exists())
         self.assertIn("Experiments", run(mpirun(2, EVOD, "--help")).stdout)
 
 
@@ -259,7 +237,7 @@ class Lost(Folder):
         job = self.started(mpirun(4, EVOD, "run", file, "--seed", 7, "--threads", 1, *options))
         while not (line := job.stdout.readline()).split()[:2] == ["1", "7"]:  # generation, island
             self.assertTrue(line, "it ended")
-        ranks = processes_by_rank(job)
+        ranks = jobs.processes_by_rank(job)
         self.assertEqual(sorted(ranks), [0, 1, 2, 3])
         return job, ranks
 
@@ -269,25 +247,26 @@ class Lost(Folder):
         errors = waiting.communicate(job)[1]
         self.assertEqual(job.returncode, 128 + signal.SIGKILL)
         self.assertRegex(errors, r"process rank 2 with PID \d+ on node .* exited on signal 9 \(Killed\)")
-        self.assertNotIn(LOST, errors)
+        self.assertNotIn("--rank-timeout", errors)
 
     def test_a_stopped_process_is_named(self):
         job, ranks = self.running("--rank-timeout", 1)
         os.kill(ranks[3], signal.SIGSTOP)
         errors = waiting.communicate(job)[1]
-        self.assertRegex(errors, "evod: rank 3 on [^,]* did not respond for 1 s " + LOST.replace("(", r"\(").replace(")", r"\)"))
-        self.assertEqual(job.returncode, 5)
+        self.assertRegex(errors, jobs.LOST.format(3, 1))
+        self.assertEqual(job.returncode, jobs.EXIT_RANK_LOST)
 
     def test_a_stopped_rank_0_is_named_by_the_others(self):
         job, ranks = self.running("--rank-timeout", 1)
         os.kill(ranks[0], signal.SIGSTOP)
         errors = waiting.communicate(job)[1]
-        self.assertRegex(errors, "evod: rank 0 on [^,]* did not respond for")
-        self.assertEqual(job.returncode, 5)
+        self.assertRegex(errors, jobs.LOST.format(0, 1))
+        self.assertEqual(job.returncode, jobs.EXIT_RANK_LOST)
 
-    def test_an_interrupted_process_ends_all(self):
+    def test_rank_0_ends_all_when_it_is_interrupted(self):
         job, ranks = self.running()
-        os.kill(ranks[2], signal.SIGTERM)
+        os.kill(ranks[2], signal.SIGTERM)  # the others leave signals to rank 0
+        os.kill(ranks[0], signal.SIGTERM)
         output, _ = waiting.communicate(job)
         self.assertIn("ended: interrupted\n", output)
         self.assertEqual(job.returncode, 130)

@@ -22,8 +22,8 @@ class Played final : public runtime::Processes {
     std::uint32_t rank() const override { return exchange_.rank(); }
     std::uint32_t size() const override { return exchange_.size(); }
     std::vector<std::string> gather(std::string part) override { return exchange_.gather(std::move(part)); }
-    std::vector<std::string> collect(std::string part) override { return exchange_.collect(std::move(part)); }
     std::vector<std::string> swap(std::vector<std::string> parts) override { return exchange_.swap(std::move(parts)); }
+    std::string broadcast(std::string from_first) override { return exchange_.broadcast(std::move(from_first)); }
     std::uint32_t on_this_machine() const override { return size(); }
     std::string name_of(std::uint32_t rank) const override { return "rank " + std::to_string(rank) + " on node"; }
     double exchange_s() const override { return 0; }

@@ -17,6 +17,7 @@ std::optional<ServeOptions> parse(std::vector<const char*> words) {
     words.insert(words.begin(), "evod");
     command_line::Command app{"evod", "", ""};
     ServeOptions options;
+    add_sharing_options(app, options.sharing);
     add_server_options(app, options);
     add_first_world_options(app, options);
     add_storage_options(app, options);
@@ -40,6 +41,7 @@ TEST(ServeOptions, ValuesOutOfRangeAreRejected) {
     EXPECT_TRUE(parse({"--port", "0", "--threads", "1024", "--speed", "max"}));
     for (const std::vector<const char*>& words : {std::vector<const char*>{"--port", "65536"},
                                                   {"--threads", "0"},
+                                                  {"--rank-timeout", "0"},
                                                   {"--speed", "0"},
                                                   {"--http-bind", "::1"},
                                                   {"--http-host", "lab"},

@@ -4,15 +4,13 @@
 #include "server/replay/verify.h"
 #include "server/run_file/check.h"
 #include "server/run_file/data_folder.h"
-#include "tests/support/threaded_exchange.h"
+#include "tests/support/shared_worlds.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <mutex>
 
 namespace evod::experiments {
 namespace {
@@ -30,24 +28,21 @@ class RunRecordingTest : public testing::Test {
         experiment.seed = base::Seed{7};
         return experiment;
     }
-    base::Result<std::unique_ptr<RunRecording>> open(base::Exchange& exchange = base::no_exchange()) const {
-        return RunRecording::open(path, experiment, {}, exchange);
-    }
+    base::Result<std::unique_ptr<RunRecording>> open() const { return RunRecording::open(path, experiment, {}); }
     /// Simulates the run, or the rest of it, in so many slices. Without close(), it ends as if it was killed.
-    void simulate(base::Exchange& exchange, int slices, bool closes) const {
-        base::InlineExecutor executor;
-        const auto opened = open(exchange);
+    void simulate(simulation::Leader& leader, base::Executor& executor, int slices, bool closes) const {
+        const auto opened = open();
         ASSERT_TRUE(opened) << to_text(opened.error());
         RunRecording& run = **opened;
         ASSERT_NE(run.stored(), Stored::Whole);
         simulation::World world =
             run.stored() == Stored::Part
-                ? run.continued_world(experiment, {}, executor)
-                : simulation::World{experiment.parameters, *experiment.seed, {}, experiment.schedule, exchange};
+                ? run.continued_world(experiment, {}, executor, leader)
+                : simulation::World{experiment.parameters, *experiment.seed, {}, experiment.schedule, &leader};
         ASSERT_TRUE(run.begin(world, {1, 2}));
         for (int slice = 0; slice < slices && world.outcome() == evolution::Outcome::Running; ++slice) {
             const std::uint64_t tick = world.moment().tick, step = run_file::ticks_per_hash;
-            world.advance(exchange.size() > 1 ? tick - tick % step + step : tick + 1, executor);
+            world.advance(world.is_shared() ? tick - tick % step + step : tick + 1, executor);
             ASSERT_TRUE(run.follow(world));
             if (world.generation_over()) {
                 if (world.outcome() == evolution::Outcome::Running) {
@@ -62,10 +57,9 @@ class RunRecordingTest : public testing::Test {
         }
     }
     void simulate(std::uint32_t processes, int slices, bool closes) const {
-        if (processes == 1) {
-            return simulate(base::no_exchange(), slices, closes);
-        }
-        support::ThreadedExchange{processes}.run([&](base::Exchange& exchange) { simulate(exchange, slices, closes); });
+        support::share_worlds(processes, 1, [&](simulation::Leader& leader, base::Executor& executor) {
+            simulate(leader, executor, slices, closes);
+        });
     }
     /// Expects a file that contains the whole run and equals a new simulation.
     void expect_whole() const {
@@ -141,7 +135,7 @@ TEST_F(RunRecordingTest, RefusesAnotherRun) {
     const auto refusal_with = [&](auto&& change) {
         parameters::Experiment other = experiment;
         change(other);
-        const auto run = RunRecording::open(path, other, {}, base::no_exchange());
+        const auto run = RunRecording::open(path, other, {});
         return run ? std::string{} : run.error().message;
     };
     EXPECT_THAT(refusal_with([](auto& other) { other.seed = base::Seed{8}; }), HasSubstr("its seed is 7, not 8"));
@@ -153,8 +147,7 @@ TEST_F(RunRecordingTest, RefusesAnotherRun) {
                 HasSubstr("schedule"));
     EXPECT_EQ(refusal_with([](auto& other) { other.seed.reset(); }), "");
     const auto drawn = std::make_shared<const std::vector<evolution::GeneMatrix>>();
-    EXPECT_THAT(RunRecording::open(path, experiment, drawn, base::no_exchange()).error().message,
-                HasSubstr("first population"));
+    EXPECT_THAT(RunRecording::open(path, experiment, drawn).error().message, HasSubstr("first population"));
 }
 
 TEST_F(RunRecordingTest, RefusesAFileThatIsBeingWritten) {
@@ -176,19 +169,6 @@ TEST_F(RunRecordingTest, RefusesOtherFiles) {
     EXPECT_FALSE(fs::exists(path + "-lock"));
 }
 
-TEST_F(RunRecordingTest, AllProcessesGetTheSameRefusal) {
-    std::ofstream{path} << "generation,island,best,mean,median\n";
-    std::mutex mutex; // guards `messages`
-    std::map<std::uint32_t, std::string> messages;
-    support::ThreadedExchange{2}.run([&](base::Exchange& exchange) {
-        const auto run = open(exchange);
-        const std::scoped_lock lock{mutex};
-        messages[exchange.rank()] = run ? "" : run.error().message;
-    });
-    EXPECT_NE(messages[0], "");
-    EXPECT_EQ(messages[0], messages[1]);
-}
-
 TEST_F(RunRecordingTest, ReportsAStateThatDiffersFromTheStoredOne) {
     simulate(1, 70, true);
     {
@@ -201,7 +181,8 @@ TEST_F(RunRecordingTest, ReportsAStateThatDiffersFromTheStoredOne) {
     }
     base::InlineExecutor executor;
     const auto run = open();
-    simulation::World world = (*run)->continued_world(experiment, {}, executor);
+    simulation::Leader alone{base::no_exchange()};
+    simulation::World world = (*run)->continued_world(experiment, {}, executor, alone);
     ASSERT_TRUE((*run)->begin(world, {1, 2}));
     base::Result<void> followed;
     for (int tick = 0; tick < 60; ++tick) {

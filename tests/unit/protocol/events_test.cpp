@@ -16,7 +16,7 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
     const std::string by = "karl: evoctl 127.0.0.1:5000";
     const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
                                            simulation::MigrationHappened{1, {{0, 1, 2}}},
-                                           simulation::Extinction{1, 2},
+                                           simulation::Extinction{1, 2, 30},
                                            simulation::RunTerminated{evolution::Outcome::Stagnation},
                                            simulation::ParametersChanged{3, by, {"mutation_chance"}, 7},
                                            simulation::ChangeDropped{3, by, {"mutation_chance"}, {{"a", "b", "c"}}},

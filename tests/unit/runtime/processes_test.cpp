@@ -31,6 +31,7 @@ TEST_F(ProcessesTest, AProcessWithoutALauncherIsAlone) {
     EXPECT_EQ(alone.gather("a"), std::vector<std::string>{"a"});
     EXPECT_EQ(alone.collect("b"), std::vector<std::string>{"b"});
     EXPECT_EQ(alone.swap({"c"}), std::vector<std::string>{"c"});
+    EXPECT_EQ(alone.broadcast("d"), "d");
 }
 
 TEST_F(ProcessesTest, AnyLauncherMayHaveStartedSeveral) {

@@ -1,0 +1,30 @@
+// Shared worlds: lets the threads of one process play the processes that share worlds.
+#pragma once
+
+#include "server/simulation/sharing.h"
+#include "tests/support/thread_executor.h"
+#include "tests/support/threaded_exchange.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace evod::support {
+
+/// Calls work(leader, executor) as rank 0 of so many processes. The others follow it.
+///
+/// threads  of each process.
+inline void share_worlds(std::uint32_t processes, std::size_t threads,
+                         const std::function<void(simulation::Leader&, base::Executor&)>& work) {
+    ThreadedExchange{processes}.run([&](base::Exchange& exchange) {
+        ThreadExecutor executor{threads};
+        if (exchange.rank() == 0) {
+            simulation::Leader leader{exchange};
+            work(leader, executor);
+        } else {
+            simulation::follow(exchange, executor);
+        }
+    });
+}
+
+} // namespace evod::support
