@@ -153,6 +153,12 @@ v1::Metrics Server::metrics() {
     add_gauge(all, "evod_build_info", "Always 1; the labels are the version and the vector instructions in use")
         .add(1, {{"version", EVOD_VERSION}, {"instructions", std::string{base::name_of(base::instructions())}}});
     add_worlds(all, worlds_counted_);
+    const runtime::Processes* const processes = options_.processes;
+    add_gauge(all, "evod_processes", "Processes of mpirun that share worlds, with this one")
+        .add(processes != nullptr ? processes->size() : 1);
+    add_counter(all, "evod_exchange_seconds_total",
+                "Time for which the simulation has waited for the other processes and for what they send")
+        .add(processes != nullptr ? processes->exchange_s() : 0);
     add_queues(all, mailbox_.fill(), outbox_.fill());
     add_sessions(all, sessions_, options_.session_bounds.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
