@@ -24,9 +24,10 @@ def at(**moment):
 
 
 class Server(plain.Server):
-    def __init__(self, *words, **popen):
+    def __init__(self, *words, launcher=(), **popen):
+        """launcher: the words before the program, of another one that starts it."""
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log, **popen)
+        self.process = subprocess.Popen([*launcher, EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log, **popen)
         line = plain.until(lambda: self.process.poll() is not None or
                            re.search(r"listening on 127\.0\.0\.1:(\d+)", self.output()), "ready")
         if line is True:
