@@ -45,6 +45,7 @@ int main() {
                                     std::size_t{1} << 23}) {
         const int calls = bytes < 1000 ? 5000 : bytes < 2'000'000 ? 200 : 30;
         const std::string part(bytes, 'x');
+        measure("broadcast", bytes, calls, processes, [&] { (void)processes.broadcast(part); });
         measure("gather", bytes, calls, processes, [&] { (void)processes.gather(part); });
         measure("swap", bytes, calls, processes,
                 [&] { (void)processes.swap(std::vector<std::string>(processes.size(), part)); });

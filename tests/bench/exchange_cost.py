@@ -24,7 +24,8 @@ OPEN_MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"
 # The model: the time of a generation is the longest time that a process computes, and what all of them exchange.
 ORGANISM_TICKS_PER_S = 36e6  # of a thread; measured: 8 islands of 10,000 organisms
 ISLAND_SPREAD = 0.05  # standard deviation of the time of an island, as a share of its mean; assumed
-TICKS, SLICE_TICKS = 2400, 240  # of a generation; between two exchanges of `evod run`
+TICKS, SLICE_TICKS = 2400, 240  # of a generation; of a slice of `evod run` without a run file
+SERVER_SLICE_S = 0.015  # of a slice of a server at full speed
 STATISTICS_BYTES, MIGRANT_BYTES = 700, 44  # of an island; of a migrant
 STORED_BYTES = 60  # of an organism and generation in a run file
 DISK_BYTES_PER_S = 200e6  # of a network file system; assumed
@@ -32,36 +33,40 @@ DISK_BYTES_PER_S = 200e6  # of a network file system; assumed
 NETWORKS = {"shared memory": (0.9e-6, 4e9), "InfiniBand": (2e-6, 12e9), "10 GbE": (25e-6, 1.1e9)}
 
 
-def generation(processes, islands, organisms, threads, network, run_file):
+def generation(processes, islands, organisms, threads, network, run_file=False, server=False):
     """The parts of the time of a generation, in seconds."""
     message_s, bytes_per_s = NETWORKS[network]
     most = math.ceil(islands / processes)  # islands of a process
     mean_s = most * organisms * TICKS / (ORGANISM_TICKS_PER_S * threads)
     rounds = math.ceil(math.log2(processes)) if processes > 1 else 0
-    exchanges = 2 * math.ceil(TICKS / SLICE_TICKS) + 4  # state and interrupts of each slice; end, migrants
-    exchanged = islands * (STATISTICS_BYTES + 32 * math.ceil(TICKS / SLICE_TICKS)) + most * MIGRANT_BYTES
+    slice_ticks = 60 if run_file else SLICE_TICKS
+    slices = math.ceil(min(TICKS, max(mean_s / SERVER_SLICE_S, TICKS / 60)) if server else TICKS / slice_ticks)
+    # One after another: an order and an exchange of states per slice; statistics, migrants, beginning of the generation.
+    messages = rounds * (3 * slices + 8)
+    exchanged = islands * (STATISTICS_BYTES + 32 * slices) + most * MIGRANT_BYTES
     # The expected largest of R sums of `most` normally distributed times.
     wait_s = mean_s * ISLAND_SPREAD / math.sqrt(most) * math.sqrt(2 * math.log(processes)) if processes > 1 else 0
     stored = islands * organisms * STORED_BYTES if run_file else 0
     received_s = stored / bytes_per_s * (processes - 1) / processes
     # Rank 0 receives between two generations; the disk writes while the next one is simulated.
-    computed_s = mean_s + wait_s + exchanges * 2 * rounds * message_s + (exchanged / bytes_per_s if processes > 1 else 0)
+    computed_s = mean_s + wait_s + messages * message_s + (exchanged / bytes_per_s if processes > 1 else 0)
     return {"compute": mean_s, "wait": wait_s, "exchange": computed_s - mean_s - wait_s, "receive": received_s,
             "all": max(computed_s + received_s, stored / DISK_BYTES_PER_S)}
 
 
 def print_table(title, rows, network):
-    print(f"\n{title}, {network}: seconds of a generation\n"
-          "                                             run file     efficiency\n"
-          "processes   compute   waiting  exchange   to rank 0   with it  without")
+    print(f"\n{title}, {network}: seconds of a generation of `evod run`\n"
+          "                                             run file              efficiency\n"
+          "processes   compute   waiting  exchange   to rank 0   with it  without  server without it")
     first = None
-    for processes, islands, organisms, threads in rows:
-        stored, plain = (generation(processes, islands, organisms, threads, network, run_file) for run_file in (True, False))
+    for row in rows:
+        stored, plain, served = (generation(*row, network, **kind) for kind in ({"run_file": True}, {}, {"server": True}))
+        processes, islands, organisms, _ = row
         work = islands * organisms / processes
         first = first or work / plain["all"]
-        shares = [work / parts["all"] / first for parts in (stored, plain)]
-        print(f"{processes:9} {stored['compute']:9.3f} {stored['wait']:9.3f} {stored['exchange']:9.4f} {stored['receive']:11.2f} "
-              f"{shares[0]:9.0%} {shares[1]:8.0%}  {'#' * round(30 * shares[1])}")
+        shares = [work / parts["all"] / first for parts in (stored, plain, served)]
+        print(f"{processes:9} {plain['compute']:9.3f} {plain['wait']:9.3f} {plain['exchange']:9.4f} {stored['receive']:11.2f} "
+              f"{shares[0]:9.0%} {shares[1]:8.0%} {shares[2]:9.0%}          {'#' * round(30 * shares[1])}")
 
 
 def print_model():
@@ -89,7 +94,7 @@ def measure_exchanges(folder, rounds):
             best[key] = min(best.get(key, (math.inf, math.inf)), (float(median), float(shortest)))
     print("exchanges between two processes    median µs   shortest µs   MB/s received")
     for (operation, size), (median, shortest) in best.items():
-        print(f"{operation:8} {size:10} B each {median:19.2f} {shortest:13.2f} {size / median:15.0f}")
+        print(f"{operation:9} {size:10} B each {median:19.2f} {shortest:13.2f} {size / median:15.0f}")
 
 
 def measure_scaling(folder, organisms, rounds):
