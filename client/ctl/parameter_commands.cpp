@@ -237,7 +237,7 @@ void add_parameter_commands(command_line::Command& app, const Common& common) {
     auto& set_command =
         app.add_command("set", "Change parameters; if one value is refused, none is changed").group(group);
     auto& options = set_command.keep(SetOptions{});
-    set_command.add_option("NAME=VALUE", &options.words, "Parameters with their new values").required();
+    set_command.add_option("CHANGE", &options.words, "Parameters with their new values, each as NAME=VALUE").required();
     set_command.add_flag("--dry-run", &options.dry_run, "Only check the values; change nothing");
     set_command
         .add_option("--if-revision", &options.expected_revision,

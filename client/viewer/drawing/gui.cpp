@@ -1,5 +1,7 @@
 #include "client/viewer/drawing/gui.h"
 
+#include "client/viewer/drawing/imgui_keys.h"
+
 #include <SFML/System/Utf.hpp>
 #include <SFML/Window/Clipboard.hpp>
 #include <backends/imgui_impl_opengl3.h>
@@ -80,9 +82,7 @@ Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // prevents Dear ImGui from writing a settings file
     io.UserData = widget_positions_.get();
-    for (const NamedKey& named : named_keys) {
-        io.KeyMap[named.name] = named.key;
-    }
+    prepare_keys();
     io.ClipboardUserData = &clipboard_;
     io.GetClipboardTextFn = [](void* kept) {
         const auto utf8 = sf::Clipboard::getString().toUtf8();
@@ -115,17 +115,16 @@ void Gui::handle(const sf::Event& event) {
 }
 
 bool Gui::pass_on_key(const sf::Event& event, Received& received) {
-    ImGuiIO& io = ImGui::GetIO();
     const sf::Event::KeyEvent& key = event.key;
     const bool pressed = event.type == sf::Event::KeyPressed;
     if (const NamedKey* named = find_named(key.code)) {
         const bool down = pressed && (!named->with_control || key.control);
-        if (bool& known = io.KeysDown[key.code]; known != down) {
+        if (is_key_down(named->name) != down) {
             if (received.key || received.text) {
                 return false;
             }
             received.key = true;
-            known = down;
+            set_key(named->name, down);
         }
     }
     // SFML may report the state of modifier keys before the event, so the state of the key that was pressed or released
@@ -133,10 +132,8 @@ bool Gui::pass_on_key(const sf::Event& event, Received& received) {
     const auto held = [&](bool reported, Key::Key left, Key::Key right) {
         return is_one_of(key.code, left, right) ? pressed : reported;
     };
-    io.KeyCtrl = held(key.control, Key::LControl, Key::RControl);
-    io.KeyShift = held(key.shift, Key::LShift, Key::RShift);
-    io.KeyAlt = held(key.alt, Key::LAlt, Key::RAlt);
-    io.KeySuper = held(key.system, Key::LSystem, Key::RSystem);
+    set_modifiers(held(key.control, Key::LControl, Key::RControl), held(key.shift, Key::LShift, Key::RShift),
+                  held(key.alt, Key::LAlt, Key::RAlt), held(key.system, Key::LSystem, Key::RSystem));
     return true;
 }
 
@@ -180,8 +177,10 @@ bool Gui::pass_on(const sf::Event& event, Received& received) {
         break;
     case sf::Event::LostFocus:
         std::ranges::fill(io.MouseDown, false);
-        std::ranges::fill(io.KeysDown, false);
-        io.KeyCtrl = io.KeyShift = io.KeyAlt = io.KeySuper = false;
+        for (const NamedKey& named : named_keys) {
+            set_key(named.name, false);
+        }
+        set_modifiers(false, false, false, false);
         break;
     default:
         break;

@@ -1,5 +1,6 @@
 #include "client/viewer/panels/new_world_dialog.h"
 
+#include "client/viewer/drawing/imgui_keys.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/world/freezer.h"
 #include "client/viewer/world/presets.h"
@@ -191,7 +192,7 @@ void NewWorldDialog::build_end(Panel::Context& context) {
     widgets::mark("Create");
     ImGui::EndDisabled();
     ImGui::SameLine();
-    const bool escape = !ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool escape = !ImGui::IsAnyItemActive() && is_key_pressed(ImGuiKey_Escape);
     const bool cancelled = ImGui::Button("Cancel", size);
     widgets::mark("Cancel");
     if (cancelled || escape || answers_->created) {

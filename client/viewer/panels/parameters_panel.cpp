@@ -1,5 +1,6 @@
 #include "client/viewer/panels/parameters_panel.h"
 
+#include "client/viewer/drawing/imgui_keys.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/world/status_text.h"
@@ -196,9 +197,8 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool keys =
         may && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !io.WantTextInput && io.KeyCtrl;
-    const bool undo_key = keys && ImGui::IsKeyPressed(sf::Keyboard::Z, false) && !io.KeyShift;
-    const bool redo_key = keys && (ImGui::IsKeyPressed(sf::Keyboard::Y, false) ||
-                                   (ImGui::IsKeyPressed(sf::Keyboard::Z, false) && io.KeyShift));
+    const bool z = keys && is_key_pressed(ImGuiKey_Z, false), y = keys && is_key_pressed(ImGuiKey_Y, false);
+    const bool undo_key = z && !io.KeyShift, redo_key = y || (z && io.KeyShift);
     const std::size_t count = edits_.edit_count();
     ImGui::BeginDisabled(count == 0 || edits_.busy());
     if (widgets::button("Apply")) {

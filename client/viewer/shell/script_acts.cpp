@@ -95,7 +95,11 @@ std::optional<Chord> parse_chord(std::string_view text) {
 void send_key(Host& host, bool pressed, Key::Key key, const Chord& held) {
     sf::Event event{};
     event.type = pressed ? sf::Event::KeyPressed : sf::Event::KeyReleased;
-    event.key = {.code = key, .alt = held.alt, .control = held.control, .shift = held.shift, .system = false};
+    event.key = sf::Event::KeyEvent{};
+    event.key.code = key;
+    event.key.alt = held.alt;
+    event.key.control = held.control;
+    event.key.shift = held.shift;
     host.send(event);
 }
 

@@ -1,5 +1,6 @@
 #include "client/viewer/panels/breeding/breeding_panel.h"
 
+#include "client/viewer/drawing/imgui_keys.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/caption.h"
@@ -61,10 +62,6 @@ bool may_hold(const ViewedWorld& world) {
 
 GenerationHold::Run run_of(const ViewedWorld& world) {
     return {world.feed.control().world(), world.feed.control().run_id()};
-}
-
-bool pressed(ImGuiKey key) {
-    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
 
 } // namespace
@@ -398,19 +395,19 @@ void BreedingPanel::take_keys() {
     if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) || field_active_ || field_was_active) {
         return;
     }
-    if (pressed(ImGuiKey_LeftArrow)) {
+    if (is_key_pressed(ImGuiKey_LeftArrow)) {
         stepper_.back();
-    } else if (pressed(ImGuiKey_RightArrow)) {
+    } else if (is_key_pressed(ImGuiKey_RightArrow)) {
         stepper_.step();
-    } else if (pressed(ImGuiKey_PageUp)) {
+    } else if (is_key_pressed(ImGuiKey_PageUp)) {
         stepper_.previous_stage();
-    } else if (pressed(ImGuiKey_PageDown)) {
+    } else if (is_key_pressed(ImGuiKey_PageDown)) {
         stepper_.next_stage();
-    } else if (pressed(ImGuiKey_Home)) {
+    } else if (is_key_pressed(ImGuiKey_Home)) {
         stepper_.to_begin();
-    } else if (pressed(ImGuiKey_End)) {
+    } else if (is_key_pressed(ImGuiKey_End)) {
         stepper_.to_end();
-    } else if (pressed(ImGuiKey_Space) || pressed(ImGuiKey_Enter)) {
+    } else if (is_key_pressed(ImGuiKey_Space) || is_key_pressed(ImGuiKey_Enter)) {
         stepper_.play_or_stop();
     }
 }

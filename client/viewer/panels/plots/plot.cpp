@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace evod::viewer {
 
@@ -504,6 +505,16 @@ Range shown_x(const Plot& plot, const PlotView& view) {
     return view.x.value_or(whole_x(plot));
 }
 
+/// Makes `list` the only list of `data`: an array of Dear ImGui before 1.89.8 is a vector in later versions.
+template <class Data>
+void set_lists(Data& data, ImDrawList*& list) {
+    if constexpr (std::is_pointer_v<decltype(data.CmdLists)>) {
+        data.CmdLists = &list;
+    } else {
+        data.CmdLists.push_back(list);
+    }
+}
+
 } // namespace
 
 Range whole_x(const Plot& plot) {
@@ -584,10 +595,10 @@ sf::Image image_of(const Plot& plot, const PlotView& view, unsigned width_pixels
     Drawing drawing{
         list, font, plot, plot.title, shown_x(plot, view), {margin, margin, width - margin, height - margin}};
     drawing.draw();
-    ImDrawList* const lists[] = {&list};
+    ImDrawList* only_list = &list;
     ImDrawData data;
     data.Valid = true;
-    data.CmdLists = const_cast<ImDrawList**>(lists);
+    set_lists(data, only_list);
     data.CmdListsCount = 1;
     data.TotalIdxCount = list.IdxBuffer.Size;
     data.TotalVtxCount = list.VtxBuffer.Size;

@@ -10,7 +10,10 @@ using Key = sf::Keyboard;
 sf::Event key(sf::Event::EventType type, Key::Key code, bool shift = false, bool control = false) {
     sf::Event event{};
     event.type = type;
-    event.key = {.code = code, .alt = false, .control = control, .shift = shift, .system = false};
+    event.key = sf::Event::KeyEvent{};
+    event.key.code = code;
+    event.key.control = control;
+    event.key.shift = shift;
     return event;
 }
 sf::Event press(Key::Key code, bool shift = false, bool control = false) {

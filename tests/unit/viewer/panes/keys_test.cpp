@@ -14,7 +14,11 @@ using testing::Field;
 using Key = sf::Keyboard;
 
 sf::Event::KeyEvent event_of(const KeyBinding& binding) {
-    return {.code = binding.key, .alt = false, .control = binding.control, .shift = binding.shift, .system = false};
+    sf::Event::KeyEvent event{};
+    event.code = binding.key;
+    event.control = binding.control;
+    event.shift = binding.shift;
+    return event;
 }
 
 testing::Matcher<HelpLine> line(const std::string& keys, const std::string& text) {
