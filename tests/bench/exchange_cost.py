@@ -15,11 +15,11 @@ import pathlib
 import re
 import resource
 import subprocess
+import sys
 import tempfile
 
-OPEN_MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
-            "OMPI_MCA_plm": "isolated", "OMPI_MCA_hwloc_base_binding_policy": "none",
-            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "system"))
+from open_mpi import OPEN_MPI  # noqa: E402
 
 # The model: the time of a generation is the longest time that a process computes, and what all of them exchange.
 ORGANISM_TICKS_PER_S = 36e6  # of a thread; measured: 8 islands of 10,000 organisms

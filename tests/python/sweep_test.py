@@ -21,16 +21,12 @@ import evod
 import evod.aio
 import waiting
 from evod import executor_sweep
+from open_mpi import OPEN_MPI
 from support import PROGRAM, Temporary
 
 SMALL = {"population_size": 12, "generation_s": 2}
 GRID = {"mutation_chance": {"from": 0.01, "to": 0.5, "steps": 3, "scale": "log"}, "shuffle_fitness": [True, False]}
 LONG = {"generation_limit": 1_000_000}  # takes an hour
-#: Open MPI refuses to start as root, and on a machine with fewer cores than processes, unless these variables are set.
-OPEN_MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
-    "OMPI_MCA_plm": "isolated", "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-}  # fmt: skip
 #: As for a process that mpirun has started.
 IN_A_JOB = {"OMPI_COMM_WORLD_SIZE": "4", "OMPI_COMM_WORLD_RANK": "1", "PMIX_RANK": "1", "PMI_SIZE": "4", "PMI_RANK": "1"}
 

@@ -19,11 +19,10 @@ if __name__ == "__main__":
 
 import recovery_test as recovery  # noqa: E402
 import waiting  # noqa: E402
+from open_mpi import OPEN_MPI  # noqa: E402
 from recovery_test import Server, c, journal, set_parameter, session_pb2, until, w  # noqa: E402
 from evod.v1 import stream_pb2  # noqa: E402
 
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
-       "OMPI_MCA_plm": "isolated", "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 evoctl, UNAVAILABLE = os.environ["EVOCTL"], 14
 KEEPS_UP, BEHIND = w.STORAGE_STATE_KEEPS_UP, w.STORAGE_STATE_BEHIND
 FAILING, STALLED = w.STORAGE_STATE_FAILING, w.STORAGE_STATE_STALLED
@@ -298,13 +297,13 @@ class FullDisk(unittest.TestCase):
                 continue
             file = f"{self.data}/{kind}.evod"
             with self.subTest(kind):
-                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **MPI})
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
                 self.assertEqual(len(re.findall("^evod: ", done.stderr, re.MULTILINE)), 1, done.stderr)
                 self.assertIn("full", done.stderr)
                 printed = [line for line in done.stdout.splitlines() if line[:10].strip().isdigit()]
                 subprocess.run(["mount", "-o", "remount,size=100m", self.data], check=True)
-                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **MPI})
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertIn(f"\ncontinues at generation {len(printed) // 2 + 1}\n", done.stdout)
                 done = waiting.run([recovery.evod, "verify", file], capture_output=True, text=True)

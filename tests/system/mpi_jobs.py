@@ -7,18 +7,9 @@ import os
 import signal
 
 import waiting
+from open_mpi import OPEN_MPI
 
 EVOD = os.environ["EVOD"]
-# As root, without a network, with more processes than processors, and without a processor of its own for each of them.
-OPEN_MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_btl": "self,vader",
-    "OMPI_MCA_plm": "isolated",
-    "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-}
 ENVIRONMENT = {**os.environ, **OPEN_MPI}
 LOST = r"evod: rank {} on [^,]* did not respond for {} s \(--rank-timeout\): all ranks end"
 EXIT_RANK_LOST = 5

@@ -246,7 +246,7 @@ class Lost(Folder):
         os.kill(ranks[2], signal.SIGKILL)
         errors = waiting.communicate(job)[1]
         self.assertEqual(job.returncode, 128 + signal.SIGKILL)
-        self.assertRegex(errors, r"process rank 2 with PID \d+ on node .* exited on signal 9 \(Killed\)")
+        self.assertRegex(errors, r"process rank 2 with PID \d+ on node \S+ exited on\s+signal 9 \(Killed\)")
         self.assertNotIn("--rank-timeout", errors)
 
     def test_a_stopped_process_is_named(self):

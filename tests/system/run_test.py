@@ -16,14 +16,12 @@ import time
 import unittest
 
 import waiting
+from open_mpi import OPEN_MPI
 
 EVOD, KILLS, MPIRUN = os.environ["EVOD"], int(os.environ.get("KILLS", 5)), os.environ.get("MPIRUN", "")
 # Four islands that exchange migrants, with a parameter that changes.
 RING = {"population_size": 40, "generation_s": 4, "food_count": 100, "island_count": 4, "migration": "ring", "migration_epoch": 2,
         "mutation_chance": {"1": 0.3, "4": 0.05}, "generation_limit": 12, "seed": 7}
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
-       "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_plm": "isolated", "OMPI_MCA_hwloc_base_binding_policy": "none",
-       "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
 
 def evod(*arguments, status=0):
@@ -69,14 +67,14 @@ class Recorded(unittest.TestCase):
         return [*mpirun, EVOD, "run", str(self.ring), "--threads", "1", "--run-file", str(file or self.file), "--csv", str(self.csv)]
 
     def run_to_end(self, ranks=1):
-        done = waiting.run(self.words(ranks), capture_output=True, text=True, env={**os.environ, **MPI})
+        done = waiting.run(self.words(ranks), capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout
 
     def run_and_kill(self, ranks=1, rows_first=None, after_s=0.0):
         """Kills all processes of the run after so many rows and seconds. Returns its output until then."""
         process = subprocess.Popen(self.words(ranks), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-                                   env={**os.environ, **MPI})
+                                   env={**os.environ, **OPEN_MPI})
         with process.stdout:
             lines = []
             while rows_first is not None and len(rows("".join(lines))) < rows_first and (line := process.stdout.readline()):
@@ -197,7 +195,7 @@ class Processes(Recorded):
 
     def test_a_refusal_is_printed_once(self):
         self.file.write_text("generation,island\n" * 100)
-        done = waiting.run(self.words(2), capture_output=True, text=True, env={**os.environ, **MPI})
+        done = waiting.run(self.words(2), capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
         self.assertNotEqual(done.returncode, 0)
         self.assertEqual(done.stderr.count("evod: "), 1, done.stderr)
 
