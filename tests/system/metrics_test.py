@@ -68,12 +68,20 @@ class Case(past.Case):
         return http.client.HTTPConnection("127.0.0.1", server.http_port, timeout=waiting.LONGEST_S)
 
     def get(self, server, path="/metrics", method="GET", **arguments):
-        with contextlib.closing(self.http(server)) as connection:
-            arguments.setdefault("headers", {"Authorization": f"Bearer {server.token}"} if hasattr(server, "token") else {})
-            connection.request(method, path, **arguments)
-            answer = connection.getresponse()
-            answer.text = answer.read().decode()
-            return answer
+        """Returns the answer; repeats the request if the server closes the connection without one.
+
+        The server does so after http_request_timeout_s, which a stall of the machine can exceed, and while the connections
+        of a crowd end.
+        """
+        arguments.setdefault("headers", {"Authorization": f"Bearer {server.token}"} if hasattr(server, "token") else {})
+
+        def answer():
+            with contextlib.suppress(ConnectionError), contextlib.closing(self.http(server)) as connection:
+                connection.request(method, path, **arguments)
+                answer = connection.getresponse()
+                answer.text = answer.read().decode()
+                return answer
+        return plain.until(answer, f"an answer to {method} {path}")
 
     def metrics(self, server):
         answer = self.get(server)
@@ -415,12 +423,12 @@ class Http(Case):
 
     def test_too_many_connections_get_503(self):
         server = self.serve()
-        self.wait_well(server)
         threads = {pathlib.Path(task, "comm").read_text().strip(): int(task.name)
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
         request = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
         def crowd(_):
+            self.wait_well(server)
             with self.meets(server, "http_connections_max") as limit, contextlib.ExitStack() as stack:
                 def come(count):
                     return [stack.enter_context(contextlib.closing(self.raw(server, request))) for _ in range(count)]
