@@ -29,7 +29,10 @@ ImFont* load_font(const char* name, float pixels) {
     if (!std::filesystem::exists(path)) {
         throw std::runtime_error{"font not found: " + path + ": install the package fonts-dejavu-core"};
     }
-    ImFont* font = ImGui::GetIO().Fonts->AddFontFromFileTTF(path.c_str(), pixels, nullptr, ranges);
+    ImFontConfig config;
+    config.OversampleH =
+        3; // the default of Dear ImGui until 1.89; with the later default no pixel of thin text has its full colour
+    ImFont* font = ImGui::GetIO().Fonts->AddFontFromFileTTF(path.c_str(), pixels, &config, ranges);
     if (font == nullptr) {
         throw std::runtime_error{"could not read the font " + path};
     }
@@ -119,11 +122,12 @@ bool Gui::pass_on_key(const sf::Event& event, Received& received) {
     const bool pressed = event.type == sf::Event::KeyPressed;
     if (const NamedKey* named = find_named(key.code)) {
         const bool down = pressed && (!named->with_control || key.control);
-        if (is_key_down(named->name) != down) {
+        if (held_keys_[key.code] != down) {
             if (received.key || received.text) {
                 return false;
             }
             received.key = true;
+            held_keys_[key.code] = down;
             set_key(named->name, down);
         }
     }
@@ -177,6 +181,7 @@ bool Gui::pass_on(const sf::Event& event, Received& received) {
         break;
     case sf::Event::LostFocus:
         std::ranges::fill(io.MouseDown, false);
+        held_keys_.reset();
         for (const NamedKey& named : named_keys) {
             set_key(named.name, false);
         }

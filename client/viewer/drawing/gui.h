@@ -12,7 +12,9 @@
 #include "client/viewer/drawing/widgets.h"
 
 #include <SFML/Window/Event.hpp>
+#include <SFML/Window/Keyboard.hpp>
 
+#include <bitset>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -70,6 +72,7 @@ class Gui {
     ImFont* title_ = nullptr;
     ImFont* label_ = nullptr;
     std::deque<sf::Event> waiting_;
+    std::bitset<sf::Keyboard::KeyCount> held_keys_; // of those that Dear ImGui receives
     std::unique_ptr<WidgetPositions> widget_positions_ = std::make_unique<WidgetPositions>();
     std::string clipboard_; // the last text that Dear ImGui read from the clipboard
 };

@@ -25,11 +25,6 @@ inline bool is_key_pressed(ImGuiKey key, bool repeat = true) {
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeat);
 }
 
-/// Whether Dear ImGui was last informed that a key is held.
-inline bool is_key_down(ImGuiKey key) {
-    return ImGui::IsKeyDown(ImGui::GetKeyIndex(key));
-}
-
 /// Informs Dear ImGui that a key is pressed or released. To be called at most once per key and frame.
 inline void set_key(ImGuiKey key, bool down) {
 #if IMGUI_VERSION_NUM >= 18900
