@@ -78,7 +78,7 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
                 raise InvalidArgument(f"token_file: {os.fspath(token_file)}: {why}")
             words = file.read(4096).split()
     except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "the file is not text"
+        why = str(error.strerror) if isinstance(error, OSError) else "the file is not text"
         raise _unusable(error, f"token_file: {os.fspath(token_file)}: {why}") from None
     if not words:
         raise InvalidArgument(f"token_file: {os.fspath(token_file)}: the file contains no token")

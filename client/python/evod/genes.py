@@ -24,7 +24,7 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
     ...     genes = lab.world().population().genes
     >>> genes.shape, genes["body_size"].shape
     ((50, 6), (50,))
-    >>> genes[0]["body_size"] == genes["body_size"][0]
+    >>> bool(genes[0]["body_size"] == genes["body_size"][0])
     True
     >>> genes[0].to_dict().keys() == set(evod.GENE_NAMES)
     True

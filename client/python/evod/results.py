@@ -121,8 +121,7 @@ class _Result:
     """The base class of results. Notebooks show a result as a table of its fields."""
 
     def _repr_html_(self) -> str:
-        fields: Mapping[str, object] = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        return html_table((), ((name, str(value)) for name, value in fields.items()))
+        return html_table((), ((name, str(value)) for name, value in vars(self).items()))
 
 
 @dataclasses.dataclass(frozen=True)
