@@ -228,13 +228,13 @@ class Output {
         std::fflush(stdout);
         return {};
     }
-    /// Writes the rows of the generation that has just ended.
-    base::Result<void> write(const simulation::World& world) {
-        for (const simulation::GenerationStatistics& statistics : world.history().back()) {
+    /// Writes the rows of a generation.
+    base::Result<void> write(const simulation::GenerationRows& rows) {
+        for (const simulation::GenerationStatistics& statistics : rows) {
             std::puts(table_row(statistics, several_islands_).c_str());
         }
         std::fflush(stdout);
-        add_to_csv(world.history().back());
+        add_to_csv(rows);
         return flush_csv();
     }
 
@@ -307,7 +307,6 @@ struct Simulation {
         const auto began = Clock::now();
         world.turn_over(executor);
         cost.turnover_s += seconds_since(began);
-        follow();
     }
     /// The tick up to which the world advances at once.
     std::uint64_t next_stop() const {
@@ -315,41 +314,45 @@ struct Simulation {
         const std::uint64_t slice = recording != nullptr ? run_file::ticks_per_hash : ticks_per_slice;
         return world.is_shared() ? tick - tick % slice + slice : tick + 1;
     }
+    void advance_slice() {
+        const std::uint64_t before = world.moment().tick, alive = world.has_bodies() ? world.alive_count() : 0;
+        world.advance(next_stop(), executor);
+        cost.organism_ticks += alive * (world.moment().tick - before);
+        follow();
+    }
     /// Simulates until the generation ends. Returns whether the run has to stop.
     bool advance() {
         const auto began = Clock::now();
-        bool stopped = false;
-        do {
-            const std::uint64_t before = world.moment().tick, alive = world.has_bodies() ? world.alive_count() : 0;
-            world.advance(next_stop(), executor);
-            cost.organism_ticks += alive * (world.moment().tick - before);
-            follow();
+        bool stopped = !written;
+        while (!stopped && !world.generation_over()) {
+            advance_slice();
             progress.show([&] { return progress_of(world); });
             stopped = interrupted() || !written;
-        } while (!stopped && !world.generation_over());
+        }
         cost.tick_s += seconds_since(began);
         world.take_events();
         return stopped;
     }
-    /// Stores and prints the results of the generation that has ended. Returns whether the run has to stop.
+    /// Stores and prints the results of the generation that has ended, and begins the next one. Returns whether the run
+    /// has to stop.
     bool finish_generation() {
+        const simulation::GenerationRows ended = world.history().back();
+        const bool goes_on = world.outcome() == evolution::Outcome::Running;
+        if (goes_on) {
+            turn_over();
+            advance_slice(); // a run file contains a generation from its first tick on, as a server writes it
+        }
         if (recording != nullptr) {
-            if (world.outcome() == evolution::Outcome::Running) {
-                turn_over(); // the file of a run contains the beginning of the next generation
-            }
             try_to([&] { return recording->commit(); });
         }
         progress.clear();
-        try_to([&] { return output.write(world); });
-        return !written;
+        try_to([&] { return output.write(ended); });
+        return !goes_on || !written || interrupted();
     }
     /// Simulates until the run ends, is interrupted or cannot be written.
     void run() {
         bool stopped = !written;
-        while (!stopped && world.outcome() == evolution::Outcome::Running) {
-            if (world.generation_over()) {
-                turn_over();
-            }
+        while (!stopped) {
             stopped = advance();
             if (!world.generation_over()) {
                 break;

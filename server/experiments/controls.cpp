@@ -31,10 +31,21 @@ Parameters with_random_selection(Parameters p) {
     return p;
 }
 
+/// Whether a creep mutation can change a gene: a group that mutates has genes, and a step.
+bool has_creep_step(const Parameters& p) {
+    const auto can_creep = [&](GeneGroup group, double step) {
+        return step > 0 && (p.mutate_group == GeneGroup::All || p.mutate_group == group) &&
+               evolution::genes_of(group, p).count > 0;
+    };
+    return can_creep(GeneGroup::Body, p.mutation_step) || can_creep(GeneGroup::Brain, p.brain_mutation_step) ||
+           can_creep(GeneGroup::Free, p.free_mutation_step);
+}
+
 bool mutates(const Parameters& p) {
-    return (p.mutation_chance > 0 && p.mutation_step > 0) || p.reset_chance > 0 ||
+    return (p.mutation_chance > 0 && has_creep_step(p)) || p.reset_chance > 0 ||
            (p.scale_chance > 0 && p.scale_range > 0) || p.bit_flip_chance > 0 ||
-           (p.rearranging != OrderMutationMethod::None && p.rearrange_chance > 0);
+           (p.rearranging != OrderMutationMethod::None && p.rearrange_chance > 0 &&
+            evolution::genes_of(p.mutate_group, p).count > 1);
 }
 
 Parameters without_mutation(Parameters p) {
@@ -68,7 +79,8 @@ constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", 
                                              "rearranging"};
 constexpr std::string_view harmless_poison[] = {"poison_harm", "fitness_per_poison"};
 constexpr std::string_view shuffled_fitness[] = {"shuffle_fitness"};
-constexpr std::string_view mutation_conditions[] = {"mutation_step", "scale_range", "rearrange_chance"};
+constexpr std::string_view mutation_conditions[] = {"mutation_step", "brain_mutation_step", "free_mutation_step",
+                                                    "mutate_group",  "scale_range",         "rearrange_chance"};
 constexpr std::string_view poison_conditions[] = {"poison_count", "population_size", "scale_with_population"};
 
 struct NamesOfControl {

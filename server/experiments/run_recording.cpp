@@ -211,7 +211,7 @@ Result<void> RunRecording::create(const simulation::RunId& run_id, const run_fil
                                   const simulation::World& world) {
     const std::string stem = std::filesystem::path{path_}.stem().string();
     auto file = RunFile::create(
-        path_, recording::identity_of(simulation::is_world_name(stem) ? stem : "run", run_id, world), {}, {begun});
+        path_, run_file::identity_of(world, simulation::is_world_name(stem) ? stem : "run", run_id), {}, {begun});
     if (!file) {
         return file.error();
     }

@@ -1,6 +1,6 @@
 // Run recording: writes the run file of a run without a server, and continues a run that was interrupted.
 //
-// One transaction contains the results of a generation and the beginning of the next one. So a run that was killed at any
+// One transaction contains the results of a generation, the beginning of the next one and its first tick. So a run that was killed at any
 // moment continues at the beginning of the generation that it was simulating, and loses only the ticks of that generation.
 // The file contains everything that a server would record, except checkpoints.
 //
@@ -58,7 +58,7 @@ class RunRecording {
     /// run_id  for a new file.
     base::Result<void> begin(const simulation::World& world, const simulation::RunId& run_id);
     /// Adds the new records of the world to the transaction. To be called after every multiple of
-    /// run_file::ticks_per_hash and at the beginning and end of every generation.
+    /// run_file::ticks_per_hash, and after the first and the last tick of every generation.
     ///
     /// returns  a refusal if the state differs from that of the interrupted run.
     base::Result<void> follow(const simulation::World& world);

@@ -12,7 +12,7 @@ RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId
                      const simulation::World& world)
     : path_{std::move(path)}
     , temporary_path_{AtomicFile::temporary_name(path_)}
-    , file_{run_file::RunFile::begin_new(temporary_path_, recording::identity_of(std::move(name), run_id, world),
+    , file_{run_file::RunFile::begin_new(temporary_path_, run_file::identity_of(world, std::move(name), run_id),
                                          {.durability = run_file::Durability::Relaxed})} {}
 
 RunWriter::~RunWriter() {

@@ -166,8 +166,8 @@ base::Result<void> Server::open_archive() {
                                         "and --population, and reset or delete that world",
                              .violations = {}};
     };
-    if (there && !(there->parameters == wanted.parameters)) {
-        return differs("parameters: " + differences_of(there->parameters, wanted.parameters));
+    if (there && !(there->requested_parameters() == wanted.parameters)) {
+        return differs("parameters: " + differences_of(there->requested_parameters(), wanted.parameters));
     }
     if (there && there->schedule != wanted.schedule) {
         return differs("schedule of parameters");

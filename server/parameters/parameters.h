@@ -172,6 +172,7 @@ struct ParameterSet {
     Parameters active;          // in effect now
     Parameters requested;       // in effect after all changes have taken effect
     std::uint64_t revision = 1; // increases with every accepted change
+    friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
 /// Returns `set` after a change to `requested`: values that take effect at once become active, other values are only

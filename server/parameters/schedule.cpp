@@ -77,6 +77,13 @@ base::Refusal refused(std::vector<base::Violation> violations) {
             .violations = std::move(violations)};
 }
 
+/// The world may never be reset, so the values must be valid while the parameters that wait for a reset keep their old
+/// values.
+std::vector<base::Violation> violations_from_next_generation(const ParameterSet& set, const Parameters& requested,
+                                                             std::string_view field_prefix) {
+    return validate(taking_effect(set.active, requested, base::Effect::NextGeneration), field_prefix);
+}
+
 } // namespace
 
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
@@ -85,10 +92,11 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     if (!requested) {
         return requested;
     }
-    // The world may never be reset, so the values must also be valid while the parameters that wait for a reset keep
-    // their old values.
-    const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
-    if (auto violations = validate(next, field_prefix); !violations.empty()) {
+    if (auto violations = validate(taking_effect(set.active, *requested, base::Effect::NextTick), field_prefix);
+        !violations.empty()) {
+        return refused(std::move(violations));
+    }
+    if (auto violations = violations_from_next_generation(set, *requested, field_prefix); !violations.empty()) {
         return refused(std::move(violations));
     }
     return requested;
@@ -96,9 +104,12 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
 
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix) {
-    const base::Result<Parameters> requested = request_of(set, assignments, field_prefix);
+    const base::Result<Parameters> requested = assign(set.requested, assignments, field_prefix);
     if (!requested) {
         return requested;
+    }
+    if (auto violations = violations_from_next_generation(set, *requested, field_prefix); !violations.empty()) {
+        return refused(std::move(violations));
     }
     if (auto violations = validate(breeding_with(set.active, *requested), field_prefix); !violations.empty()) {
         for (base::Violation& violation : violations) {

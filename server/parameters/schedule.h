@@ -76,7 +76,8 @@ inline bool can_be_scheduled(const ParameterDescription& description) {
 }
 
 /// Returns the requested parameters after assignments that are made while a world runs. Refuses them if the result is
-/// not valid, or if it is not valid without the parameters that wait for a reset.
+/// not valid, or if the parameters in effect would not be valid together: from the next tick on, while others wait for
+/// the next generation, or from the next generation on, while others wait for a reset.
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix = "");
 /// Like request_of(), for assignments that are made at the beginning of a generation. That generation is bred with the

@@ -8,23 +8,7 @@
 
 namespace evod::recording {
 
-run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world) {
-    using namespace std::chrono;
-    const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
-    return {.name = std::move(name),
-            .run_id = run_id,
-            .seed = world.seed(),
-            .parameters = world.parameters().requested,
-            .began_unix_ms = now.count(),
-            .first_generation = world.moment().generation,
-            .first_tick = world.moment().tick,
-            .forked_from = {},
-            .inherited_generations = 0,
-            .first_population = world.first_population(),
-            .schedule = world.schedule()};
-}
-
-std::vector<Record> RunRecorder::news(const simulation::World& world) {
+void RunRecorder::pass_new_records(const simulation::World& world) {
     // Passes the records in one batch, so that a file contains either all records of a tick or none.
     std::vector<Record> records;
     const std::uint64_t begun = news_.generations_begun();
@@ -32,11 +16,7 @@ std::vector<Record> RunRecorder::news(const simulation::World& world) {
     if (news_.generations_begun() != begun) {
         since_beginning_ = {};
     }
-    return records;
-}
-
-void RunRecorder::pass_new_records(const simulation::World& world) {
-    if (auto records = news(world); !records.empty()) {
+    if (!records.empty()) {
         thread_.write(number_, {std::move(records), {}});
     }
 }
@@ -70,8 +50,10 @@ void RunRecorder::journal(CommandRecord command) {
     thread_.write(number_, {std::move(records), std::move(command.done)});
 }
 
-StorageThread::Batch RunRecorder::first(const simulation::World& world, std::optional<CommandRecord> command) {
-    StorageThread::Batch batch{news(world), {}};
+StorageThread::Batch RunRecorder::first(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
+    const run_file::RunIdentity& run = beginning.identity;
+    news_ = {run.first_tick, run.first_generation, beginning.ended ? run.first_generation : 0};
+    StorageThread::Batch batch{run_file::RunFile::records_of(std::move(beginning)), {}};
     if (command) {
         batch.records.emplace_back(entry(*command));
         batch.done = std::move(command->done);
@@ -131,27 +113,21 @@ void Recorder::add(const std::string& world, RunRecorder run) {
 }
 
 void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
-    RunRecorder run{thread_};
-    run.number_ = thread_.create(folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
-                                 run.first(entry.world, std::move(command)));
-    add(entry.name, std::move(run));
+    begin(entry, run_file::beginning_of_run(entry.world, entry.name, entry.run_id), std::move(command));
 }
 
 void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
                           base::Executor& executor) {
+    begin(entry, run_file::beginning_of_fork(entry.world, entry.name, entry.run_id, origin, executor),
+          std::move(command));
+}
+
+void Recorder::begin(const simulation::Entry& entry, run_file::RunBeginning beginning,
+                     std::optional<CommandRecord> command) {
     RunRecorder run{thread_};
-    run_file::RunIdentity identity = identity_of(entry.name, entry.run_id, entry.world);
-    identity.forked_from = origin;
-    run_file::Inherited inherited = run_file::inherited_by(entry.world);
-    identity.inherited_generations = inherited.history.size();
-    run.news_.seen(entry.world.moment().tick); // the file of the origin contains the state hash of that tick
-    StorageThread::Batch first = run.first(entry.world, std::move(command));
-    first.records.emplace_back(std::move(inherited));
-    // After the beginning of a generation, the fork needs a checkpoint: its file lacks the commands since then.
-    if (!entry.world.is_as_begun()) {
-        first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
-    }
-    run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity), std::move(first));
+    run_file::RunIdentity identity = beginning.identity;
+    run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity),
+                                 run.first(std::move(beginning), std::move(command)));
     add(entry.name, std::move(run));
 }
 
@@ -160,10 +136,11 @@ void Recorder::begin_after_reset(const simulation::Entry& entry, const simulatio
     const auto old = runs_.find(entry.name);
     EVOD_ASSERT(old != runs_.end());
     RunRecorder run{thread_};
-    run.number_ = thread_.replace(old->second.number_,
-                                  old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
-                                  folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
-                                  run.first(entry.world, std::move(command)));
+    run_file::RunBeginning beginning = run_file::beginning_of_run(entry.world, entry.name, entry.run_id);
+    run_file::RunIdentity identity = beginning.identity;
+    run.number_ = thread_.replace(
+        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
+        folder_.file_of(entry.name), std::move(identity), run.first(std::move(beginning), std::move(command)));
     runs_.erase(old);
     add(entry.name, std::move(run));
 }

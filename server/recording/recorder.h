@@ -25,9 +25,6 @@ struct CommandRecord {
     Done done = {};
 };
 
-/// The identity of a run that begins now with this world.
-run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world);
-
 /// Finds new records in a world after a tick: the beginning and end of a generation, and the state hash.
 class NewRecordFinder {
   public:
@@ -103,10 +100,9 @@ class RunRecorder {
     friend class Recorder;
     explicit RunRecorder(StorageThread& thread) : thread_{thread} {}
     void pass_new_records(const simulation::World& world);
-    std::vector<Record> news(const simulation::World& world);
     run_file::JournalEntry entry(CommandRecord& command);
     /// The records with which the file of a run begins.
-    StorageThread::Batch first(const simulation::World& world, std::optional<CommandRecord> command);
+    StorageThread::Batch first(run_file::RunBeginning beginning, std::optional<CommandRecord> command);
     /// The end mark after `tick`, for a run that is over or whose server stops. If a command ended the run, its record
     /// precedes the end mark.
     StorageThread::Ending ending(std::uint64_t tick, bool ended, std::string renamed = {},
@@ -167,6 +163,7 @@ class Recorder {
     void close_all(const simulation::Laboratory& laboratory);
 
   private:
+    void begin(const simulation::Entry& entry, run_file::RunBeginning beginning, std::optional<CommandRecord> command);
     void add(const std::string& world, RunRecorder run);
 
     run_file::DataFolder& folder_;

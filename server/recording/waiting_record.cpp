@@ -5,6 +5,21 @@
 #include <variant>
 
 namespace evod::recording {
+namespace {
+
+std::size_t bytes_of(const std::optional<evolution::SelectionAccount>& account) {
+    return account ? account->size() * sizeof(evolution::GeneAccount) : 0;
+}
+
+std::size_t bytes_of(const std::vector<simulation::GenerationStatistics>& rows) {
+    std::size_t bytes = 0;
+    for (const simulation::GenerationStatistics& row : rows) {
+        bytes += sizeof row + row.genes.size() * sizeof(simulation::GeneStatistics) + bytes_of(row.account);
+    }
+    return bytes;
+}
+
+} // namespace
 
 std::size_t bytes_of(const Record& record) {
     constexpr std::size_t small = 256;
@@ -15,7 +30,7 @@ std::size_t bytes_of(const Record& record) {
                           [](const run_file::Inherited& inherited) {
                               std::size_t bytes = small;
                               for (const simulation::GenerationRows& rows : inherited.history) {
-                                  bytes += rows.size() * sizeof(simulation::GenerationStatistics);
+                                  bytes += bytes_of(rows);
                               }
                               return bytes;
                           },
@@ -26,13 +41,13 @@ std::size_t bytes_of(const Record& record) {
                               }
                               for (const evolution::NextGeneration& born : begun.born) {
                                   bytes += static_cast<std::size_t>(born.genes.size()) * sizeof(float) +
-                                           static_cast<std::size_t>(born.genes.cols()) * sizeof(evolution::Parents);
+                                           born.parents.size() * sizeof(evolution::Parents) + bytes_of(born.account);
                               }
                               return bytes;
                           },
                           [](const run_file::GenerationEnded& ended) {
                               std::size_t bytes = small;
-                              bytes += ended.statistics.size() * sizeof(simulation::GenerationStatistics);
+                              bytes += bytes_of(ended.statistics);
                               for (const run_file::IslandOutcome& outcome : ended.outcomes) {
                                   bytes +=
                                       small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);

@@ -2,8 +2,8 @@
 
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
+#include "server/run_file/data_folder.h"
 
-#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -33,7 +33,7 @@ base::Result<simulation::World> world_at(run_file::RunFile& origin, std::optiona
     if (!there) {
         return there.error();
     }
-    return std::move(*there).take();
+    return std::move(*there).take().at_its_opening(executor);
 }
 
 } // namespace
@@ -46,39 +46,25 @@ base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<s
         return world.error();
     }
     world->become_fork();
-    const simulation::Moment moment = world->moment();
-    run_file::Inherited inherited = run_file::inherited_by(*world);
-    const std::uint64_t inherited_generations = inherited.history.size();
-    std::vector<run_file::RunFile::Record> first{run_file::beginning_of(*world)};
-    // After the beginning of a generation, the fork needs a checkpoint: its file lacks the commands since then.
-    if (!world->is_as_begun()) {
-        first.emplace_back(run_file::checkpoint_of(*world, 0, executor));
-    }
-    first.emplace_back(std::move(inherited));
-    using namespace std::chrono;
-    const auto file = run_file::RunFile::create(
-        path,
-        {.name = name,
-         .run_id = run_id,
-         .seed = origin.identity().seed,
-         .parameters = world->parameters().requested,
-         .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
-         .first_generation = moment.generation,
-         .first_tick = moment.tick,
-         .forked_from = origin.identity().run_id,
-         .inherited_generations = inherited_generations,
-         .first_population = origin.identity().first_population,
-         .schedule = origin.identity().schedule},
-        {.keep_every = origin.retention().keep_every()}, first);
+    run_file::RunBeginning beginning =
+        run_file::beginning_of_fork(*world, name, run_id, origin.identity().run_id, executor);
+    const run_file::RunIdentity identity = beginning.identity;
+    auto file = run_file::RunFile::create(path, identity, {.keep_every = origin.retention().keep_every()},
+                                          run_file::RunFile::records_of(std::move(beginning)));
     if (!file) {
         return file.error();
     }
     (*file)->begin();
-    (*file)->write(run_file::EndMark{.tick = moment.tick});
+    (*file)->write(run_file::EndMark{.tick = world->moment().tick});
     if (auto closed = (*file)->commit(); !closed) {
         return closed.error();
     }
-    return moment;
+    if (auto whole = check_beginning(**file, world->hash(), executor); !whole) {
+        file->reset();
+        (void)run_file::remove_run_file(path);
+        return whole.error();
+    }
+    return world->moment();
 }
 
 } // namespace evod::replay

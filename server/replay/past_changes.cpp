@@ -68,10 +68,7 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
         return past;
     }
     std::ranges::stable_sort(due, {}, &Due::order);
-    parameters::ParameterSet set{identity.parameters, identity.parameters, 1};
-    if (const auto opening = file.generations().opening_of(identity.first_generation); opening && *opening) {
-        set.active = (*opening)->parameters.active;
-    }
+    parameters::ParameterSet set{identity.parameters, identity.requested_parameters(), 1};
     for (const Due& now : due) {
         const bool begins = now.kind == Due::Schedule || now.kind == Due::PlannedForGeneration;
         const auto requested =

@@ -67,4 +67,16 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     return recovered;
 }
 
+Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& hash, base::Executor& executor) {
+    const auto begun = Rerun::begun_at(file, file.identity().first_generation, nullptr, {},
+                                       simulation::World::history_generations_kept, executor);
+    if (!begun) {
+        return begun.error();
+    }
+    if (begun->world().hash() != hash) {
+        return not_recovered(file, "the state with which its run begins has another state hash than its world");
+    }
+    return {};
+}
+
 } // namespace evod::replay

@@ -26,4 +26,8 @@ struct Recovered {
 /// as Rerun::at(), and if a state hash differs from the stored one.
 base::Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor);
 
+/// Reads back the file of a run that has just begun, and restores the world with which it begins, as recover() does.
+/// Refused if this fails, or if the state hash is not `hash`.
+base::Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& hash, base::Executor& executor);
+
 } // namespace evod::replay

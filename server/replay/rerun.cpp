@@ -182,7 +182,7 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
     if (!begun) {
         return begun.error();
     }
-    if (!*begun && !(generation == 1 && identity.first_generation == 1)) {
+    if (!*begun && (generation != 1 || identity.forked_from)) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message =
                            file.path() + " does not retain the beginning of generation " + std::to_string(generation),
@@ -348,9 +348,9 @@ void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
     const auto is_due = [&](const WorldChange& change) {
         return change.tick <= world.moment().tick && change.entry <= last;
     };
-    for (; !fault_ && next_ < changes_.size() && is_due(changes_[next_]); ++next_) {
-        if (!apply(changes_[next_], world)) {
-            fault_ = impossible_change(path_, changes_[next_]);
+    for (; !fault_ && !changes_.empty() && is_due(changes_.front()); changes_.pop_front()) {
+        if (!apply(changes_.front(), world)) {
+            fault_ = impossible_change(path_, changes_.front());
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "server/base/executor.h"
 #include "server/run_file/run_file.h"
 
+#include <deque>
 #include <span>
 #include <variant>
 #include <vector>
@@ -72,8 +73,7 @@ class ComingChanges {
 
     std::uint64_t last_entry_; // number of the last journal entry that was added
     std::string path_;         // path of the file
-    std::vector<WorldChange> changes_;
-    std::size_t next_ = 0; // index of the next change in changes_
+    std::deque<WorldChange> changes_; // those that were not applied yet
     std::optional<base::Refusal> fault_;
 };
 

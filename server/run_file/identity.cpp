@@ -35,7 +35,7 @@ std::optional<simulation::RunId> run_id_from(const std::string& text) {
 struct Key {
     std::function<std::string(const StoredIdentity&)> text;
     std::function<bool(const std::string&, StoredIdentity&)> read; // false: the text is not a valid value
-    bool required = true;
+    bool required = true; // if false, an empty text is not written
 };
 
 template <class T>
@@ -61,6 +61,16 @@ Key text_key(std::string RunIdentity::*member, bool required) {
             required};
 }
 
+/// Reads a set of parameters. Returns false if the text is not valid.
+template <class To>
+bool read_parameters(const std::string& text, To& to) {
+    const auto experiment = parameters::parse_experiment(text);
+    if (experiment) {
+        to = experiment->parameters;
+    }
+    return experiment.has_value();
+}
+
 /// All keys, in the order in which they are written.
 const std::vector<std::pair<std::string, Key>>& keys() {
     static const std::vector<std::pair<std::string, Key>> all = {
@@ -77,15 +87,21 @@ const std::vector<std::pair<std::string, Key>>& keys() {
           }}},
         {"parameters",
          {[](const StoredIdentity& identity) {
-              return to_experiment_text(identity.run.parameters, parameters::Written::Everything);
+              return to_experiment_text(identity.run.requested_parameters(), parameters::Written::Everything);
           },
           [](const std::string& text, StoredIdentity& identity) {
-              const auto experiment = parameters::parse_experiment(text);
-              if (experiment) {
-                  identity.run.parameters = experiment->parameters;
-              }
-              return experiment.has_value();
+              return read_parameters(text, identity.run.requested);
           }}},
+        {"parameters_in_effect",
+         {[](const StoredIdentity& identity) {
+              return identity.run.requested // otherwise they are those of the key `parameters`
+                         ? to_experiment_text(identity.run.parameters, parameters::Written::Everything)
+                         : std::string{};
+          },
+          [](const std::string& text, StoredIdentity& identity) {
+              return read_parameters(text, identity.run.parameters);
+          },
+          false}},
         {"evod_version", text_key(&RunIdentity::evod_version, true)},
         {"build", text_key(&RunIdentity::build, false)},
         {"model_version", number_key(&RunIdentity::model_version)},
@@ -158,8 +174,8 @@ Result<void> read_first_population(RunDatabase& database, RunIdentity& identity)
         return {};
     }
     identity.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
-    // Only a run that begins with generation 1 uses the first population.
-    if (identity.first_generation == 1 &&
+    // Only a run that is not a fork begins with the first population. A reset of a fork checks whether it fits.
+    if (!identity.forked_from &&
         !simulation::faults_of(identity.first_population, identity.parameters, "first_population").empty()) {
         return database.damaged("its table first_population");
     }
@@ -171,7 +187,9 @@ Result<void> read_first_population(RunDatabase& database, RunIdentity& identity)
 void write_identity(RunDatabase& database, const StoredIdentity& identity) {
     TableWriter<RunTable> rows{database.database};
     for (const auto& [name, key] : keys()) {
-        rows.write(RunTable::Row{name, key.text(identity)});
+        if (std::string text = key.text(identity); key.required || !text.empty()) {
+            rows.write(RunTable::Row{name, std::move(text)});
+        }
     }
     if (!identity.run.first_population) {
         return;
@@ -210,6 +228,13 @@ Result<StoredIdentity> read_identity(RunDatabase& database) {
         } else if (!key.read(value->second, identity)) {
             return bad(name);
         }
+    }
+    identity.has_parameters_in_effect = values.contains("parameters_in_effect");
+    if (!identity.has_parameters_in_effect) {
+        identity.run.parameters = *identity.run.requested;
+    }
+    if (!identity.run.forked_from) {
+        identity.run.requested.reset();
     }
     if (!begins_with_its_schedule(identity.run) ||
         identity.run.inherited_generations >= std::max<std::uint64_t>(identity.run.first_generation, 1)) {

@@ -21,12 +21,14 @@ struct RunIdentity {
     std::string name; // the name of the world
     simulation::RunId run_id;
     base::Seed seed;
-    parameters::Parameters parameters;
+    parameters::Parameters parameters; // in effect when the run began; they determine how many genes its organisms have
     std::string evod_version = EVOD_VERSION;
     std::string build = build_text(); // build of the evod that created the file; empty if the file does not contain it
     std::uint32_t model_version = simulation::model_version;
     std::int64_t began_unix_ms = 0; // wall clock time, only for information
-    // A fork begins with a generation of another run. Its `parameters` are the requested parameters of that run.
+    // Requested when a fork began, but partly waiting for its next generation or a reset. nullopt: `parameters`.
+    std::optional<parameters::Parameters> requested = std::nullopt;
+    // A fork begins with a generation of another run.
     std::uint64_t first_generation = 1;
     // Ticks before this run; if the run begins within a generation, it has a checkpoint at this tick.
     std::uint64_t first_tick = 0;
@@ -35,6 +37,8 @@ struct RunIdentity {
     std::uint64_t inherited_generations = 0;
     simulation::FirstPopulation first_population = {}; // given to the run or its origin; nullptr: the seed draws it
     parameters::Schedule schedule = {};                // given to the run or its origin
+
+    const parameters::Parameters& requested_parameters() const { return requested ? *requested : parameters; }
 };
 
 /// Which client sent a command.
@@ -73,9 +77,6 @@ GenerationBegun beginning_of(const simulation::World& world);
 struct Inherited {
     simulation::World::History history;
 };
-/// Returns the statistics that a fork has copied. `world` must be a fork in its first generation.
-Inherited inherited_by(const simulation::World& world);
-
 using simulation::IslandOutcome;
 struct GenerationEnded {
     std::uint64_t generation = 0;
@@ -95,6 +96,24 @@ struct Checkpoint {
     std::uint64_t journal_entries = 0; // number of journal entries before the checkpoint
 };
 Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor);
+
+/// What a run begins with: everything that its file contains before the first command.
+struct RunBeginning {
+    RunIdentity identity;
+    GenerationBegun generation; // the beginning of the first generation
+    // The rest is empty unless the run is a fork.
+    std::optional<Checkpoint> state = std::nullopt; // the state at the first moment, if it is not that of `generation`
+    std::optional<GenerationEnded> ended = std::nullopt; // if the first generation is over at the first moment
+    Inherited inherited = {};
+};
+/// The identity of a run that begins now with this world.
+RunIdentity identity_of(const simulation::World& world, std::string name, const simulation::RunId& run_id);
+/// The beginning of a run whose world is at its first moment.
+RunBeginning beginning_of_run(const simulation::World& world, std::string name, const simulation::RunId& run_id);
+/// The beginning of a run that was forked from the run `origin`, and begins with the present state of `fork`.
+RunBeginning beginning_of_fork(const simulation::World& fork, std::string name, const simulation::RunId& run_id,
+                               const simulation::RunId& origin, base::Executor& executor);
+
 /// A checkpoint as a run file stores it.
 struct StoredCheckpoint {
     simulation::Moment moment;

@@ -73,6 +73,20 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
     return file;
 }
 
+std::vector<RunFile::Record> RunFile::records_of(RunBeginning beginning) {
+    std::vector<Record> records{std::move(beginning.generation)};
+    if (beginning.ended) {
+        records.emplace_back(*std::move(beginning.ended));
+    }
+    if (beginning.identity.forked_from) {
+        records.emplace_back(std::move(beginning.inherited));
+    }
+    if (beginning.state) {
+        records.emplace_back(*std::move(beginning.state));
+    }
+    return records;
+}
+
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
                                                  const Options& options, const std::vector<Record>& first) {
     std::error_code error;
@@ -170,6 +184,15 @@ Result<void> RunFile::read_beginning() {
         return identity.error();
     }
     identity_ = *std::move(identity);
+    if (!identity_.has_parameters_in_effect && identity_.run.forked_from) {
+        const auto opening = generations_.opening_of(identity_.run.first_generation);
+        if (!opening) {
+            return opening.error();
+        }
+        if (*opening) {
+            identity_.run.parameters = (*opening)->parameters.active;
+        }
+    }
     if (has_more_genes(identity_.run.parameters)) {
         if (auto whole = check_more_genes(database_); !whole) {
             return whole;

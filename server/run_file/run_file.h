@@ -46,6 +46,8 @@ class RunFile : public RunContents {
     /// Creates a file with these first records. Refused if the file exists. After a failure, no file has that name.
     static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
                                                          const Options& options, const std::vector<Record>& first = {});
+    /// The records with which the file of a run begins, after its identity.
+    static std::vector<Record> records_of(RunBeginning beginning);
     /// Creates a file and begins its first transaction, as begin() does. The file is empty until commit().
     static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
                                                             const Options& options);

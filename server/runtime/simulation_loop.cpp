@@ -313,14 +313,6 @@ void SimulationLoop::fork(CommandMail& mail) {
     const auto before = run_of(command);
     const simulation::Entry* origin = entry_of_command(command);
     auto refused = refusal_of(command);
-    const auto fork_at_opening = [&](bool with_what_was_asked_since) {
-        return base::within_memory([&] {
-            return laboratory_.fork(command, origin->world.at_its_opening(executor_, with_what_was_asked_since));
-        });
-    };
-    if (origin && !refused && !command.at_generation && origin->world.is_as_begun()) {
-        return answer(mail, fork_at_opening(true), before);
-    }
     if (!origin || refused || !command.at_generation) {
         return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : base::within_memory([&] {
                           return laboratory_.apply(command);
@@ -328,7 +320,10 @@ void SimulationLoop::fork(CommandMail& mail) {
                       before);
     }
     if (*command.at_generation == origin->world.moment().generation) {
-        return answer(mail, fork_at_opening(false), before);
+        return answer(mail, base::within_memory([&] {
+                          return laboratory_.fork(command, origin->world.at_its_opening(executor_));
+                      }),
+                      before);
     }
     // The seek runs in slices, so that the thread can serve other clients meanwhile.
     const std::uint64_t generation = *command.at_generation;
@@ -336,7 +331,11 @@ void SimulationLoop::fork(CommandMail& mail) {
     replays_.seek_for_fork(origin->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
         if (arrival) {
-            return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
+            return answer(*waiting, base::within_memory([&] {
+                const simulation::World there = std::move(arrival->rerun).take();
+                return laboratory_.fork(fork, there.at_its_opening(executor_));
+            }),
+                          before);
         }
         base::Refusal why = arrival.error();
         for (base::Violation& violation : why.violations) {

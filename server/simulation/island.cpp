@@ -190,6 +190,12 @@ std::span<const float> Island::weights_of(std::uint32_t id) const {
     return evolution::column(born_.genes, id).subspan(evolution::body_gene_count, living_.weight_count());
 }
 
+void Island::skip_tick(std::uint32_t tick) {
+    if (tick == 1) {
+        hash_ = whole_hash(); // before the first tick, it covers only the chromosomes and what commands have changed
+    }
+}
+
 void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
     if (stepper_.near().stale(bodies_, boxes_)) {
         renew_near_pairs(executor);

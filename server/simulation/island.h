@@ -53,8 +53,11 @@ class Island {
     /// only the chromosomes, and the weights would be a quarter of the memory that it needs.
     void free_weights() { living_.free_weights(); }
 
-    /// Performs one tick. `tick` is its number within the generation, from 1.
+    /// Performs one tick. `tick` is its number within the generation, from 1. The island must have living organisms.
     void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+
+    /// Takes the place of advance_tick() on an island without living organisms, where nothing moves.
+    void skip_tick(std::uint32_t tick);
 
     /// Places an item, between two ticks. Returns its id. `place` must be inside the walls and clear of boxes.
     std::uint32_t place(ItemKind kind, Place place);

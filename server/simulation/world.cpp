@@ -87,18 +87,14 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     EVOD_ASSERT(founders_.empty() || founders_.size() == islands_.size());
 }
 
-World World::at_its_opening(base::Executor& executor, bool keep_requests) const {
-    Opening opening = opening_;
-    if (keep_requests && moment_.generation_tick == 0) {
-        opening.parameters = parameters_;
-    }
+World World::at_its_opening(base::Executor& executor) const {
     BredIslands bred = this->bred();
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation) {
         before.pop_back();
     }
     return {seed_,
-            opening,
+            opening_,
             std::move(bred.islands),
             std::move(before),
             executor,
@@ -381,7 +377,7 @@ EntityIds World::remove(const RemoveEntities& command) {
 }
 
 bool World::is_as_begun() const {
-    if (moment_.generation_tick != 0) {
+    if (moment_.generation_tick != 0 || !(parameters_ == opening_.parameters)) {
         return false;
     }
     for (std::size_t i = 0; i < islands_.size(); ++i) {
@@ -504,7 +500,8 @@ std::uint64_t World::advance_share(base::Executor& executor) {
     died_out_.assign(islands_.size(), 0);
     for_each_island(share_, executor, [&](std::size_t i) {
         if (islands_[i].alive_count() == 0) {
-            return; // an island without living organisms skips the tick
+            islands_[i].skip_tick(tick);
+            return;
         }
         islands_[i].advance_tick(p, tick, executor);
         died_out_[i] = islands_[i].alive_count() == 0;

@@ -137,11 +137,9 @@ class World {
     ///
     /// leader  as for a new world.
     World copy(base::Executor& executor, Leader* leader = nullptr) const;
-    /// Returns a copy of this world as it was at the first moment of its generation. It is shared like this one.
-    ///
-    /// keep_requests  if true, the copy keeps the parameters that were requested after that moment; ignored once the
-    ///                generation has had a tick.
-    World at_its_opening(base::Executor& executor, bool keep_requests = false) const;
+    /// Returns a copy of this world as it was at the first moment of its generation: as the generation was bred, before
+    /// its first tick and without the commands since. It is shared like this one.
+    World at_its_opening(base::Executor& executor) const;
 
     /// Returns the data that restore() needs to bring a world to this moment.
     WorldState state(base::Executor& executor) const;
@@ -208,7 +206,7 @@ class World {
     /// Sets fitness from a client. check() must have accepted the command (rating.h). After the last missing number, the
     /// generation is over.
     void set_fitness(const SetFitness& command);
-    /// Whether this is the first moment of a generation, and nothing has been placed or removed in it.
+    /// Whether this is the first moment of a generation, and no command has changed the world since.
     bool is_as_begun() const;
 
     bool generation_over() const { return generation_over_; }

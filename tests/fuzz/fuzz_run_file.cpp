@@ -66,28 +66,23 @@ struct Place {
 
     /// Of three generations, or of what follows on a moment within the third.
     void write_sound(bool fork) const {
-        run_file::RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {3}, .parameters = {}};
-        identity.parameters.population_size = 4;
-        identity.parameters.generation_s = 1;
-        identity.parameters.island_count = 2;
+        parameters::Parameters parameters;
+        parameters.population_size = 4;
+        parameters.generation_s = 1;
+        parameters.island_count = 2;
         base::InlineExecutor executor;
-        simulation::World world{identity.parameters, identity.seed};
+        simulation::World world{parameters, {3}};
         if (fork) {
             while (world.moment().generation < 3 || world.moment().generation_tick < 10) {
                 world.advance_tick(executor);
             }
             world.become_fork();
-            identity.forked_from = simulation::RunId{3, 4};
-            identity.first_generation = world.moment().generation;
-            identity.first_tick = world.moment().tick;
         }
-        const run_file::Inherited inherited = run_file::inherited_by(world);
-        identity.inherited_generations = inherited.history.size();
-        std::vector<run_file::RunFile::Record> first{run_file::beginning_of(world), inherited};
-        if (fork) {
-            first.emplace_back(run_file::checkpoint_of(world, 0, executor));
-        }
-        const auto file = run_file::RunFile::create(path, identity, {}, first);
+        run_file::RunBeginning beginning = fork ? run_file::beginning_of_fork(world, "w", {1, 2}, {3, 4}, executor)
+                                                : run_file::beginning_of_run(world, "w", {1, 2});
+        const run_file::RunIdentity identity = beginning.identity;
+        const auto file =
+            run_file::RunFile::create(path, identity, {}, run_file::RunFile::records_of(std::move(beginning)));
         require(file.has_value());
         (*file)->begin();
         v1::Request request;

@@ -162,6 +162,76 @@ TEST(Controls, SayWhyTheyCannotDiffer) {
               "the fitness is a function of the chromosome, and organisms do not eat");
 }
 
+TEST(Controls, KnowEveryGroupOfGenesThatMutates) {
+    const auto why = [](const Parameters& world) { return control_of(world, ControlKind::MutationOff).cannot_differ; };
+    Parameters world;
+    world.mutation_step = 0;
+    EXPECT_EQ(why(world), "there is no mutation");
+    world.controller = evolution::Controller::Network;
+    EXPECT_EQ(why(world), "") << "the weights creep by brain_mutation_step";
+    world.mutate_group = evolution::GeneGroup::Body;
+    EXPECT_EQ(why(world), "there is no mutation");
+    world.controller = evolution::Controller::Rules;
+    world.mutate_group = evolution::GeneGroup::All;
+    world.free_genes = 1;
+    EXPECT_EQ(why(world), "") << "the free gene creeps by free_mutation_step";
+    world.free_mutation_step = 0;
+    world.rearranging = evolution::OrderMutationMethod::Swap;
+    world.mutate_group = evolution::GeneGroup::Free;
+    EXPECT_EQ(why(world), "there is no mutation") << "one gene alone cannot be rearranged";
+}
+
+/// The values of a parameter that a test tries: its extremes, or all of its choices.
+std::vector<parameters::ParameterValue> values_of(const parameters::ParameterDescription& description) {
+    using namespace parameters;
+    if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
+        return {real->range.min, real->range.max};
+    }
+    if (const auto* whole = std::get_if<CountParameter>(&description.kind)) {
+        return {whole->range.min, whole->range.max};
+    }
+    if (std::holds_alternative<FlagParameter>(description.kind)) {
+        return {false, true};
+    }
+    std::vector<ParameterValue> names;
+    for (const std::string_view name : std::get<ChoiceParameter>(description.kind).names) {
+        names.emplace_back(std::string{name});
+    }
+    return names;
+}
+
+TEST(Controls, KnowEveryParameterThatDecidesWhetherTheyDiffer) {
+    Parameters still; // mutates in no way, but one parameter more lets it
+    still.controller = evolution::Controller::Network;
+    still.free_genes = 2;
+    still.mutation_step = still.brain_mutation_step = still.free_mutation_step = 0;
+    Parameters chosen;
+    chosen.mutate_group = evolution::GeneGroup::Brain;
+    chosen.controller = evolution::Controller::Network;
+    chosen.brain_mutation_step = 0;
+    Parameters harmless;
+    harmless.poison_harm = 0;
+    for (const Parameters& world : {Parameters{}, still, chosen, harmless}) {
+        for (const ControlKind kind : all_controls) {
+            const bool differs = control_of(world, kind).cannot_differ.empty();
+            for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+                if (!parameters::can_be_scheduled(description)) {
+                    continue;
+                }
+                parameters::Schedule schedule;
+                schedule.add(2, {std::string{description.name}, description.get(world)});
+                for (const parameters::ParameterValue& value : values_of(description)) {
+                    const auto changed = parameters::assign(
+                        world, std::vector{parameters::Assignment{std::string{description.name}, value}});
+                    EXPECT_TRUE(!changed || control_of(*changed, kind).cannot_differ.empty() == differs ||
+                                schedule_affects(schedule, kind))
+                        << control_of(world, kind).name << " depends on " << description.name;
+                }
+            }
+        }
+    }
+}
+
 TEST(Controls, AWorldOfFixedLengthHasNoOtherCriterion) {
     Parameters world;
     world.stop_at_extinction = true;

@@ -42,13 +42,10 @@ class RunRecordingTest : public testing::Test {
         ASSERT_TRUE(run.begin(world, {1, 2}));
         for (int slice = 0; slice < slices && world.outcome() == evolution::Outcome::Running; ++slice) {
             const std::uint64_t tick = world.moment().tick, step = run_file::ticks_per_hash;
+            const bool begins = world.generation_over();
             world.advance(world.is_shared() ? tick - tick % step + step : tick + 1, executor);
             ASSERT_TRUE(run.follow(world));
-            if (world.generation_over()) {
-                if (world.outcome() == evolution::Outcome::Running) {
-                    world.turn_over(executor);
-                    ASSERT_TRUE(run.follow(world));
-                }
+            if (begins || world.outcome() != evolution::Outcome::Running) {
                 ASSERT_TRUE(run.commit());
             }
         }
@@ -94,9 +91,24 @@ TEST_F(RunRecordingTest, ContinuesWhatWasKilled) {
     for (const int ticks : {0, 5, 119, 120, 121, 300}) { // a generation has 120 ticks
         fs::remove(path);
         simulate(1, ticks, false);
-        EXPECT_EQ((*open())->continues_at(), static_cast<std::uint64_t>(1 + ticks / 120));
+        EXPECT_EQ((*open())->continues_at(), static_cast<std::uint64_t>(1 + std::max(ticks - 1, 0) / 120));
         simulate(1, all, true);
         expect_whole();
+    }
+}
+
+TEST_F(RunRecordingTest, AKilledRunVerifies) {
+    experiment.parameters.generation_s = 59.0 / 60; // the second generation begins one tick before a stored hash
+    for (const int ticks : {58, 59, 60, 61, 100}) {
+        fs::remove(path);
+        simulate(1, ticks, false);
+        base::InlineExecutor executor;
+        const auto file = run_file::RunFile::open_checked(path);
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto verified = replay::verify(**file, executor, [](const replay::VerifyProgress&) {});
+        ASSERT_TRUE(verified) << to_text(verified.error());
+        EXPECT_FALSE(verified->difference) << "after " << ticks << " ticks: " << verified->difference->part;
+        EXPECT_LE((*file)->last_tick(), static_cast<std::uint64_t>(ticks)) << "it contains no tick that never was";
     }
 }
 
@@ -112,7 +124,7 @@ TEST_F(RunRecordingTest, ContinuesWhatWasInterrupted) {
 
 TEST_F(RunRecordingTest, ContinuesWithAnotherNumberOfProcesses) {
     simulate(1, 130, false);
-    simulate(2, 2, false); // ends the second generation
+    simulate(2, 3, false); // begins the third generation
     EXPECT_EQ((*open())->continues_at(), 3u);
     simulate(4, 1, true);
     simulate(3, all, true);

@@ -79,6 +79,19 @@ TEST(Request, MustBeValidWithoutAReset) {
     EXPECT_THAT(refused.error().violations, ElementsAre(Field(&base::Violation::field, "p.island_count")));
 }
 
+TEST(Request, MustBeValidFromTheNextTickOn) {
+    ParameterSet set{.active = {}, .requested = {}, .revision = 1};
+    set.active.selection = set.requested.selection = evolution::SelectionMethod::Tournament;
+    set.active.tournament_replacement = set.requested.tournament_replacement = false;
+    // The population grows with the next generation only, the tournament at once.
+    const std::vector<Assignment> larger{{"population_size", 200u}, {"tournament_size", 150u}};
+    const auto refused = request_of(set, larger, "p.");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("until all of them have taken effect"));
+    ASSERT_TRUE(request_of(set, std::vector<Assignment>{{"population_size", 200u}}));
+    EXPECT_TRUE(request_at_generation(set, larger)) << "there, the population grows first";
+}
+
 TEST(Request, AtAGenerationMustBeValidForItsBreeding) {
     const ParameterSet set{.active = {}, .requested = {}, .revision = 1};
     const std::vector<Assignment> assignments{{"population_size", 2u},
@@ -90,7 +103,6 @@ TEST(Request, AtAGenerationMustBeValidForItsBreeding) {
     ParameterSet tournament = set;
     tournament.active.selection = tournament.requested.selection = evolution::SelectionMethod::Tournament;
     tournament.active.tournament_replacement = tournament.requested.tournament_replacement = false;
-    EXPECT_TRUE(request_of(tournament, assignments));
     const auto refused = request_at_generation(tournament, assignments);
     ASSERT_FALSE(refused) << "a tournament of 3 needs a population of 3";
     EXPECT_THAT(refused.error().violations[0].allowed, HasSubstr("is bred with the previous values"));

@@ -3,11 +3,14 @@
 #include "server/replay/archive.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
+#include "server/replay/run_tables.h"
 #include "server/replay/verify.h"
 #include "server/run_file/check.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
+
+#include <sstream>
 
 namespace evod::replay {
 namespace {
@@ -261,6 +264,110 @@ TEST_F(ForkTest, AForkOfALiveWorldKeepsItsHistoryAtARestart) {
         }
         EXPECT_EQ(recovered->world.founders(), forked.founders());
     }
+}
+
+/// Forks of a live world, of its first generation in the file, and of the whole file, each read back as by a restart.
+class ForkAfterChange : public testing::Test {
+  protected:
+    static simulation::FirstPopulation given_population() {
+        return std::make_shared<const std::vector<evolution::GeneMatrix>>(
+            2, evolution::GeneMatrix::Constant(evolution::body_gene_count, 12, 100));
+    }
+    /// change  changes the world "w", which has had no tick yet if `ticks` is 0.
+    template <class Change>
+    void expect_whole_forks(std::uint64_t ticks, Change&& change, const parameters::Parameters& initial = small_world(),
+                            const simulation::FirstPopulation& first = {}) {
+        auto data = *DataFolder::open(folder.path());
+        const simulation::World* live = nullptr;
+        {
+            StorageThread thread{{}};
+            RecordedRun run{data, thread, {7}, first, {}, initial};
+            run.advance(ticks);
+            change(run);
+            run.fork({3, 4});
+            live = &(*run.laboratory().find("fork"))->world;
+            EXPECT_TRUE(live->parameters() == run.world().parameters());
+            run.recorder().close_all(run.laboratory());
+            ASSERT_TRUE(thread.finish());
+            expect_whole(data.file_of("fork"), live->hash(), live->parameters());
+            const simulation::World opening = run.world().at_its_opening(executor);
+            const auto origin = RunFile::open_read_only(data.file_of("w"));
+            for (const auto generation : {std::optional<std::uint64_t>{}, std::optional<std::uint64_t>{1}}) {
+                const std::string path = data.file_of("cold");
+                std::filesystem::remove(path);
+                const auto forked = fork(**origin, generation, path, "cold", {5, 6}, executor);
+                ASSERT_TRUE(forked) << to_text(forked.error());
+                expect_whole(path, generation ? opening.hash() : run.world().hash(),
+                             generation ? opening.parameters() : run.world().parameters());
+            }
+        }
+    }
+    /// The file restores a world with this hash and these parameters, runs on, verifies and gives its tables.
+    void expect_whole(const std::string& path, const base::StateHash& hash, const parameters::ParameterSet& set) {
+        auto file = RunFile::open(path, {});
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_TRUE(check(**file));
+        auto recovered = recover(**file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        EXPECT_EQ(recovered->world.hash(), hash);
+        EXPECT_TRUE(recovered->world.parameters() == set);
+        {
+            const EndMark contents = (*file)->contents();
+            const std::uint64_t ended = (*file)->generations().last_ended();
+            NewRecordFinder news{contents.tick, contents.generations, ended};
+            (*file)->begin();
+            for (int tick = 0; tick < 130; ++tick) {
+                recovered->world.advance_tick(executor);
+                news.report(recovered->world, [&](const auto& record) { (*file)->write(record); });
+            }
+            (*file)->write(EndMark{.tick = recovered->world.moment().tick});
+            ASSERT_TRUE((*file)->commit());
+        }
+        const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
+        ASSERT_TRUE(verified) << to_text(verified.error());
+        EXPECT_FALSE(verified->difference) << verified->difference->part << ": " << verified->difference->stored << ", "
+                                           << verified->difference->simulated;
+        for (const RunTable table : {RunTable::Generations, RunTable::Organisms, RunTable::Population}) {
+            std::ostringstream out;
+            const auto written = write_table({**file, executor}, {.table = table}, out);
+            EXPECT_TRUE(written) << to_text(written.error());
+        }
+    }
+
+    TemporaryFolder folder;
+    base::InlineExecutor executor;
+};
+
+TEST_F(ForkAfterChange, ParametersSetBeforeTheFirstTickAreKept) {
+    expect_whole_forks(0, [](RecordedRun& run) { run.command(set_parameter("poison_harm", 0.0)); });
+}
+
+TEST_F(ForkAfterChange, ABoundNarrowedBeforeTheFirstTickIsKept) {
+    expect_whole_forks(0, [](RecordedRun& run) { run.command(set_parameter("body_size_max", 90.0)); });
+}
+
+TEST_F(ForkAfterChange, GenesThatWaitForAResetDoNotCount) {
+    for (const std::uint32_t genes : {0u, 4u}) {
+        folder.clear();
+        parameters::Parameters initial = small_world();
+        initial.free_genes = genes;
+        expect_whole_forks(
+            50, [&](RecordedRun& run) { run.command(set_parameter("free_genes", 4 - genes)); }, initial);
+    }
+}
+
+TEST_F(ForkAfterChange, AControllerThatWaitsForAResetDoesNotCount) {
+    expect_whole_forks(50, [](RecordedRun& run) { run.command(set_parameter("controller", std::string{"network"})); });
+}
+
+TEST_F(ForkAfterChange, AGivenPopulationNeedNotFitLaterParameters) {
+    expect_whole_forks(
+        50, [](RecordedRun& run) { run.command(set_parameter("population_size", 20u)); }, small_world(),
+        given_population());
+    folder.clear();
+    expect_whole_forks(
+        50, [](RecordedRun& run) { run.command(set_parameter("body_size_max", 90.0)); }, small_world(),
+        given_population());
 }
 
 TEST_F(ForkTest, AMissingGenerationOrAnExistingFileIsRefused) {

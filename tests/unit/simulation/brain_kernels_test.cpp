@@ -243,6 +243,19 @@ TEST_P(NetworkKernels, ComputeWhatSingleNumbersGive) {
     }
 }
 
+TEST_P(NetworkKernels, HeadingsStayWithinTheirBoundForTheFastestTurn) {
+    Organisms crowd = some_organisms(all_inputs, 5, true);
+    float greatest = 0;
+    for (int step = 1; step <= 2000; ++step) {
+        crowd.rules.turn = static_cast<float>(step) * 0.31416f; // up to 36,000 °/s in ticks of 1 s
+        crowd.steer();
+        for (std::size_t i = 0; i < crowd.count; ++i) {
+            greatest = std::max(greatest, std::abs(crowd.heading[i]));
+        }
+    }
+    EXPECT_LE(greatest, heading_max);
+}
+
 TEST_P(NetworkKernels, PredictWhatOrganismsDoAndChangeNothing) {
     Organisms crowd = some_organisms({BrainInput::FoodBearing, BrainInput::Speed}, 4, true);
     const std::vector<float> heading = crowd.heading, health = crowd.health;

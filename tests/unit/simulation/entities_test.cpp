@@ -324,6 +324,19 @@ int change_randomly(Laboratory& laboratory, std::mt19937& random) {
     return laboratory.apply(place).has_value() + laboratory.apply(remove).has_value();
 }
 
+TEST_F(EntitiesTest, AnIslandEmptiedBeforeItsFirstTickIsRestored) {
+    parameters.population_size = 3;
+    parameters.island_count = 2;
+    create();
+    ASSERT_TRUE(laboratory.apply(RemoveEntities{"w", 1, {}, {}, {}, {0, 1, 2}}));
+    for (const int ticks : {0, 1, 1, 60}) {
+        advance(ticks);
+        World restored = world().at_its_opening(executor);
+        ASSERT_TRUE(restored.restore(world().state(executor), executor));
+        EXPECT_EQ(restored.hash(), world().hash()) << "at tick " << world().moment().tick;
+    }
+}
+
 TEST_F(EntitiesTest, AWorldIsRestoredWithThemBitForBit) {
     parameters.population_size = 30;
     parameters.food_count = parameters.poison_count = 60;
