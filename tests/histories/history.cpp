@@ -3,10 +3,12 @@
 #include "server/base/overloaded.h"
 #include "server/protocol/commands.h"
 #include "server/replay/fork.h"
+#include "server/replay/run_tables.h"
 #include "server/replay/verify.h"
 #include "tests/support/shared_worlds.h"
 
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 namespace evod::histories {
@@ -105,7 +107,7 @@ void History::live(base::Executor& executor, simulation::Leader* leader) {
         }
         compare(Depth::Whole, executor);
     }
-    while (!failure_ && actions_left_ > 0 && !draws_.chance(0.08)) {
+    while (!failure_ && actions_left_ > 0 && !draws_.chance(0.12)) {
         --actions_left_;
         act();
         compare(Depth::Moment, executor);
@@ -225,8 +227,8 @@ void History::stop(base::Executor& executor) {
         fail("the server has lost data");
     }
     server_.reset();
-    if (!failure_ && (actions_left_ == 0 || draws_.chance(0.3))) {
-        verify_files(executor);
+    if (!failure_ && (actions_left_ == 0 || draws_.chance(0.5))) {
+        read_files(executor);
     }
     if (!failure_ && actions_left_ > 0 && !killed && !while_it_runs && draws_.chance(0.5)) {
         fork_file(executor);
@@ -247,11 +249,7 @@ void History::fork_file(base::Executor& executor) {
         return;
     }
     const Entry& twin = any_twin();
-    const Memory& memory = twins_.memory(twin.name);
-    auto generation = forkable_generation(twin, memory, draws_);
-    if (generation && memory.begins_within_generation && *generation == memory.openings.begin()->first) {
-        generation.reset(); // the file begins after that moment
-    }
+    const auto generation = forkable_generation(twins_.memory(twin.name), draws_);
     const simulation::ForkWorld fork{
         .world = twin.name, .name = commands_.unused_name(), .at_generation = generation, .run_id = {++runs_, 1}};
     note("evod fork " + fork.world + ".evod --name " + fork.name +
@@ -269,24 +267,44 @@ void History::fork_file(base::Executor& executor) {
     EXPECT_TRUE(applied) << to_text(applied.error());
 }
 
-void History::verify_files(base::Executor& executor) {
+void History::read_files(base::Executor& executor) {
     for (const auto& entry : fs::directory_iterator{folder()}) {
-        if (entry.path().extension() != ".evod" || failure_) {
-            continue;
+        if (entry.path().extension() == ".evod" && !failure_) {
+            verify(entry.path(), executor);
+            write_tables(entry.path(), executor);
         }
-        const std::string name = entry.path().filename().string();
-        auto file = run_file::RunFile::open_checked(entry.path().string());
-        if (!file) {
-            return fail(name + " cannot be read: " + to_text(file.error()));
-        }
-        const auto verified = replay::verify(**file, executor, [](const replay::VerifyProgress&) {});
-        if (!verified) {
-            return fail(name + " cannot be verified: " + to_text(verified.error()));
-        }
-        if (const auto& found = verified->difference) {
-            fail("verify finds a difference in " + name + " in generation " +
-                 std::to_string(found->differs.generation) + ", tick " + std::to_string(found->differs.tick) + ": " +
-                 found->part + ": stored " + found->stored + ", simulated again " + found->simulated);
+    }
+}
+
+void History::verify(const fs::path& path, base::Executor& executor) {
+    const std::string name = path.filename().string();
+    auto file = run_file::RunFile::open_checked(path.string());
+    if (!file) {
+        return fail(name + " cannot be read: " + to_text(file.error()));
+    }
+    const auto verified = replay::verify(**file, executor, [](const replay::VerifyProgress&) {});
+    if (!verified) {
+        return fail(name + " cannot be verified: " + to_text(verified.error()));
+    }
+    if (const auto& found = verified->difference) {
+        fail("verify finds a difference in " + name + " in generation " + std::to_string(found->differs.generation) +
+             ", tick " + std::to_string(found->differs.tick) + ": " + found->part + ": stored " + found->stored +
+             ", simulated again " + found->simulated);
+    }
+}
+
+void History::write_tables(const fs::path& path, base::Executor& executor) {
+    if (failure_) {
+        return;
+    }
+    auto file = run_file::RunFile::open_read_only(path.string());
+    ASSERT_TRUE(file);
+    ASSERT_TRUE((*file)->pin_snapshot());
+    using enum replay::RunTable;
+    for (const replay::RunTable table : {Generations, Organisms, Lineage, Population, Events}) {
+        std::ostringstream text;
+        if (const auto written = replay::write_table({**file, executor}, {.table = table}, text); !written) {
+            fail("a table of " + path.filename().string() + " cannot be written: " + to_text(written.error()));
         }
     }
 }

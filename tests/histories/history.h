@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -44,7 +45,10 @@ class History {
     /// Leaves a copy of the data folder, as a kill of the server would.
     void kill();
     void fork_file(base::Executor& executor);
-    void verify_files(base::Executor& executor);
+    /// Verifies all run files, and exports their tables.
+    void read_files(base::Executor& executor);
+    void verify(const std::filesystem::path& path, base::Executor& executor);
+    void write_tables(const std::filesystem::path& path, base::Executor& executor);
     std::string folder() const { return folders_.path() + "/" + std::to_string(folder_); }
     const simulation::Entry& any_twin();
     void note(const std::string& action);

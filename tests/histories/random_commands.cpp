@@ -45,7 +45,10 @@ std::vector<v1::Request> RandomCommands::next(const Twins& twins) {
     if (entry.world.awaits_fitness() && draws_.chance(0.7)) {
         return {set_fitness(entry)};
     }
-    const std::uint64_t kind = draws_.below(100);
+    std::uint64_t kind = draws_.below(100);
+    if (entry.world.moment().generation_tick == 0 && draws_.chance(0.5)) {
+        kind = draws_.count(30, 99); // much can happen before the first tick
+    }
     if (kind < 30) {
         return advance(entry);
     }
@@ -263,21 +266,17 @@ v1::Request RandomCommands::fork(const Entry& entry, const Memory& memory) {
     v1::Request sent = request();
     sent.mutable_fork_world()->set_world(entry.name);
     sent.mutable_fork_world()->set_name(unused_name());
-    if (const auto generation = forkable_generation(entry, memory, draws_)) {
+    if (const auto generation = forkable_generation(memory, draws_)) {
         sent.mutable_fork_world()->set_at_generation(*generation);
     }
     return sent;
 }
 
-std::optional<std::uint64_t> forkable_generation(const Entry& entry, const Memory& memory, Draws& draws) {
-    if (draws.chance(0.4) || memory.openings.empty()) {
+std::optional<std::uint64_t> forkable_generation(const Memory& memory, Draws& draws) {
+    if (memory.openings.empty() || draws.chance(0.4)) {
         return std::nullopt;
     }
-    const std::uint64_t now = entry.world.moment().generation;
-    const std::uint64_t generation = draws.chance(0.4) ? now : draws.one_of(memory.openings).first;
-    // Once its first generation is over, a fork that began within it can only be forked from the moment where it began.
-    const bool has_first_moment = !memory.begins_within_generation || generation != memory.openings.begin()->first;
-    return has_first_moment || generation == now ? std::optional{generation} : std::nullopt;
+    return draws.chance(0.4) ? memory.openings.rbegin()->first : draws.one_of(memory.openings).first;
 }
 
 } // namespace evod::histories

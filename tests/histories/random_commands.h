@@ -14,7 +14,7 @@
 namespace evod::histories {
 
 /// Draws a generation from whose first moment a world can be forked; nullopt: from now.
-std::optional<std::uint64_t> forkable_generation(const simulation::Entry& entry, const Memory& memory, Draws& draws);
+std::optional<std::uint64_t> forkable_generation(const Memory& memory, Draws& draws);
 
 class RandomCommands {
   public:

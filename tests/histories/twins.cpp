@@ -32,18 +32,10 @@ base::Result<simulation::Applied> Twins::apply(const Command& command) {
 }
 
 base::Result<simulation::Applied> Twins::fork(const simulation::ForkWorld& command) {
-    const Entry* origin = find(command.world);
-    if (origin == nullptr || !command.at_generation) {
+    if (!command.at_generation) {
         auto applied = laboratory_.apply(command);
         if (applied) {
-            // The fork continues in a generation that its origin began.
-            const std::uint64_t generation = origin->world.moment().generation;
-            const Memory& before = memories_.at(command.world);
-            Memory& begun = memories_[command.name] = {};
-            begun.begins_within_generation = true;
-            if (const auto opening = before.openings.find(generation); opening != before.openings.end()) {
-                begun.openings.emplace(generation, opening->second.copy(executor_));
-            }
+            memories_[command.name] = {};
         }
         return applied;
     }
