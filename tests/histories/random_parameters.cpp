@@ -77,6 +77,21 @@ std::uint32_t random_count(const ParameterDescription& description, const base::
     return draws.chance(0.3) ? std::min(max, min + draws.count(0, 2)) : draws.count(min, max);
 }
 
+/// Values that fit together only when all of them are in effect; some of them are at once, others at a generation.
+std::vector<parameters::Assignment> random_group(Draws& draws) {
+    if (draws.chance(0.5)) {
+        return {{"population_size", draws.count(1, 3)},
+                {"body_size_max", draws.number(500, 1000)},
+                {"body_size_min", draws.number(100, 500)}};
+    }
+    const std::uint32_t size = draws.count(2, 50);
+    return {{"population_size", size + draws.count(0, 10)},
+            {"tournament_size", size},
+            {"tournament_winners", 1U},
+            {"tournament_replacement", false},
+            {"selection", std::string{"tournament"}}};
+}
+
 } // namespace
 
 ParameterValue random_value(const ParameterDescription& description, Draws& draws) {
@@ -98,6 +113,9 @@ ParameterValue random_value(const ParameterDescription& description, Draws& draw
 
 std::vector<parameters::Assignment> random_assignments(const ParameterDescription& first, bool with_resets,
                                                        Draws& draws) {
+    if (draws.chance(0.08)) {
+        return random_group(draws);
+    }
     const auto registry = parameters::parameter_registry();
     std::vector<parameters::Assignment> assignments{{std::string{first.name}, random_value(first, draws)}};
     for (std::uint32_t more = draws.chance(0.5) ? 0 : draws.count(1, 3); more > 0; --more) {

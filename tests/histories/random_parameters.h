@@ -11,7 +11,7 @@ namespace evod::histories {
 
 parameters::ParameterValue random_value(const parameters::ParameterDescription& description, Draws& draws);
 
-/// Draws assignments that include this parameter.
+/// Draws assignments that mostly include this parameter.
 ///
 /// with_resets  whether other parameters that wait for a reset may be among them.
 std::vector<parameters::Assignment> random_assignments(const parameters::ParameterDescription& first, bool with_resets,
