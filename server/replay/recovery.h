@@ -26,4 +26,8 @@ struct Recovered {
 /// as Rerun::at(), and if a state hash differs from the stored one.
 base::Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor);
 
+/// Extends the reason why a world cannot be restored from its file by what can be done about it. Clients, the log and
+/// `evod verify` show this sentence.
+base::Refusal with_remedies(base::Refusal why);
+
 } // namespace evod::replay
