@@ -100,7 +100,10 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
             continue;
         }
         const auto brought = base::within_memory([&] { return archive->recover_world(file, options, executor); });
-        if (!brought) {
+        if (!brought && brought.error().code == RefusalCode::ResourceExhausted) {
+            archive->add_damaged(
+                file, refusal(RefusalCode::Unavailable, file + ": there is not enough memory to restore its world"));
+        } else if (!brought) {
             archive->add_damaged(file, brought.error());
         } else if (!brought->empty()) {
             ended.push_back(*brought);
