@@ -70,6 +70,9 @@ std::vector<Candidate> worlds(const Common& common) {
     for (const auto& world : response.worlds().worlds()) {
         all.push_back({world.name(), sentence(world)});
     }
+    for (const auto& world : response.worlds().damaged()) {
+        all.push_back({world.name(), "damaged"});
+    }
     return all;
 }
 

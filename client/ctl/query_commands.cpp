@@ -8,6 +8,11 @@
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
+#include <iostream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace evod::ctl {
 
@@ -39,10 +44,25 @@ void status(const Common& common) {
                      {"TICKS/S", Align::Right},
                      {"ISLANDS", Align::Right},
                      {"SEED", Align::Right}}};
+        std::map<std::string, std::vector<std::string>> rows; // by name
+        std::string reasons;
         for (const auto& world : worlds.worlds()) {
-            table.add({world.name(), colored_state_of(world), speed_of(world), std::to_string(world.generation()),
-                       std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
-                       std::to_string(world.island_count()), std::to_string(world.seed())});
+            rows[world.name()] = {world.name(),
+                                  colored_state_of(world),
+                                  speed_of(world),
+                                  std::to_string(world.generation()),
+                                  std::to_string(world.tick()),
+                                  duration(world.simulated_s()),
+                                  fixed(world.ticks_per_s(), 0),
+                                  std::to_string(world.island_count()),
+                                  std::to_string(world.seed())};
+        }
+        for (const auto& world : worlds.damaged()) {
+            rows[world.name()] = {world.name(), in_color("damaged", Color::Red), "-", "-", "-", "-", "-", "-", "-"};
+            reasons += in_color(world.name() + " does not run: " + world.reason(), Color::Yellow) + "\n";
+        }
+        for (const auto& [name, row] : rows) {
+            table.add(row);
         }
         std::string text = "evod " + caller.welcome().server_version() + " at " +
                            core::to_text(*core::parse_endpoint(common.server)) + "\n";
@@ -55,7 +75,7 @@ void status(const Common& common) {
                                         storage_problem(caller.welcome().storage())}) {
             text += line.empty() ? "" : in_color(line, Color::Yellow) + "\n";
         }
-        return text + (worlds.worlds().empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
+        return text + reasons + (rows.empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
     });
 }
 
@@ -63,9 +83,17 @@ void list_worlds(const Common& common) {
     Caller caller{common};
     const v1::WorldList worlds = worlds_of(caller);
     print(common, worlds, [&] {
-        std::string text;
+        std::set<std::string> names;
         for (const auto& world : worlds.worlds()) {
-            text += world.name() + "\n";
+            names.insert(world.name());
+        }
+        for (const auto& world : worlds.damaged()) {
+            names.insert(world.name());
+            std::cerr << visible(world.name() + " does not run: " + world.reason()) << '\n';
+        }
+        std::string text;
+        for (const std::string& name : names) {
+            text += name + "\n";
         }
         return text;
     });

@@ -61,6 +61,7 @@ enum class Reason {
     NoBodies = 46,
     PlacedMax = 47,
     FitnessNotAwaited = 48,
+    WorldDamaged = 49,
     RunsNotKept = 50,
     MomentNotFound = 51,
     SeekSuperseded = 52,

@@ -28,4 +28,15 @@ std::vector<std::shared_ptr<const World>> Worlds::list() const {
     return listed;
 }
 
+void Worlds::set_damaged(std::vector<std::string> names) {
+    std::ranges::sort(names);
+    const std::lock_guard lock{mutex_};
+    damaged_ = std::move(names);
+}
+
+std::vector<std::string> Worlds::damaged() const {
+    const std::lock_guard lock{mutex_};
+    return damaged_;
+}
+
 } // namespace evod::metrics

@@ -1,4 +1,4 @@
-// Worlds: the metrics of each world that exists.
+// Worlds: the metrics of each world that runs, and the names of the damaged worlds.
 //
 // Threads      the simulation thread adds worlds and updates the metrics. Any thread may call list().
 // Full         never: it contains one entry per world, and the number of worlds is limited.
@@ -28,9 +28,15 @@ class Worlds {
     /// Returns all worlds, sorted by name.
     std::vector<std::shared_ptr<const World>> list() const;
 
+    /// Replaces the list of the damaged worlds, which do not run and have no metrics.
+    void set_damaged(std::vector<std::string> names);
+    /// The names of the damaged worlds, sorted.
+    std::vector<std::string> damaged() const;
+
   private:
     mutable std::mutex mutex_; // guards the members below
     std::vector<std::weak_ptr<World>> worlds_;
+    std::vector<std::string> damaged_;
 };
 
 } // namespace evod::metrics

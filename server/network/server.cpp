@@ -166,6 +166,12 @@ base::Result<void> Server::open_archive() {
                                         "and --population, and reset or delete that world",
                              .violations = {}};
     };
+    if (archive_->is_damaged(wanted.name)) {
+        log::error({.world = wanted.name},
+                   "--experiment, --seed and --population have no effect: world \"{}\" exists and is damaged",
+                   wanted.name);
+        return {};
+    }
     if (there && !(there->requested_parameters() == wanted.parameters)) {
         return differs("parameters: " + differences_of(there->requested_parameters(), wanted.parameters));
     }
@@ -189,7 +195,9 @@ bool Server::creates_first_world() const {
     if (!archive_) {
         return true;
     }
-    return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->has_worlds();
+    const std::vector<std::string> names = archive_->world_names();
+    return options_.first_world_asked ? std::ranges::find(names, options_.first_world.name) == names.end()
+                                      : names.empty();
 }
 
 base::Result<std::string> Server::world_to_begin() const {
@@ -243,6 +251,12 @@ void Server::begin_first_world() {
     }
     const std::string begun = *world_to_begin(); // open() has already checked that there is such a world
     const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
+    if (archive_ && archive_->is_damaged(begun)) {
+        if (options_.first_speed || options_.first_run) {
+            log::warn({.world = begun}, "--speed and --start have no effect: world \"{}\" is damaged", begun);
+        }
+        return;
+    }
     if ((options_.first_speed || options_.first_run) && others > 0) {
         log::info({.world = begun}, "--speed and --start apply to world \"{}\" only; {} others continue as before",
                   begun, others);

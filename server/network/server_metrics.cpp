@@ -38,6 +38,8 @@ constexpr std::array storage_states{
 void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     const auto worlds = counted.list();
     add_gauge(to, "evod_worlds", "Worlds").add(number(worlds.size()));
+    add_gauge(to, "evod_worlds_damaged", "Worlds that do not run because they cannot be restored from their run files")
+        .add(number(counted.damaged().size()));
     auto ticks = add_counter(to, "evod_ticks_total", "Simulated ticks");
     auto rate = add_gauge(to, "evod_ticks_per_second",
                           "Ticks per second, measured over about one second; 0 while the world does not run");
@@ -216,7 +218,11 @@ asio::awaitable<HttpAnswer> Server::health() {
     if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED) {
         co_return ill("runs cannot be written: " + host_.storage->reason());
     }
-    co_return HttpAnswer{.text = "ok\n"};
+    std::string text = "ok\n";
+    for (const std::string& world : worlds_counted_.damaged()) {
+        text += "damaged world: " + world + '\n';
+    }
+    co_return HttpAnswer{.text = std::move(text)};
 }
 
 base::Result<void> Server::open_http() {

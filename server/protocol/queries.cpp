@@ -69,6 +69,11 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
     // The worlds are sorted by name, because the order of their creation is not known after a restart.
     std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
               [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
+    for (const simulation::DamagedWorld& world : laboratory.damaged()) {
+        *list.add_damaged() = to_proto(world);
+    }
+    std::sort(list.mutable_damaged()->begin(), list.mutable_damaged()->end(),
+              [](const v1::DamagedWorld& a, const v1::DamagedWorld& b) { return a.name() < b.name(); });
     return list;
 }
 

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/protocol/ratings.h"
+#include "server/protocol/refusals.h"
 
 namespace evod::protocol {
 
@@ -126,6 +127,16 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     if (entry.storage) {
         *to.mutable_storage() = to_proto(*entry.storage);
     }
+    return to;
+}
+
+v1::DamagedWorld to_proto(const simulation::DamagedWorld& world) {
+    v1::DamagedWorld to;
+    to.set_name(world.name);
+    if (world.run_id) {
+        to.set_run_id(to_text(*world.run_id));
+    }
+    to.set_reason(quotable(world.reason, 2000));
     return to;
 }
 

@@ -12,6 +12,7 @@ v1::Outcome to_proto(evolution::Outcome outcome);
 v1::Speed to_proto(const simulation::Speed& speed);
 v1::Storage to_proto(const simulation::Storage& storage);
 v1::WorldInfo to_proto(const simulation::Entry& entry);
+v1::DamagedWorld to_proto(const simulation::DamagedWorld& world);
 v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics);
 v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::uint32_t island);
 

@@ -159,6 +159,8 @@ class Recorder {
                         const run_file::EndMark& so_far, std::uint64_t generations_ended);
     /// Ends the recording of a world that this command deleted. Its file gets an end mark and the name of an ended run.
     void end(const std::string& world, const simulation::RunId& run_id, CommandRecord command);
+    /// Renames the files of a damaged world, before it is deleted. The storage thread does not have them open.
+    base::Result<void> move_aside(const std::string& world) const { return folder_.move_aside(world); }
     /// Writes an end mark to every file. Must be called when the server stops.
     void close_all(const simulation::Laboratory& laboratory);
 

@@ -1,5 +1,6 @@
 #include "server/replay/archive.h"
 
+#include "server/base/within_memory.h"
 #include "server/log/log.h"
 #include "server/run_file/write_ahead_log.h"
 
@@ -31,19 +32,6 @@ Result<bool> is_over(run_file::RunFile& file) {
         return mark.error();
     }
     return *mark && (*mark)->ended;
-}
-
-/// Extends the reason why a file prevents the start by the actions that the operator can take.
-Refusal with_remedies(Refusal why, const std::string& folder) {
-    const std::string move = "move it (and its -wal file, if it exists) out of " + folder;
-    if (why.code == RefusalCode::DataLoss) {
-        why.message += "; restore a copy of the file, or " + move + " to start without its world";
-    } else if (why.code == RefusalCode::FailedPrecondition) {
-        why.message += "; start the version of evod that wrote it, or " + move + " to start without its world";
-    } else if (why.code == RefusalCode::InvalidArgument) {
-        why.message += "; " + move;
-    }
-    return why;
 }
 
 /// Completes or undoes the creation or reset of a world that was interrupted by a crash. If the old run has its end
@@ -89,14 +77,15 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
     if (!folder) {
         return folder.error();
     }
-    auto files = folder->files();
+    std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
+    auto files = archive->folder_.files();
     for (const std::string& file : files ? files->replaced : std::vector<std::string>{}) {
-        if (auto finished = finish_replacing(*folder, file); !finished) {
-            return with_remedies(finished.error(), path);
+        if (auto finished = finish_replacing(archive->folder_, file); !finished) {
+            archive->add_damaged(file, finished.error());
         }
     }
     if (files && !files->replaced.empty()) {
-        files = folder->files();
+        files = archive->folder_.files();
     }
     if (!files) {
         return files.error();
@@ -104,15 +93,19 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
     for (const std::string& file : files->strange) {
         log::warn("{} is ignored: the name of a run file is NAME.evod, where NAME is a valid world name", file);
     }
-    std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
     std::vector<std::string> ended = files->ended;
     for (const std::string& file : files->of_worlds) {
-        const auto brought = archive->recover_world(file, options, executor);
-        if (!brought) {
-            return with_remedies(brought.error(), path);
+        if (archive->is_damaged(run_file::world_of(file))) {
+            continue;
         }
-        if (!brought->empty()) {
+        const auto brought = base::within_memory([&] { return archive->recover_world(file, options, executor); });
+        if (!brought && brought.error().code == RefusalCode::ResourceExhausted) {
+            archive->add_damaged(
+                file, refusal(RefusalCode::Unavailable, file + ": there is not enough memory to restore its world"));
+        } else if (!brought) {
+            archive->add_damaged(file, brought.error());
+        } else if (!brought->empty()) {
             ended.push_back(*brought);
         }
     }
@@ -165,32 +158,41 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
     if (auto sound = run_file::check_log(path, index); !sound) {
         return sound.error();
     }
-    auto file = run_file::RunFile::open(path, options);
-    if (!file) {
-        return file.error();
+    if (auto single = run_file::expect_file_with_one_name(path); !single) {
+        return single.error();
     }
-    const run_file::RunIdentity identity = (*file)->identity();
-    const auto over = is_over(**file);
+    // SQLite would copy the log into the file when a connection that may write is closed.
+    auto stored = run_file::RunFile::open_read_only(path);
+    if (!stored) {
+        return stored.error();
+    }
+    const run_file::RunIdentity identity = (*stored)->identity();
+    const auto over = is_over(**stored);
     if (!over) {
         return over.error();
     }
     if (*over) {
         // The server was stopped before it could rename the file.
-        file->reset();
+        stored->reset();
         const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
         if (auto renamed = run_file::rename_run_file(path, ended); !renamed) {
             return renamed.error();
         }
         return ended;
     }
-    const bool was_closed = (*file)->end_mark()->has_value();
-    auto recovered = recover(**file, executor);
+    const bool was_closed = (*stored)->end_mark()->has_value();
+    auto recovered = recover(**stored, executor);
     if (!recovered) {
         return recovered.error();
     }
+    stored->reset();
+    auto file = run_file::RunFile::open(path, options);
+    if (!file) {
+        return file.error();
+    }
     const run_file::EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->generations().last_ended();
-    const auto name = std::filesystem::path{path}.stem().string();
+    const std::string name = run_file::world_of(path);
     log::info({.world = name}, "world \"{}\" continues from generation {}, tick {} of {}{}", name,
               recovered->world.moment().generation, recovered->world.moment().tick, path,
               was_closed ? "" : "; the previous server did not close this file");
@@ -206,11 +208,27 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
     return std::string{};
 }
 
+void Archive::add_damaged(const std::string& path, const Refusal& why) {
+    simulation::DamagedWorld world{
+        .name = run_file::world_of(path), .run_id = {}, .reason = with_remedies(why).message};
+    if (const auto file = run_file::RunFile::open_checked(path)) {
+        world.run_id = (*file)->identity().run_id;
+    }
+    log::error({.world = world.name}, "world \"{}\" does not run: {}", world.name, world.reason);
+    damaged_.push_back(world.name);
+    laboratory_.adopt(std::move(world));
+}
+
+bool Archive::is_damaged(const std::string& world) const {
+    return std::ranges::find(damaged_, world) != damaged_.end();
+}
+
 std::vector<std::string> Archive::world_names() const {
-    std::vector<std::string> names;
+    std::vector<std::string> names = damaged_;
     for (const run_file::RunIdentity& identity : identities_) {
         names.push_back(identity.name);
     }
+    std::ranges::sort(names);
     return names;
 }
 

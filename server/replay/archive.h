@@ -22,8 +22,8 @@ class Archive {
     static constexpr std::uint32_t answers_kept_of_ended = 1000;
     static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
 
-    /// Locks the folder and recovers every world. Refused if a world cannot be recovered, because a server without that
-    /// world would seem to have lost it. The refusal names the file and what the operator can do.
+    /// Locks the folder and recovers every world. A world that cannot be recovered becomes a damaged world, with the
+    /// reason and what can be done; its file is not changed. Refused if the folder cannot be used.
     static base::Result<std::unique_ptr<Archive>>
     open(const std::string& path, const run_file::RunFile::Options& options, base::Executor& executor);
 
@@ -31,10 +31,11 @@ class Archive {
     run_file::Durability durability() const { return durability_; }
     /// The identity of the run of a recovered world; nullptr if there is no recovered world with this name.
     const run_file::RunIdentity* identity_of(const std::string& world) const;
-    bool has_worlds() const { return !identities_.empty(); }
-    /// The names of the recovered worlds, in alphabetical order.
+    /// Whether there is a damaged world with this name.
+    bool is_damaged(const std::string& world) const;
+    /// The names of all worlds, damaged ones too, in alphabetical order.
     std::vector<std::string> world_names() const;
-    /// Removes the recovered worlds from the archive and returns them. Must be called only once.
+    /// Removes the worlds from the archive and returns them. Must be called only once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
     /// Removes the applied commands and their answers from the archive and returns them: ended runs first; within a
     /// run, in the order of application. Must be called only once.
@@ -56,9 +57,11 @@ class Archive {
     /// Reads the answers of ended runs and inserts them before the answers of recovered worlds.
     void read_ended_answers(const std::vector<std::string>& paths);
     /// Recovers one world. Returns an empty text if the world continues. If its run has ended, returns the new path of
-    /// the file.
+    /// the file. Before the world is recovered, its file is only read.
     base::Result<std::string> recover_world(const std::string& path, const run_file::RunFile::Options& options,
                                             base::Executor& executor);
+
+    void add_damaged(const std::string& path, const base::Refusal& why);
 
     run_file::DataFolder folder_;
     run_file::Durability durability_;
@@ -66,6 +69,7 @@ class Archive {
     std::unique_ptr<recording::Recorder> recorder_;
     simulation::Laboratory laboratory_;
     std::vector<run_file::RunIdentity> identities_;
+    std::vector<std::string> damaged_; // names of the damaged worlds
     std::vector<run_file::JournalEntry> answers_;
 };
 

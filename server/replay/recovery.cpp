@@ -79,4 +79,24 @@ Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& has
     return {};
 }
 
+base::Refusal with_remedies(base::Refusal why) {
+    switch (why.code) {
+    case RefusalCode::NotFound:
+        return why; // there is no file about which anything could be done
+    case RefusalCode::DataLoss:
+        why.message += "; check the file with evod verify, save what can be read with evod export, and restore a copy";
+        break;
+    case RefusalCode::Unavailable:
+        why.message += "; remove the cause, and start the server again";
+        break;
+    case RefusalCode::FailedPrecondition: // another version of the model or of the format
+        why.message += "; start the version of evod that wrote the file, or save what can be read with evod export";
+        break;
+    default:
+        break;
+    }
+    why.message += "; deleting the world moves the file away";
+    return why;
+}
+
 } // namespace evod::replay

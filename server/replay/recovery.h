@@ -30,4 +30,8 @@ base::Result<Recovered> recover(run_file::RunFile& file, base::Executor& executo
 /// Refused if this fails, or if the state hash is not `hash`.
 base::Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& hash, base::Executor& executor);
 
+/// Extends the reason why a world cannot be restored from its file by what can be done about it. Clients, the log and
+/// `evod verify` show this sentence.
+base::Refusal with_remedies(base::Refusal why);
+
 } // namespace evod::replay

@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view ending = ".evod";
+constexpr std::string_view aside = ".damaged-"; // between the world's name and a number
 
 base::Refusal unusable(const std::string& path, const std::string& why) {
     return {.code = base::RefusalCode::Unavailable,
@@ -65,6 +66,26 @@ std::string DataFolder::ended_file_of(const std::string& world, const simulation
     return path_ + "/" + world + "." + to_text(run_id) + std::string{ending};
 }
 
+base::Result<void> DataFolder::move_aside(const std::string& world) const {
+    std::error_code ignored;
+    const auto is_there = [&](const std::string& path) { return fs::exists(fs::symlink_status(path, ignored)); };
+    const std::string from = file_of(world);
+    std::string to;
+    for (int number = 1; to.empty() || is_there(to) || is_there(next_file_of(to)); ++number) {
+        to = path_ + "/" + world + std::string{aside} + std::to_string(number) + std::string{ending};
+    }
+    // The incomplete file goes first: if it stayed alone, the next server would take it for the world's run.
+    for (const auto& [old, renamed] : {std::pair{next_file_of(from), next_file_of(to)}, std::pair{from, to}}) {
+        if (!is_there(old)) {
+            continue;
+        }
+        if (auto moved = rename_run_file(old, renamed); !moved) {
+            return moved;
+        }
+    }
+    return {};
+}
+
 base::Result<DataFolder::Files> DataFolder::files() const {
     Files files;
     std::error_code error;
@@ -79,6 +100,9 @@ base::Result<DataFolder::Files> DataFolder::files() const {
         }
         const std::string stem = name.substr(0, name.size() - ending.size());
         const std::size_t dot = stem.find('.');
+        if (dot != std::string::npos && stem.compare(dot, aside.size(), aside) == 0) {
+            continue;
+        }
         auto& paths = dot == std::string::npos ? files.of_worlds : files.ended;
         (simulation::is_world_name(stem.substr(0, dot)) ? paths : files.strange).push_back(file->path().string());
     }
@@ -89,6 +113,10 @@ base::Result<DataFolder::Files> DataFolder::files() const {
         std::sort(paths->begin(), paths->end());
     }
     return files;
+}
+
+std::string world_of(const std::string& path) {
+    return fs::path{path}.stem().string();
 }
 
 base::Result<void> rename_run_file(const std::string& from, const std::string& to) {
@@ -141,14 +169,9 @@ base::Result<void> expect_file_with_one_name(const std::string& path) {
     if (::lstat(path.c_str(), &status) != 0) {
         return {}; // opening the file reports the reason
     }
-    if (S_ISDIR(status.st_mode)) {
-        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file; move it out of " +
-                                                         fs::path{path}.parent_path().string() +
-                                                         " to start without its world");
-    }
     if (S_ISLNK(status.st_mode)) {
         return refusal(
-            RefusalCode::FailedPrecondition,
+            RefusalCode::InvalidArgument,
             path + " is a symbolic link, and another server may write to its target: replace the link with a copy "
                    "of the target, or name the folder of the target with --data");
     }
@@ -157,7 +180,7 @@ base::Result<void> expect_file_with_one_name(const std::string& path) {
                        path + ": this is " + std::string{files::other_than_file(status.st_mode)} + ", not a run file");
     }
     if (status.st_nlink > 1) {
-        return refusal(RefusalCode::FailedPrecondition,
+        return refusal(RefusalCode::InvalidArgument,
                        path + " has a second name, a hard link, under which another server may write to it: delete "
                               "one of the two names, or replace this file with a copy");
     }

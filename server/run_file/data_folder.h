@@ -3,6 +3,7 @@
 //   NAME.evod         the run of the world NAME
 //   NAME.RUNID.evod   a run that has ended
 //   NAME.evod-next    a run that is being created; it becomes NAME.evod
+//   NAME.damaged-N.evod   the file of a damaged world that was deleted; no server reads it
 //
 // Owner        one server. It locks the file `lock`, so that a second server for the same folder is refused.
 #pragma once
@@ -29,6 +30,9 @@ class DataFolder {
     std::string file_of(const std::string& world) const;
     std::string ended_file_of(const std::string& world, const simulation::RunId& run_id) const;
     static std::string next_file_of(const std::string& file) { return file + "-next"; }
+    /// Renames the files of a world to NAME.damaged-N.evod, where N is the first unused number. No thread may have them
+    /// open for writing.
+    base::Result<void> move_aside(const std::string& world) const;
     struct Files {
         std::vector<std::string> of_worlds, ended; // paths of the current runs of worlds, and of ended runs; sorted
         // Paths for which next_file_of(path) exists; the path itself may not exist.
@@ -42,6 +46,9 @@ class DataFolder {
     std::string path_;
     int lock_; // file descriptor
 };
+
+/// The name of the world whose run is stored in this file.
+std::string world_of(const std::string& path);
 
 /// Renames a run file and the SQLite files beside it. This thread must not have the file open. Programs that are
 /// reading the file can continue. No file keeps the old name.

@@ -50,6 +50,10 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     if (reads) {
         return;
     }
+    if (sqlite3_db_readonly(handle, "main") == 1) { // SQLite then opens the file for reading
+        error_ = "no permission to write the file";
+        return;
+    }
     // Replaces SQLite's own hook, which would copy a long log into the file during a commit.
     sqlite3_wal_hook(
         handle,

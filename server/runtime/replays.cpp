@@ -39,8 +39,14 @@ void Replays::answer(const ReplayMail& mail, const Result<std::string>& world) {
 }
 
 void Replays::find_run(const FindRun& mail) {
-    const auto entry = std::as_const(laboratory_).find(protocol::lookup_name(protocol::world_of(*mail.request)));
+    const std::string world = protocol::lookup_name(protocol::world_of(*mail.request));
+    const auto entry = std::as_const(laboratory_).find(world);
     if (!entry) {
+        const simulation::DamagedWorld* damaged = laboratory_.find_damaged(world);
+        if (damaged && damaged->run_id && mail.request->has_export_run()) {
+            const replay::StoredRun run{recorder_->paths_of(damaged->name, *damaged->run_id), *damaged->run_id};
+            return reply_(RunFound{mail, FoundRun{run}});
+        }
         return reply_(RunFound{mail, entry.error()});
     }
     const auto run = run_of((*entry)->name);

@@ -66,6 +66,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     if (recorder_) {
         laboratory_.set_storage({});
     }
+    count_damaged_worlds();
     if (replay) {
         replays_.shown().show(replay->name, replay->run, 0, std::move(replay->shown));
     }
@@ -248,6 +249,8 @@ void SimulationLoop::apply(CommandMail& mail) {
                 if (command.world.empty()) {
                     if (const auto entry = std::as_const(laboratory_).find("")) {
                         command.world = (*entry)->name;
+                    } else if (const auto* damaged = laboratory_.find_damaged("")) {
+                        command.world = damaged->name;
                     }
                 }
             }
@@ -293,14 +296,20 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     }
     const auto* created = std::get_if<simulation::CreateWorld>(&command);
     const auto* forked = std::get_if<simulation::ForkWorld>(&command);
-    return created  ? recorder_->refusal_of_place(created->name)
-           : forked ? recorder_->refusal_of_place(forked->name)
-                    : std::nullopt;
+    const std::string* name = created ? &created->name : forked ? &forked->name : nullptr;
+    // The laboratory refuses the name of a damaged world.
+    return name && !laboratory_.find_damaged(*name) ? recorder_->refusal_of_place(*name) : std::nullopt;
 }
 
 base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
     if (auto refused = refusal_of(command)) {
         return *refused;
+    }
+    if (const auto* deleted = std::get_if<simulation::DeleteWorld>(&command);
+        deleted && recorder_ && laboratory_.find_damaged(deleted->world)) {
+        if (auto moved = recorder_->move_aside(deleted->world); !moved) {
+            return moved.error();
+        }
     }
     if (creates_a_world(command)) {
         return base::within_memory([&] { return laboratory_.apply(command); });
@@ -354,7 +363,11 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
         }
     }
     CommandDone done = done_of(std::move(mail), applied);
-    if (recorder_ && applied && changes_something(done.mail.command)) {
+    const bool deleted_damaged_world = applied && !before && effect_of(done.mail.command) == RunEffect::Ends;
+    if (deleted_damaged_world) {
+        count_damaged_worlds();
+    }
+    if (recorder_ && applied && changes_something(done.mail.command) && !deleted_damaged_world) {
         record(std::move(done), before);
     } else {
         outputs_.reply(std::move(done));
@@ -469,6 +482,17 @@ void SimulationLoop::follow_worlds() {
                                 [&](const auto& entry) { return entry->name == item.first; });
         });
     }
+}
+
+void SimulationLoop::count_damaged_worlds() {
+    if (outputs_.counted == nullptr) {
+        return;
+    }
+    std::vector<std::string> names;
+    for (const simulation::DamagedWorld& world : laboratory_.damaged()) {
+        names.push_back(world.name);
+    }
+    outputs_.counted->set_damaged(std::move(names));
 }
 
 SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {

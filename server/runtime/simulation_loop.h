@@ -137,6 +137,8 @@ class SimulationLoop {
     /// Whether the world must wait for the disk.
     bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.replay; }
     void follow_worlds();
+    /// Passes the names of the damaged worlds to the metrics. Must be called when they have changed.
+    void count_damaged_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
     /// Advances a world by one tick or, if processes share it, by as many as it should before they exchange results.

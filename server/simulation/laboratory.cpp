@@ -182,27 +182,60 @@ void Laboratory::settle(Entry& entry) {
     }
 }
 
-Result<Entry*> Laboratory::find(std::string_view name) {
-    const auto named = [&](std::string_view wanted) {
-        return std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == wanted; });
-    };
-    const auto is_other_replay = [](const auto& entry) { return entry->replays_another_world(); };
-    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(is_other_replay)) == 1) {
-        return std::ranges::find_if_not(entries_, is_other_replay)->get();
+base::Refusal DamagedWorld::refusal() const {
+    return base::refusal(RefusalCode::FailedPrecondition, "the world does not run: " + reason,
+                         base::Reason::WorldDamaged);
+}
+
+namespace {
+
+bool is_world(const std::unique_ptr<Entry>& entry) {
+    return !entry->replays_another_world();
+}
+
+} // namespace
+
+std::size_t Laboratory::world_count() const {
+    return static_cast<std::size_t>(std::ranges::count_if(entries_, is_world)) + damaged_.size();
+}
+
+std::string_view Laboratory::meant_by(std::string_view name) const {
+    if (!name.empty()) {
+        return name;
     }
-    const auto found = named(name.empty() ? "default" : name);
+    if (world_count() != 1) {
+        return "default";
+    }
+    return damaged_.empty() ? (*std::ranges::find_if(entries_, is_world))->name : damaged_.front().name;
+}
+
+const DamagedWorld* Laboratory::find_damaged(std::string_view name) const {
+    const auto found = std::ranges::find(damaged_, meant_by(name), &DamagedWorld::name);
+    return found == damaged_.end() ? nullptr : &*found;
+}
+
+Result<Entry*> Laboratory::find(std::string_view name) {
+    const std::string_view meant = meant_by(name);
+    const auto found = std::ranges::find_if(entries_, [&](const auto& entry) { return entry->name == meant; });
     if (found != entries_.end()) {
         return found->get();
+    }
+    if (const DamagedWorld* damaged = find_damaged(meant)) {
+        return damaged->refusal();
     }
     return not_found(name);
 }
 
 Refusal Laboratory::not_found(std::string_view name) const {
     std::string names;
+    const auto add_name = [&names](const std::string& one) { names += (names.empty() ? "" : ", ") + one; };
     for (const auto& entry : entries_) {
-        if (!entry->replays_another_world()) {
-            names += (names.empty() ? "" : ", ") + entry->name;
+        if (is_world(entry)) {
+            add_name(entry->name);
         }
+    }
+    for (const DamagedWorld& world : damaged_) {
+        add_name(world.name);
     }
     if (names.empty()) {
         return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
@@ -245,13 +278,12 @@ Result<Applied> Laboratory::apply(const Command& command) {
 }
 
 std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
-    for (const auto& entry : entries_) {
-        if (entry->name == name) {
-            return Refusal{.code = RefusalCode::AlreadyExists,
-                           .message = "a world with that name already exists",
-                           .violations = {{"name", "an unused name", name}},
-                           .reason = base::Reason::WorldExists};
-        }
+    if (find_damaged(name) != nullptr ||
+        std::ranges::any_of(entries_, [&](const auto& entry) { return entry->name == name; })) {
+        return Refusal{.code = RefusalCode::AlreadyExists,
+                       .message = "a world with that name already exists",
+                       .violations = {{"name", "an unused name", name}},
+                       .reason = base::Reason::WorldExists};
     }
     if (is_full()) {
         return refusal(RefusalCode::ResourceExhausted,
@@ -262,8 +294,7 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
 }
 
 bool Laboratory::is_full() const {
-    return std::ranges::count_if(entries_, [](const auto& entry) { return !entry->replays_another_world(); }) >=
-           static_cast<std::ptrdiff_t>(worlds_max);
+    return world_count() >= worlds_max;
 }
 
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
@@ -277,6 +308,9 @@ Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
+    if (std::erase_if(damaged_, [&](const DamagedWorld& world) { return world.name == command.world; }) > 0) {
+        return Applied{.world = command.world, .parameters = {}};
+    }
     const auto found =
         std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == command.world; });
     if (found == entries_.end()) {

@@ -83,6 +83,16 @@ struct Entry {
     bool wants_tick() const;
 };
 
+/// A world that does not run, because it cannot be restored from its run file. It keeps its name, and counts as a world.
+struct DamagedWorld {
+    std::string name;
+    std::optional<RunId> run_id; // nullopt: the file cannot be read at all
+    std::string reason;          // what is wrong, and what can be done
+
+    /// The answer to every request that needs the world to run.
+    base::Refusal refusal() const;
+};
+
 /// The result of a command.
 struct Applied {
     std::string world;
@@ -113,6 +123,8 @@ class Laboratory {
     void dismiss(std::string_view name) {
         std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
     }
+    /// Adds a damaged world; its name must be unused.
+    void adopt(DamagedWorld world) { damaged_.push_back(std::move(world)); }
     /// Adds `world` as a fork. Refuses the command in the cases in which CreateWorld is refused.
     base::Result<Applied> fork(const ForkWorld& command, World world);
 
@@ -130,15 +142,19 @@ class Laboratory {
     void settle(Entry& entry);
 
     /// Returns the world with that name. An empty name means the only world or, if there are several, the world
-    /// `default`. If no world is found: a refusal NOT_FOUND that lists the existing names.
+    /// `default`. If the world is damaged: its refusal. If no world is found: a refusal NOT_FOUND that lists the existing
+    /// names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
+    /// Returns the damaged world with that name, with the same meaning of an empty name; nullptr if there is none.
+    const DamagedWorld* find_damaged(std::string_view name) const;
 
     /// Returns whether the laboratory has worlds_max worlds, not counting replays whose original world is in it.
     bool is_full() const;
 
-    /// The worlds, in order of creation.
+    /// The worlds, in order of creation, without damaged worlds.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
+    std::span<const DamagedWorld> damaged() const { return damaged_; }
 
     /// Returns and removes the events since the last call, oldest first.
     std::vector<Event> take_events() { return std::exchange(events_, {}); }
@@ -160,6 +176,10 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const SetFitness&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     Applied add(std::unique_ptr<Entry> entry);
+    /// The number of worlds, not counting replays whose original world is in the laboratory.
+    std::size_t world_count() const;
+    /// Returns the name itself or, if it is empty, the name that it means.
+    std::string_view meant_by(std::string_view name) const;
     /// Shares a world that is not shared, if there are processes to share it with.
     void share(World& world, base::Executor& executor) const;
     /// Returns why no world with that name can be created; nullopt if one can.
@@ -167,6 +187,7 @@ class Laboratory {
     base::Refusal not_found(std::string_view name) const;
 
     std::vector<std::unique_ptr<Entry>> entries_;
+    std::vector<DamagedWorld> damaged_;
     std::vector<Event> events_;
     std::optional<Storage> storage_;
     Leader* leader_ = nullptr; // nullptr: worlds are not shared

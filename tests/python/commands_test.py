@@ -37,6 +37,25 @@ class Commands(unittest.TestCase):
             finish(send_every_request(lab))
         self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields))
 
+    def test_a_damaged_world_is_listed_and_can_be_deleted(self):
+        with tempfile.TemporaryDirectory() as data:
+            with evod.local(seed=1, data=data) as lab:
+                lab.create_world("plate")
+            with open(os.path.join(data, "plate.evod"), "r+b") as file:
+                file.truncate(20000)
+            with evod.local(data=data) as lab:
+                (damaged,) = lab.damaged_worlds()
+                self.assertEqual((damaged.name, damaged.run_id), ("plate", ""))
+                self.assertEqual([info.name for info in lab.worlds()], ["default"])
+                world = lab.world("plate")
+                with self.assertRaises(evod.FailedPrecondition) as raised:
+                    world.info()
+                self.assertEqual(raised.exception.reason, c.REASON_WORLD_DAMAGED)
+                self.assertIn(damaged.reason, str(raised.exception))
+                world.delete()
+                self.assertEqual(lab.damaged_worlds(), ())
+            self.assertTrue(os.path.exists(os.path.join(data, "plate.damaged-1.evod")))
+
     def test_every_parameter_is_an_attribute(self):
         world = self.lab.create_world("attributes")
         registry, now = self.lab.registry(), world.get_parameters()

@@ -57,13 +57,27 @@ class ForeignFiles(unittest.TestCase):
             self.assert_refused("sweep", sweep, "--out", self.folder / "out",
                                 words=f"{path}: this is {kind}, not an experiment file")
 
+    def assert_damaged(self, words):
+        """Starts a server and ends it: it does not run the world of the file, and says why."""
+        server = subprocess.Popen([EVOD, *map(str, self.serve())], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(server.stderr.close)
+        log = []
+        for line in server.stderr:
+            log.append(line)
+            if "listening on" in line:
+                break
+        server.terminate()
+        self.assertEqual(waiting.ended(server), 0)
+        self.assertIn(words, "".join(log))
+
     def test_a_pipe_in_the_data_folder_is_refused(self):
         data = self.folder / "data"
         data.mkdir()
-        for name, file in ("tokens", "a token file"), ("w.evod", "a run file"):
-            os.mkfifo(data / name, 0o600)
-            self.assert_refused(*self.serve(), words=f"{data / name}: this is a pipe, not {file}")
-            os.remove(data / name)
+        os.mkfifo(data / "tokens", 0o600)
+        self.assert_refused(*self.serve(), words=f"{data / 'tokens'}: this is a pipe, not a token file")
+        os.remove(data / "tokens")
+        os.mkfifo(data / "w.evod", 0o600)
+        self.assert_damaged(f'world "w" does not run: {data / "w.evod"}: this is a pipe, not a run file')
 
     def test_pipes_as_certificates_are_refused(self):
         waiting.run([EVOD, "certificate", "localhost"], capture_output=True, check=True, cwd=self.folder)
@@ -111,8 +125,10 @@ class ForeignFiles(unittest.TestCase):
                 for statement in statements:
                     run.execute(statement)
             run.close()
-            for arguments in (["verify", path], ["export", path, "--what", "events"], self.serve(), ["replay", path]):
-                self.assert_refused(*arguments, words=f'{path} is not as evod wrote it: the {kind} "{name}"')
+            words = f'{path} is not as evod wrote it: the {kind} "{name}"'
+            for arguments in (["verify", path], ["export", path, "--what", "events"], ["replay", path]):
+                self.assert_refused(*arguments, words=words)
+            self.assert_damaged(words)
 
 
 if __name__ == "__main__":

@@ -48,6 +48,7 @@ from evod.results import (
     CauseOfDeath,
     Choice,
     Contender,
+    DamagedWorld,
     Descendant,
     DescendantKind,
     Detail,
@@ -80,7 +81,7 @@ PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunSta
 
 __all__ = [
     "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
-    "Comparison", "Contender", "DamagedData", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
+    "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
     "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",

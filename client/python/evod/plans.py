@@ -114,7 +114,8 @@ class LabPlans:
 
     def world_name(self, name: str | None) -> Plan[str]:
         """Checks that a world exists and returns its name. Default: the only world, or "default" if there are several."""
-        known = [info.name for info in (yield from worlds())]
+        listed = (yield from request("list_worlds")).worlds
+        known = sorted(world.name for world in (*listed.worlds, *listed.damaged))
         if name is None:
             name = known[0] if len(known) == 1 else "default"
         if name not in known:
@@ -589,6 +590,12 @@ def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
     """Returns the state of all worlds."""
     known: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
     return known
+
+
+def damaged_worlds() -> Plan[Sequence[world_pb2.DamagedWorld]]:
+    """Returns the worlds that do not run, because the server cannot restore them."""
+    damaged: Sequence[world_pb2.DamagedWorld] = (yield from request("list_worlds")).worlds.damaged
+    return damaged
 
 
 def world_info(world: str) -> Plan[world_pb2.WorldInfo]:

@@ -180,6 +180,15 @@ class WorldInfo(_Result):
     awaited_fitness: AwaitedFitness | None  #: None: the world does not wait for fitness from a client
 
 
+@dataclasses.dataclass(frozen=True)
+class DamagedWorld(_Result):
+    """A world that does not run, because the server cannot restore it from its run file."""
+
+    name: str
+    run_id: str  #: 32 hexadecimal digits; "": the server cannot read the file at all
+    reason: str  #: what is wrong, and what can be done
+
+
 # ---- statistics -----------------------------------------------------------------------------------------------------------
 
 
@@ -438,7 +447,7 @@ def _activations(values: Sequence[float]) -> Any:
 
 _CLASSES: Mapping[str, type[Any]] = {
     kind.__name__: kind
-    for kind in (AwaitedFitness, Brain, Breeding, Contender, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
+    for kind in (AwaitedFitness, Brain, Breeding, Contender, DamagedWorld, Descendant, GeneAccount, GenerationStatistics, GeneStatistics, LiveStatistics, Migrant,
                  Motion, Mutation, OrderMutation, OrganismInfo, Pick, Statistics, Storage, WorldInfo)
 } | {"Replay": ReplayRange, "Placed": EntityIds, "Removed": EntityIds}  # fmt: skip
 _STATES: Mapping[str, type[_State]] = {

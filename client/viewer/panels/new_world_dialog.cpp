@@ -71,6 +71,9 @@ void NewWorldDialog::request_names(ViewedWorld& world) {
                               for (const evod::v1::WorldInfo& listed : response->worlds().worlds()) {
                                   answers->names.push_back(listed.name());
                               }
+                              for (const evod::v1::DamagedWorld& listed : response->worlds().damaged()) {
+                                  answers->names.push_back(listed.name());
+                              }
                           }
                       });
 }

@@ -89,6 +89,7 @@ void WorldsPanel::poll(ViewedWorld& world, Clock::time_point now) {
         list_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
             if (response != nullptr) {
                 worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+                damaged_.assign(response->worlds().damaged().begin(), response->worlds().damaged().end());
             }
         });
     }
@@ -125,8 +126,8 @@ void WorldsPanel::build_worlds(ViewedWorld& world) {
     constexpr ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                       ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    const float height =
-        std::min(line * (static_cast<float>(worlds_.size()) + 1.5f), ImGui::GetContentRegionAvail().y * 0.6f);
+    const auto row_count = static_cast<float>(worlds_.size() + damaged_.size());
+    const float height = std::min(line * (row_count + 1.5f), ImGui::GetContentRegionAvail().y * 0.6f);
     if (!ImGui::BeginTable("worlds", 5, flags, {0, height})) {
         return;
     }
@@ -136,18 +137,24 @@ void WorldsPanel::build_worlds(ViewedWorld& world) {
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableHeadersRow();
     std::optional<std::string> chosen;
-    for (const evod::v1::WorldInfo& listed : worlds_) {
+    const auto begin_row = [&](const std::string& name) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(listed.name().c_str(), listed.name() == world.feed.name(),
-                              ImGuiSelectableFlags_SpanAllColumns)) {
-            chosen = listed.name();
+        if (ImGui::Selectable(name.c_str(), name == world.feed.name(), ImGuiSelectableFlags_SpanAllColumns)) {
+            chosen = name;
         }
-        widgets::mark(listed.name());
+        widgets::mark(name);
+    };
+    for (const evod::v1::WorldInfo& listed : worlds_) {
+        begin_row(listed.name());
         cell(state_word(listed.state(), listed.storage(), listed.has_awaited_fitness()));
         cell(with_separators(listed.generation()));
         cell(with_separators(listed.tick()));
         cell(speed_text(listed.speed()) + (listed.slowed() ? " (slower)" : ""));
+    }
+    for (const evod::v1::DamagedWorld& listed : damaged_) { // the pane shows the reason
+        begin_row(listed.name());
+        cell("damaged");
     }
     ImGui::EndTable();
     if (chosen && *chosen != world.feed.name()) {

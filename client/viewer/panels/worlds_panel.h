@@ -35,6 +35,7 @@ class WorldsPanel : public Panel {
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
+    std::vector<evod::v1::DamagedWorld> damaged_;
     std::string deleted_;             // the world that the user is asked about
     evod::v1::Statistics statistics_; // statistics of the viewed world
     std::uint64_t place_number_ = 0;  // the place that statistics_ describes

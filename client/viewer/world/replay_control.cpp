@@ -210,6 +210,9 @@ void ReplayControl::fork() {
             for (const evod::v1::WorldInfo& world : response->worlds().worlds()) {
                 used.push_back(world.name());
             }
+            for (const evod::v1::DamagedWorld& world : response->worlds().damaged()) {
+                used.push_back(world.name());
+            }
             send_fork(unused_name(present_.value_or(feed_.name()), used));
         }
     });

@@ -124,11 +124,16 @@ void ViewedWorld::find_next_world(std::function<void(const std::optional<std::st
 
 /// The world after the viewed one in the server's list; nullopt if there is no other world.
 std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldList& worlds) const {
-    const auto& list = worlds.worlds();
-    const std::string shown = replay.present().value_or(feed.name());
-    const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
-    const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
-    return next == here || next == list.end() ? std::nullopt : std::optional{next->name()};
+    std::vector<std::string> names;
+    for (const evod::v1::WorldInfo& world : worlds.worlds()) {
+        names.push_back(world.name());
+    }
+    for (const evod::v1::DamagedWorld& world : worlds.damaged()) {
+        names.push_back(world.name());
+    }
+    const auto here = std::ranges::find(names, replay.present().value_or(feed.name()));
+    const auto next = here == names.end() || std::next(here) == names.end() ? names.begin() : std::next(here);
+    return next == here || next == names.end() ? std::nullopt : std::optional{*next};
 }
 
 void ViewedWorld::create(evod::v1::Request request, bool beside, std::function<void(const std::string& refusal)> done) {

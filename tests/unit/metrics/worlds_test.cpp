@@ -22,6 +22,13 @@ TEST(Worlds, AreListedByNameWhileHeld) {
     EXPECT_EQ(listed[1]->ticks_per_s.value(), 60);
 }
 
+TEST(Worlds, DamagedOnesAreListedByName) {
+    Worlds worlds;
+    worlds.set_damaged({"plate", "lesson"});
+    EXPECT_EQ(worlds.damaged(), (std::vector<std::string>{"lesson", "plate"}));
+    EXPECT_TRUE(worlds.list().empty());
+}
+
 TEST(Process, MatchesTheSystemsReport) {
     const Process process = read_process();
     EXPECT_GT(process.resident_bytes, 100'000u);

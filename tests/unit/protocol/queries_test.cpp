@@ -32,6 +32,22 @@ TEST_F(Queries, AreAnsweredWithTheFieldOfTheirRules) {
     EXPECT_EQ(answer(request).motion().generation_tick(), laboratory.find("w").value()->world.moment().generation_tick);
 }
 
+TEST_F(Queries, OfWorldsListDamagedOnesWithTheirReason) {
+    laboratory.adopt({.name = "z", .run_id = {}, .reason = "z.evod is empty"});
+    laboratory.adopt({.name = "broken", .run_id = simulation::RunId{1, 2}, .reason = "broken.evod is damaged"});
+    v1::Request request;
+    request.mutable_list_worlds();
+    const v1::WorldList list = answer(request).worlds();
+    EXPECT_EQ(list.worlds_size(), 1);
+    ASSERT_EQ(list.damaged_size(), 2);
+    EXPECT_EQ(list.damaged(0).name(), "broken");
+    EXPECT_EQ(list.damaged(0).run_id(), to_text(simulation::RunId{1, 2}));
+    EXPECT_EQ(list.damaged(0).reason(), "broken.evod is damaged");
+    EXPECT_EQ(list.damaged(1).run_id(), "");
+    request.mutable_get_statistics()->set_world("broken");
+    EXPECT_EQ(answer(request).status().reason(), v1::REASON_WORLD_DAMAGED);
+}
+
 TEST_F(Queries, WithRowsAreConvertedLater) {
     v1::Request request;
     request.mutable_get_population()->set_first_organism(1);

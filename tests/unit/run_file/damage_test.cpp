@@ -325,7 +325,7 @@ TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
     EXPECT_EQ(earlier > 0, GetParam() != Left::Closed);
 }
 
-TEST_P(DamageTest, AServerLeavesAnEmptiedFileAndDoesNotStart) {
+TEST_P(DamageTest, AServerLeavesAnEmptiedFileAsItIs) {
     constexpr std::size_t page_bytes = 4096, head_bytes = 100;
     const Content damages[] = {{"", sound.log},
                                {"", ""},
@@ -340,9 +340,11 @@ TEST_P(DamageTest, AServerLeavesAnEmptiedFileAndDoesNotStart) {
         const std::string path = server.path() + "/w.evod";
         write_content(path, damage);
         const auto archive = Archive::open(server.path(), {}, executor);
-        ASSERT_FALSE(archive);
-        EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
-        EXPECT_NE(archive.error().message.find(path), std::string::npos) << archive.error().message;
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        const simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        ASSERT_EQ(laboratory.damaged().size(), 1u);
+        EXPECT_EQ(laboratory.damaged().front().run_id, std::nullopt);
+        EXPECT_NE(laboratory.damaged().front().reason.find(path), std::string::npos);
         EXPECT_EQ(read_bytes(path), damage.file);
         EXPECT_EQ(read_bytes(path + "-wal"), damage.log);
         EXPECT_FALSE(RunFile::open_read_only(path));

@@ -10,6 +10,8 @@
 
 #include <chrono>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <thread>
 
 namespace evod::run_file {
@@ -65,6 +67,23 @@ class ArchiveTest : public testing::Test {
         run.recorder().close_all(run.laboratory());
     }
     auto open() { return Archive::open(folder.path(), {}, executor); }
+    /// Opens the folder and returns why its world is damaged; an empty text if no world is.
+    std::string reason() {
+        const auto archive = open();
+        EXPECT_TRUE(archive) << to_text(archive.error());
+        const simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        return laboratory.damaged().empty() ? "" : laboratory.damaged().front().reason;
+    }
+    /// Expects that the file that `make` creates is refused, with these words after its path, and this remedy.
+    void expect_damaged(const std::string& why, const std::string& remedy, const std::function<void()>& make) {
+        const std::string path = folder.path() + "/w.evod";
+        std::filesystem::remove(path);
+        make();
+        const std::string said = reason();
+        EXPECT_THAT(said, testing::StartsWith(path + why));
+        EXPECT_THAT(said, HasSubstr(remedy));
+        EXPECT_THAT(said, testing::EndsWith("; deleting the world moves the file away"));
+    }
 
     TemporaryFolder folder;
     base::InlineExecutor executor;
@@ -95,63 +114,105 @@ TEST_F(ArchiveTest, RecoversAWorldAndContinuesItsFile) {
     }
 }
 
-TEST_F(ArchiveTest, ADamagedFileIsNamedAndPreventsTheStart) {
+TEST_F(ArchiveTest, ADamagedFileStopsItsWorldAlone) {
     record(200);
+    std::filesystem::copy_file(folder.path() + "/w.evod", folder.path() + "/sound.evod");
     {
         Database database{folder.path() + "/w.evod", Database::Mode::Write};
         database.run("UPDATE journal SET tick = 1");
     }
     const auto archive = open();
-    ASSERT_FALSE(archive);
-    EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
-    EXPECT_THAT(archive.error().message, HasSubstr("w.evod is damaged"));
-    EXPECT_THAT(archive.error().message, HasSubstr("restore a copy of the file, or move it"));
-    EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    EXPECT_THAT((*archive)->world_names(), testing::ElementsAre("sound", "w"));
+    EXPECT_TRUE((*archive)->is_damaged("w"));
+    EXPECT_FALSE((*archive)->is_damaged("sound"));
+    EXPECT_EQ((*archive)->identity_of("w"), nullptr);
+    const simulation::Laboratory laboratory = (*archive)->take_laboratory();
+    EXPECT_TRUE(laboratory.find("sound"));
+    ASSERT_EQ(laboratory.damaged().size(), 1u);
+    const simulation::DamagedWorld& world = laboratory.damaged().front();
+    EXPECT_EQ(world.name, "w");
+    EXPECT_EQ(world.run_id, (simulation::RunId{1, 2}));
+    EXPECT_THAT(world.reason, HasSubstr("w.evod is damaged: the row 1 of its table journal"));
+    EXPECT_THAT(world.reason, HasSubstr("restore a copy"));
 }
 
-TEST_F(ArchiveTest, AForeignFileIsRefusedWithARemedy) {
+TEST_F(ArchiveTest, ADamagedFileIsNotWritten) {
+    record(200);
     const std::string path = folder.path() + "/w.evod";
-    const auto expect_refused = [&](const std::string& why, const std::string& way_out) {
-        const auto archive = open();
-        ASSERT_FALSE(archive);
-        EXPECT_THAT(archive.error().message, testing::StartsWith(path + why));
-        EXPECT_THAT(archive.error().message, HasSubstr(way_out));
-        EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+    Database killed{path, Database::Mode::Write}; // keeps the log, as a killed server does
+    killed.run("UPDATE journal SET tick = 1");
+    ASSERT_GT(std::filesystem::file_size(path + "-wal"), 0u);
+    std::filesystem::create_directory(folder.path() + "/data");
+    for (const char* suffix : {"", "-wal"}) {
+        std::filesystem::copy_file(path + suffix, folder.path() + "/data/w.evod" + suffix);
+    }
+    const auto bytes_of = [](const std::string& file) {
+        std::ifstream stream{file, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{stream}, {}};
     };
-    std::ofstream{path} << std::string(5000, 'x');
-    expect_refused(" is damaged or is not a run file: ", "move it");
-    std::filesystem::remove(path);
-    Database{path, Database::Mode::Create}.run("CREATE TABLE songs (title TEXT)");
-    expect_refused(" is not a run file of evod; ", "move it");
-    std::filesystem::remove(path);
+    {
+        const auto archive = Archive::open(folder.path() + "/data", {}, executor);
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        EXPECT_TRUE((*archive)->is_damaged("w"));
+    }
+    for (const char* suffix : {"", "-wal"}) {
+        EXPECT_EQ(bytes_of(folder.path() + "/data/w.evod" + suffix), bytes_of(path + suffix)) << suffix;
+    }
+}
+
+TEST_F(ArchiveTest, AForeignFileIsDamagedWithARemedy) {
+    const std::string path = folder.path() + "/w.evod";
+    expect_damaged(" is damaged or is not a run file: ", "evod verify",
+                   [&] { std::ofstream{path} << std::string(5000, 'x'); });
+    expect_damaged(" is not a run file of evod; deleting the world moves the file away", "", [&] {
+        Database{path, Database::Mode::Create}.run("CREATE TABLE songs (title TEXT)");
+    });
+    expect_damaged(" was written by a newer evod", "start the version of evod that wrote the file", [&] {
+        record(10);
+        Database{path, Database::Mode::Write}.run("PRAGMA user_version = 9");
+    });
+    expect_damaged(" was created by evod 0.0.1", "evod export", [&] {
+        ASSERT_TRUE(RunFile::create(
+            path,
+            {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
+            {}));
+    });
+    expect_damaged(": this is a folder, not a run file", "", [&] { std::filesystem::create_directory(path); });
+    expect_damaged(" is damaged: the file is empty", "restore a copy", [&] { std::ofstream{path}; });
+}
+
+TEST_F(ArchiveTest, ADamagedWorldIsMovedAsideWithItsFiles) {
     record(10);
-    Database{path, Database::Mode::Write}.run("PRAGMA user_version = 9");
-    expect_refused(" was written by a newer evod", "start the version of evod that wrote it, or move it");
-    std::filesystem::remove(path);
-    ASSERT_TRUE(RunFile::create(
-        path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
-        {}));
-    expect_refused(" was created by evod 0.0.1", "`evod export`");
+    std::ofstream{folder.path() + "/w.damaged-1.evod"} << "of an earlier time";
+    std::ofstream{folder.path() + "/w.evod-wal"} << "log";
+    std::ofstream{folder.path() + "/w.evod-next"} << "next";
+    const auto data = DataFolder::open(folder.path());
+    ASSERT_TRUE(data->move_aside("w"));
+    ASSERT_TRUE(data->move_aside("w")) << "there is nothing left to move";
+    std::vector<std::string> names;
+    for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
+        names.push_back(file.path().filename());
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre("lock", "w.damaged-1.evod", "w.damaged-2.evod",
+                                                     "w.damaged-2.evod-wal", "w.damaged-2.evod-next"));
+    const auto files = data->files();
+    EXPECT_TRUE(files->of_worlds.empty() && files->ended.empty() && files->replaced.empty() && files->strange.empty());
 }
 
-TEST_F(ArchiveTest, AFolderInPlaceOfARunFileIsRefusedWithARemedy) {
-    std::filesystem::create_directory(folder.path() + "/w.evod");
-    EXPECT_THAT(open().error().message, HasSubstr("w.evod: this is a folder, not a run file; move it out of "));
-}
-
-TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderBoth) {
+TEST_F(ArchiveTest, AFileWithTwoNamesIsDamagedUnderBoth) {
     namespace fs = std::filesystem;
     record(60);
     const std::string path = folder.path() + "/w.evod", elsewhere = folder.path() + "/elsewhere.of";
     fs::create_hard_link(path, elsewhere);
-    EXPECT_THAT(open().error().message, HasSubstr(path + " has a second name, a hard link"));
+    EXPECT_THAT(reason(), HasSubstr(path + " has a second name, a hard link"));
     fs::remove(path);
     fs::create_symlink(elsewhere, path);
-    EXPECT_THAT(open().error().message, HasSubstr(path + " is a symbolic link"));
+    EXPECT_THAT(reason(), HasSubstr(path + " is a symbolic link"));
     EXPECT_TRUE(RunFile::open_read_only(path)) << "it may be read";
     fs::remove(path);
     fs::rename(elsewhere, path);
-    EXPECT_TRUE(open());
+    EXPECT_EQ(reason(), "");
 }
 
 TEST_F(ArchiveTest, AFileThatLostItsFirstStatisticsIsNamed) {
@@ -159,7 +220,7 @@ TEST_F(ArchiveTest, AFileThatLostItsFirstStatisticsIsNamed) {
     Database database{folder.path() + "/w.evod", Database::Mode::Write};
     ASSERT_GT(database.number("SELECT count(*) FROM statistics"), 1);
     database.run("DELETE FROM statistics WHERE generation = 1");
-    EXPECT_THAT(open().error().message, HasSubstr("is damaged: the row 1 of its table statistics"));
+    EXPECT_THAT(reason(), HasSubstr("is damaged: the row 1 of its table statistics"));
 }
 
 TEST_F(ArchiveTest, AReplayReportsAFileThatLostItsEnd) {
@@ -183,7 +244,7 @@ TEST_F(ArchiveTest, AnUnfinishedNewFileIsDeleted) {
     }
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
-    EXPECT_FALSE((*archive)->has_worlds());
+    EXPECT_TRUE((*archive)->world_names().empty());
     EXPECT_EQ((*archive)->identity_of("w"), nullptr);
     for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
         EXPECT_EQ(file.path().filename(), "lock");
@@ -218,7 +279,7 @@ TEST_F(ArchiveTest, AFileOfAnEndedRunIsRenamed) {
     }
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
-    EXPECT_FALSE((*archive)->has_worlds());
+    EXPECT_TRUE((*archive)->world_names().empty());
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
     const auto answers = (*archive)->take_answers();
     ASSERT_EQ(answers.size(), 1u) << "its commands are not carried out again";

@@ -87,6 +87,31 @@ TEST_F(OneWorld, RunsWithoutEndIfNoNumberIsGiven) {
     EXPECT_EQ(run_on(100), 100u);
 }
 
+TEST_F(OneWorld, ADamagedWorldKeepsItsNameAndPlace) {
+    laboratory.adopt({.name = "broken", .run_id = {}, .reason = "broken.evod is damaged"});
+    const auto refused = laboratory.find("broken");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, RefusalCode::FailedPrecondition);
+    EXPECT_EQ(refused.error().reason, base::Reason::WorldDamaged);
+    EXPECT_EQ(refused.error().message, "the world does not run: broken.evod is damaged");
+    EXPECT_EQ(code_of(Pause{"broken"}), RefusalCode::FailedPrecondition);
+    EXPECT_EQ(code_of(CreateWorld{"broken", parameters, base::Seed{1}, RunId{3, 4}}), RefusalCode::AlreadyExists);
+    EXPECT_EQ(code_of(ForkWorld{.world = "w", .name = "broken", .at_generation = {}, .run_id = {3, 4}}),
+              RefusalCode::AlreadyExists);
+    EXPECT_THAT(laboratory.find("").error().message, HasSubstr("w, broken")) << "there are two worlds";
+    EXPECT_TRUE(laboratory.apply(DeleteWorld{"broken"}));
+    EXPECT_TRUE(laboratory.damaged().empty());
+    EXPECT_TRUE(laboratory.find("")) << "now there is one";
+}
+
+TEST_F(OneWorld, TheOnlyWorldMayBeDamaged) {
+    laboratory.adopt({.name = "broken", .run_id = {}, .reason = "broken.evod is damaged"});
+    ASSERT_TRUE(laboratory.apply(DeleteWorld{"w"}));
+    EXPECT_EQ(laboratory.find("").error().reason, base::Reason::WorldDamaged);
+    ASSERT_NE(laboratory.find_damaged(""), nullptr);
+    EXPECT_EQ(laboratory.find_damaged("")->name, "broken");
+}
+
 TEST_F(OneWorld, ResumesWhereItWasPaused) {
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
     EXPECT_EQ(run_on(5), 5u);

@@ -20,7 +20,7 @@ from evod.experiment import Experiment
 from evod.genes import GENE_NAMES, Genes
 from evod.generations import Generation, History, Life, Population
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.results import Breeding, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
+from evod.results import Breeding, DamagedWorld, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
 from evod.snapshots import Snapshot
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
@@ -244,6 +244,11 @@ class Lab(_Closing):
     async def worlds(self) -> tuple[WorldInfo, ...]:
         """Returns the state of every world, in the order in which the worlds were created."""
         return tuple(result(info) for info in await self._link.perform(plans.worlds()))
+
+    async def damaged_worlds(self) -> tuple[DamagedWorld, ...]:
+        """Returns the worlds that do not run, because the server cannot restore them from their run files. Every method of
+        such a world raises `FailedPrecondition` with the reason, except `World.export` and `World.delete`."""
+        return tuple(result(world) for world in await self._link.perform(plans.damaged_worlds()))
 
     async def world(self, name: str | None = None) -> World:
         """Returns the world with this name. Without a name, returns the only world, or "default" if there are several.

@@ -126,7 +126,7 @@ export class App implements PanelContext {
       return;
     }
     const { server } = this, shown = this.world(), { name, island } = shown;
-    const names = server.worlds.filter((world) => !world.replay).map((world) => world.name as string);
+    const names = server.world_names;
     const next = names[(names.indexOf(name) + 1) % names.length];
     if (shown.forked && server.world(shown.forked)) {
       this.show_beside(shown.forked, island);
@@ -144,7 +144,7 @@ export class App implements PanelContext {
 
   fork = async (name?: string): Promise<void> => {
     const { server } = this, world = this.world(), { island } = world;
-    const fork = name ?? unused_name(world.name, server.worlds.map((one) => one.name));
+    const fork = name ?? unused_name(world.name, server.world_names);
     const act = (): Promise<unknown> => server.request("fork_world", { world: world.shown, name: fork });
     if (name !== undefined) {
       await act();
@@ -253,16 +253,16 @@ export class App implements PanelContext {
 
   #refresh(): void {
     this.#banners.set(this.#wrong());
-    const { server } = this, live = server.worlds.filter((world) => !world.replay);
-    const first = live.find((world) => world.name === first_world) ?? live[0];
-    if (server.worlds_known && !this.areas[0]!.world.name && first) {
-      this.areas[0]!.world.show(first.name);
+    const { server } = this, names = server.world_names;
+    const first = names.includes(first_world) ? first_world : names[0];
+    if (server.worlds_known && !this.areas[0]!.world.name && first !== undefined) {
+      this.areas[0]!.world.show(first);
     }
     const ended = this.areas.length > 1 && this.areas.find((area) => area.world.name === ""); // its world was deleted
     if (ended) {
       this.#close_area(ended);
     }
-    const empty = server.worlds_known && live.length === 0;
+    const empty = server.worlds_known && names.length === 0;
     this.areas.forEach((area) => (area.element.hidden = empty));
     if (empty && !this.#empty.isConnected) {
       this.#worlds.append(this.#empty);

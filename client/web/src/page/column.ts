@@ -86,12 +86,14 @@ export class Column {
 
   refresh(): void {
     const world = this.context.world(), server = this.server;
-    const names = server.worlds.filter((one) => !one.replay || one.name === world.name).map((one) => ({ value: one.name as string, text: one.name as string }));
+    const listed = server.worlds.filter((one) => !one.replay || one.name === world.name), damaged = server.damage_of(world.name) !== "";
+    const names = [...listed.map((one) => ({ value: one.name as string, text: one.name as string })),
+      ...server.damaged.map((one) => ({ value: one.name as string, text: `${one.name} (damaged)` }))];
     set_options(this.#world, world.name ? names : [{ value: "", text: "none" }, ...names], world.name);
     const islands: number = world.info?.island_count ?? world.snapshot?.island_count ?? 1;
     this.#island.hidden = islands < 2;
     set_options(this.#island, Array.from({ length: islands }, (_, i) => ({ value: String(i), text: `island ${i}` })), String(world.island));
-    set_text(this.#experiment, world.experiment || (world.name ? "Loading the experiment …" : "No world is open yet."));
+    set_text(this.#experiment, world.experiment || (damaged ? "This world is damaged and does not run." : world.name ? "Loading the experiment …" : "No world is open yet."));
     this.#legend.refresh(world);
     this.#buttons.forEach((button, i) => {
       const one = world.healthiest[i];

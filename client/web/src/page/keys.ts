@@ -163,7 +163,7 @@ function move_island(app: App, by: number): void {
 }
 
 function next_world(app: App): void {
-  const names = app.server.worlds.filter((world) => !world.replay).map((world) => world.name as string);
+  const names = app.server.world_names;
   if (names.length > 0) {
     app.world().show(names[(names.indexOf(app.world().name) + 1) % names.length]!);
   }

@@ -42,6 +42,10 @@ export class LinkFollower {
   async #show(read: ReadLink, is_newest: () => boolean): Promise<void> {
     const { moment } = read, { server } = this.context, world = this.context.world();
     const name = moment.world ?? world.name, info = server.world(name);
+    if (!info && server.damage_of(name)) {
+      world.show(name);
+      return;
+    }
     if (!info) {
       const names = server.worlds.filter((one) => one.replay?.replay_of === undefined).map((one) => one.name as string);
       read.wrong.unshift(`world: got ${name}, this server has ${names.length > 0 ? names.join(", ") : "no world"}`);

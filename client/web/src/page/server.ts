@@ -29,6 +29,8 @@ export class Server {
   limits: Message = {};
   /** All worlds: WorldInfo messages, sorted by name; kept up to date by events. Includes the replays of this page. */
   worlds: Message[] = [];
+  /** The worlds that do not run because the server cannot restore them: DamagedWorld messages, sorted by name. */
+  damaged: Message[] = [];
   /** Whether the list of worlds of the present session has arrived. */
   worlds_known = false;
   features: ReadonlySet<string> = new Set();
@@ -141,6 +143,16 @@ export class Server {
 
   world(name: string): Message | null {
     return this.worlds.find((world) => world.name === name) ?? null;
+  }
+
+  /** Why a damaged world does not run, as a sentence; empty if the world is not damaged. */
+  damage_of(name: string): string {
+    return this.damaged.find((world) => world.name === name)?.reason ?? "";
+  }
+
+  /** The names of all worlds except replays, damaged ones too, in alphabetical order. */
+  get world_names(): string[] {
+    return [...this.worlds.filter((world) => !world.replay), ...this.damaged].map((world) => world.name as string).sort();
   }
 
   /** Sends {[kind]: fields}. Resolves with the answer inside the Response. Rejects with Refusal. */
@@ -266,6 +278,7 @@ export class Server {
     const replays = this.worlds.filter((world) => this.#replays.has(world.name));
     this.worlds = [...(list.worlds ?? []), ...replays.filter((replay) => !(list.worlds ?? []).some((world: Message) => world.name === replay.name))];
     this.#sort();
+    this.damaged = list.damaged ?? [];
     this.worlds_known = true;
     this.#changes.notify();
   }
@@ -339,6 +352,7 @@ export class Server {
 
   #remove(name: string): void {
     this.worlds = this.worlds.filter((world) => world.name !== name);
+    this.damaged = this.damaged.filter((world) => world.name !== name);
     this.#changes.notify();
   }
 

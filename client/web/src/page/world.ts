@@ -668,7 +668,8 @@ export class ViewedWorld {
     if (run_id !== "" && this.#history_of !== "" && run_id !== this.#history_of) {
       void this.#read_history(false); // the world was reset
     }
-    if (this.name && this.server.worlds_known && this.server.state.phase === "open" && !this.server.world(this.name)) {
+    const is_there = this.server.world(this.name) !== null || this.server.damage_of(this.name) !== "";
+    if (this.name && this.server.worlds_known && this.server.state.phase === "open" && !is_there) {
       this.#close_replay(); // the live world was deleted
       this.name = "";
       this.#forget("", 0);

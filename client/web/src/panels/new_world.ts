@@ -124,7 +124,7 @@ export class NewWorldDialog {
 
   #suggest(base: string): void {
     if (!this.#name_edited) {
-      this.#name.value = unused_name(base, this.context.server.worlds.map((world) => world.name));
+      this.#name.value = unused_name(base, this.context.server.world_names);
     }
   }
 

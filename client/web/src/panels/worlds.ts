@@ -57,7 +57,9 @@ export class WorldsPanel implements Panel {
 
   refresh(): void {
     const { server } = this.context, world = this.context.world();
-    rows(this.#worlds, server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
+    const damaged = server.damaged.map(({ name }) => (
+      { name, chosen: name === world.name, act: () => this.context.world().show(name), cells: ["damaged", "", "", ""] }));
+    rows(this.#worlds, [...server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
       const live = info.name === world.shown && world.snapshot;
       return {
         name: info.name, chosen: info.name === world.name, act: () => this.context.world().show(info.name),
@@ -65,11 +67,11 @@ export class WorldsPanel implements Panel {
                 with_separators(live ? live.generation : info.generation ?? 0), with_separators(live ? live.tick : info.tick ?? 0),
                 speed_text(info.speed) + (info.slowed ? " (slower)" : "")],
       };
-    }));
+    }), ...damaged]);
     const why_create = server.why_not("create_world");
     set_allowed(this.#create, why_create, "Creates a world, beside those that exist.");
     set_allowed(this.#fork, world.info ? server.why_not("fork_world") : "No world is open.", "Creates a world that starts from the tick shown.");
-    set_allowed(this.#delete, !world.info ? "No world is open." : world.is_replay ? "This world is a replay; return to the live world first." : server.why_not("delete_world"));
+    set_allowed(this.#delete, !world.info && !server.damage_of(world.name) ? "No world is open." : world.is_replay ? "This world is a replay; return to the live world first." : server.why_not("delete_world"));
     set_text(this.#why, why_create);
     if (why_create) {
       this.#confirm.hidden = this.#fork_form.hidden = true;
@@ -143,7 +145,7 @@ export class WorldsPanel implements Panel {
     }
     set_text(this.#fork_from, `A copy of ${world.shown} at generation ${with_separators(world.snapshot.generation)}, tick ${with_separators(world.tick)}. It waits until it is run.`);
     set_text(this.#fork_error, "");
-    this.#fork_name.value = unused_name(world.name, this.context.server.worlds.map((one) => one.name));
+    this.#fork_name.value = unused_name(world.name, this.context.server.world_names);
     this.#confirm.hidden = true;
     this.#fork_form.hidden = false;
     this.#fork_name.select();
