@@ -69,13 +69,22 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
     }
     std::ranges::stable_sort(due, {}, &Due::order);
     parameters::ParameterSet set{identity.parameters, identity.requested_parameters(), 1};
+    std::uint64_t bred = identity.first_generation; // the last generation whose values are in effect in `set`
     for (const Due& now : due) {
         const bool begins = now.kind == Due::Schedule || now.kind == Due::PlannedForGeneration;
+        if (const std::uint64_t last_bred = now.reached - (begins ? 1 : 0); bred < last_bred) {
+            set.active = taking_effect(set.active, set.requested, base::Effect::NextGeneration);
+            bred = last_bred;
+        }
         const auto requested =
             begins ? request_at_generation(set, *now.assignments) : request_of(set, *now.assignments);
         if (requested) { // otherwise the run dropped the change
             past.add(now.generation, *now.by, set.requested, *requested);
-            set = after_request(set, *requested);
+            if (begins) {
+                set.requested = *requested; // it takes effect when the generation is bred
+            } else {
+                set = after_request(set, *requested);
+            }
         }
     }
     return past;
