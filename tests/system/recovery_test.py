@@ -306,9 +306,11 @@ class Recovery(unittest.TestCase):
                 run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?", (self.left_checkpoint,))
             run.close()
             if self.left_checkpoint is not None:  # whether the next server begins with it: it would know that it is none
-                refused = waiting.run([evod, "--port", "0", "--data", copy], capture_output=True, text=True)
-                self.assertEqual(refused.returncode, 1)
-                self.assertIn(f"the row {self.left_checkpoint} of its table checkpoint", refused.stderr)
+                server = Server("--data", copy)
+                self.servers.append(server)
+                server.end()
+                self.assertIn(f'world "crowd" does not run: {copy}/crowd.evod is damaged: the row {self.left_checkpoint} of '
+                              "its table checkpoint", server.output())
 
     def test_kills_during_recovery_lose_and_repeat_nothing(self):
         crowd = pathlib.Path(self.data) / "crowd.json"

@@ -116,6 +116,15 @@ class Page(Case):
         self.assertEqual((shown["state_hash"], shown["run_id"], shown["generation"], shown["generation_tick"]),
                          (world.state_hash, world.run_id, world.generation, world.generation_tick))
 
+    def test_a_damaged_world_shows_its_reason(self):
+        pathlib.Path(self.folder, "broken.evod").write_bytes(b"x" * 5000)
+        server = self.serve()
+        self.browser.open(self.page(server), wait=False)
+        self.browser.wait_for_text("the world does not run: ", ".worlds")  # it is the only one
+        self.browser.wait_for_text("broken.evod is damaged or is not a run file: ", ".worlds")
+        self.browser.panel("Worlds")
+        self.browser.wait_for_text("damaged", ".panel-worlds td")
+
     def over_tcp(self, server, client, world="default"):
         """The entities as the server sends them to a TCP client, and the health as GetPopulation answers."""
         client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=30))
