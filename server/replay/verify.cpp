@@ -201,7 +201,7 @@ class StretchCheck {
         progress(world.moment().tick - progress_tick);
     }
 
-    /// Compares the world with a checkpoint. Returns whether they are equal.
+    /// Compares the world with a checkpoint, and restores a world from it. Returns whether all are equal.
     bool check_checkpoint(const World& world, const run_file::StoredCheckpoint& stored) {
         const StoredMoment now{world.moment().generation, world.moment().tick};
         simulation::WorldState state{
@@ -214,6 +214,14 @@ class StretchCheck {
             found->part = "the checkpoint: " + found->part;
         }
         if (!same(now, found ? std::move(found) : compare(stored.hash, world.hash()))) {
+            return false;
+        }
+        World restored = world.at_its_opening(executor_); // as a restart does
+        if (const auto done = restored.restore(state, executor_); !done) {
+            return same(now, Mismatch{"the checkpoint", done.error().message, "a state that can be restored"});
+        }
+        if (!same(now, compare(stored.hash, restored.hash()))) {
+            done_.difference->part = "the state hash of the world that was restored from the checkpoint";
             return false;
         }
         agrees_ = now;

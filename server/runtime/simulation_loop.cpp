@@ -402,7 +402,13 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
                                     .origin = done.mail.origin,
                                     .answer = done.frame};
     // After the command was written to the disk, the storage thread passes it on.
-    record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
+    if (effect == RunEffect::BeginsAsFork) {
+        const simulation::Entry& fork = **entry;
+        record.done = fork_check_.read_back(recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash(),
+                                            std::move(done), outputs_.reply);
+    } else {
+        record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
+    }
     switch (effect) {
     case RunEffect::Begins:
         return recorder_->begin(**entry, std::move(record));

@@ -19,6 +19,7 @@
 #include "server/recording/recorder.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
+#include "server/runtime/fork_check.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
 #include "server/runtime/replays.h"
@@ -163,6 +164,7 @@ class SimulationLoop {
     bool worlds_wait_ = false;                       // true: live worlds wait for the disk
     std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
     Replays replays_;
+    ForkCheck fork_check_;
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;
     SnapshotPool pool_;

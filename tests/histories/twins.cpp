@@ -35,7 +35,8 @@ base::Result<simulation::Applied> Twins::fork(const simulation::ForkWorld& comma
     if (!command.at_generation) {
         auto applied = laboratory_.apply(command);
         if (applied) {
-            memories_[command.name] = {};
+            const World& world = find(command.name)->world;
+            memories_[command.name].openings.emplace(world.moment().generation, world.at_its_opening(executor_));
         }
         return applied;
     }

@@ -18,7 +18,6 @@ namespace evod::histories {
 struct Memory {
     std::map<std::uint64_t, base::StateHash> hashes;     // by tick: the hash after the tick and the commands there
     std::map<std::uint64_t, simulation::World> openings; // by generation: the world at its first moment
-    bool begins_within_generation = false;               // a fork whose first generation had begun before
 };
 
 class Twins {
