@@ -15,13 +15,13 @@ struct Due {
     // changes. After a tick of the generation: planned changes, then commands.
     enum Kind { Schedule, PlannedForGeneration, PlannedForTick, Command };
     std::uint64_t reached; // the generation that begins, or to which the tick belongs
-    std::uint64_t tick;    // 0 when a generation begins
+    std::uint64_t place;   // 0 when a generation begins; otherwise 1 + the tick after which it was applied
     Kind kind;
     std::uint64_t generation; // Change::generation
     const std::vector<parameters::Assignment>* assignments;
     const std::string* by;
 
-    auto order() const { return std::tuple{reached, tick, kind}; }
+    auto order() const { return std::tuple{reached, place, kind}; }
 };
 
 } // namespace
@@ -39,8 +39,8 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
     const std::string no_client;
     std::vector<Due> due; // commands and planned changes in order of the journal
     const auto add_at_tick = [&](const WorldChange& change, std::uint64_t tick, Due::Kind kind) {
-        due.push_back({file.generations().at_tick(tick), std::max<std::uint64_t>(tick, 1), kind,
-                       file.generations().at_tick(tick + 1), &change.assignments, &change.by});
+        due.push_back({file.generations().at_tick(tick), tick + 1, kind, file.generations().at_tick(tick + 1),
+                       &change.assignments, &change.by});
     };
     std::uint64_t planned_count = 0;
     for (const WorldChange& change : changes) {

@@ -29,7 +29,9 @@ class ForkCheckTest : public testing::Test {
     /// The outcome that the client gets.
     base::Result<simulation::Applied> checked(const base::StateHash& expected) {
         std::promise<CommandDone> answered;
-        CommandDone done{.mail = {}, .outcome = simulation::Applied{.world = "fork"}, .frame = "forked"};
+        CommandDone done{.mail = {},
+                         .outcome = simulation::Applied{.world = "fork", .tick = 70, .parameters = {}},
+                         .frame = "forked"};
         ForkCheck check;
         check.read_back({path, path + "-ended"}, run_id, expected, std::move(done),
                         [&](Reply reply) { answered.set_value(std::get<CommandDone>(std::move(reply))); })();
