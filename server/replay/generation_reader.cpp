@@ -32,6 +32,11 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
                 whole->ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole->begun.born[i].genes.cols());
         }
         if (!matches) {
+            // Only a simulation finds the organisms that were placed in a fork's first generation before the fork.
+            const bool inherits = file_.identity().forked_from && generation == file_.identity().first_generation;
+            if (auto other = file_.other_model(); other && inherits) {
+                return *std::move(other);
+            }
             return damaged(generation, "has an outcome for another number of organisms");
         }
     }

@@ -1,11 +1,13 @@
 #include "server/replay/fork.h"
 
 #include "server/replay/archive.h"
+#include "server/replay/generation_reader.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
 #include "server/replay/run_tables.h"
 #include "server/replay/verify.h"
 #include "server/run_file/check.h"
+#include "server/simulation/entities.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -368,6 +370,34 @@ TEST_F(ForkAfterChange, AGivenPopulationNeedNotFitLaterParameters) {
     expect_whole_forks(
         50, [](RecordedRun& run) { run.command(set_parameter("body_size_max", 90.0)); }, small_world(),
         given_population());
+}
+
+TEST_F(ForkAfterChange, PlacedOrganismsOfAnotherModelAreNotCalledDamage) {
+    simulation::World world{small_world(), {7}};
+    simulation::PlaceEntities place{.world = "w", .items = {}, .organisms = {}};
+    place.organisms.push_back({.x_px = 640, .y_px = 360, .genes = std::vector<float>(evolution::body_gene_count, 100)});
+    if (!simulation::check(world, place)) {
+        place.organisms.front().x_px = 320;
+    }
+    ASSERT_TRUE(simulation::check(world, place));
+    (void)world.place(place);
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+    }
+    world.become_fork();
+    RunBeginning beginning = beginning_of_fork(world, "fork", {3, 4}, {1, 2}, executor);
+    for (const std::uint32_t newer : {0u, 1u}) {
+        RunIdentity identity = beginning.identity;
+        identity.model_version += newer;
+        const std::string path = folder.path() + "/fork" + std::to_string(newer) + ".evod";
+        const auto file = RunFile::create(path, identity, {}, RunFile::records_of(beginning));
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto whole = GenerationReader{**file, executor}.read(1);
+        ASSERT_EQ(whole.has_value(), newer == 0);
+        if (!whole) {
+            EXPECT_EQ(whole.error().code, base::RefusalCode::FailedPrecondition) << to_text(whole.error());
+        }
+    }
 }
 
 TEST_F(ForkTest, AMissingGenerationOrAnExistingFileIsRefused) {
