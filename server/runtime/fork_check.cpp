@@ -5,12 +5,14 @@
 #include "server/protocol/answers.h"
 #include "server/replay/recovery.h"
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 namespace evod::runtime {
 namespace {
 
-base::Result<void> check_file(const std::vector<std::string>& paths, const simulation::RunId& run_id,
+base::Result<void> check_once(const std::vector<std::string>& paths, const simulation::RunId& run_id,
                               const base::StateHash& hash) {
     for (const std::string& path : paths) {
         const auto file = run_file::RunFile::open_read_only(path);
@@ -23,6 +25,19 @@ base::Result<void> check_file(const std::vector<std::string>& paths, const simul
         }
     }
     return {}; // another command has ended the run
+}
+
+/// If another command ends the run at the same time, the file and its log are renamed one after the other, and what is
+/// between cannot be read.
+base::Result<void> check_file(const std::vector<std::string>& paths, const simulation::RunId& run_id,
+                              const base::StateHash& hash) {
+    constexpr int attempts = 5;
+    auto checked = check_once(paths, run_id, hash);
+    for (int attempt = 1; !checked && attempt < attempts; ++attempt) {
+        std::this_thread::sleep_for(std::chrono::milliseconds{100});
+        checked = check_once(paths, run_id, hash);
+    }
+    return checked;
 }
 
 CommandDone refused(CommandDone done, const std::string& why) {
