@@ -171,7 +171,7 @@ def compare(block, said, more_may_come):
         nonlocal matched, text
         final = not more_may_come()
         text = said.read_text(errors="replace")
-        matched = expected.fullmatch(text)
+        matched = expected.fullmatch(text.replace(" (slower)", ""))  # what a busy machine adds to a speed
         return matched or final
     with contextlib.suppress(AssertionError):
         waiting.until(settled, "the output", pause_s=0.02)
