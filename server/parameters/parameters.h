@@ -167,6 +167,8 @@ struct IslandPlan {
 };
 IslandPlan island_plan(const Parameters& parameters);
 
+bool operator==(const Parameters& a, const Parameters& b);
+
 /// The parameters in effect and the requested ones, which may wait for a generation or a reset.
 struct ParameterSet {
     Parameters active;          // in effect now
@@ -181,7 +183,5 @@ ParameterSet after_request(const ParameterSet& set, const Parameters& requested)
 
 /// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.
 Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
-
-bool operator==(const Parameters& a, const Parameters& b);
 
 } // namespace evod::parameters
