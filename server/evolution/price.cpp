@@ -96,6 +96,11 @@ SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add&
     return total;
 }
 
+/// Rounds to the precision of float. g++ 12 leaves out the rounding of some of the numbers in a loop over several.
+[[gnu::noinline]] double with_few_digits(double number) {
+    return static_cast<double>(static_cast<float>(number));
+}
+
 /// Returns a number near the mean of each gene, with few digits. Differences from it are exact, or nearly exact, and
 /// their sums are small. The differences of means are therefore more precise than the means themselves.
 Numbers centre_of(SixGenes genes, std::size_t organisms, base::Executor& executor) {
@@ -103,7 +108,7 @@ Numbers centre_of(SixGenes genes, std::size_t organisms, base::Executor& executo
         summed<1>(organisms, executor, [=](std::uint32_t i, SumsOf<1>& sum) { sum[0] += genes.of(i); });
     Numbers centre;
     for (unsigned gene = 0; gene < body_gene_count; ++gene) {
-        centre.set(gene, static_cast<double>(static_cast<float>(sums[0][gene] / static_cast<double>(organisms))));
+        centre.set(gene, with_few_digits(sums[0][gene] / static_cast<double>(organisms)));
     }
     return centre;
 }
