@@ -112,37 +112,25 @@ void Recorder::add(const std::string& world, RunRecorder run) {
     EVOD_ASSERT(added);
 }
 
-void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
-    begin(entry, run_file::beginning_of_run(entry.world, entry.name, entry.run_id), std::move(command));
-}
-
-void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
-                          base::Executor& executor) {
-    begin(entry, run_file::beginning_of_fork(entry.world, entry.name, entry.run_id, origin, executor),
-          std::move(command));
-}
-
-void Recorder::begin(const simulation::Entry& entry, run_file::RunBeginning beginning,
-                     std::optional<CommandRecord> command) {
+void Recorder::begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
     RunRecorder run{thread_};
-    run_file::RunIdentity identity = beginning.identity;
-    run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity),
-                                 run.first(std::move(beginning), std::move(command)));
-    add(entry.name, std::move(run));
+    const run_file::RunIdentity identity = beginning.identity;
+    run.number_ =
+        thread_.create(folder_.file_of(identity.name), identity, run.first(std::move(beginning), std::move(command)));
+    add(identity.name, std::move(run));
 }
 
-void Recorder::begin_after_reset(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
-                                 std::optional<CommandRecord> command) {
-    const auto old = runs_.find(entry.name);
+void Recorder::begin_after_reset(run_file::RunBeginning beginning, const simulation::RunId& ended_run,
+                                 std::uint64_t tick, std::optional<CommandRecord> command) {
+    const run_file::RunIdentity identity = beginning.identity;
+    const auto old = runs_.find(identity.name);
     EVOD_ASSERT(old != runs_.end());
     RunRecorder run{thread_};
-    run_file::RunBeginning beginning = run_file::beginning_of_run(entry.world, entry.name, entry.run_id);
-    run_file::RunIdentity identity = beginning.identity;
     run.number_ = thread_.replace(
-        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
-        folder_.file_of(entry.name), std::move(identity), run.first(std::move(beginning), std::move(command)));
+        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(identity.name, ended_run)),
+        folder_.file_of(identity.name), identity, run.first(std::move(beginning), std::move(command)));
     runs_.erase(old);
-    add(entry.name, std::move(run));
+    add(identity.name, std::move(run));
 }
 
 RunRecorder& Recorder::resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,

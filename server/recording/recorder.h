@@ -145,14 +145,11 @@ class Recorder {
         return {folder_.file_of(world), folder_.ended_file_of(world, run_id)};
     }
 
-    /// Begins to record a world whose run has just begun. If a command began the run, it is recorded too.
-    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {});
-    /// Like begin(), for a world that was just forked from the run `origin`. The fork begins at its present moment.
-    void begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
-                    base::Executor& executor);
+    /// Begins to record a run that has just begun. If a command began the run, it is recorded too.
+    void begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command = {});
     /// Like begin(), for a world that was reset. Its previous run ended after `tick`, and the file of that run gets the
     /// name of an ended run.
-    void begin_after_reset(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+    void begin_after_reset(run_file::RunBeginning beginning, const simulation::RunId& ended_run, std::uint64_t tick,
                            std::optional<CommandRecord> command = {});
     /// Continues to record the run in an existing file.
     RunRecorder& resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,
@@ -165,7 +162,6 @@ class Recorder {
     void close_all(const simulation::Laboratory& laboratory);
 
   private:
-    void begin(const simulation::Entry& entry, run_file::RunBeginning beginning, std::optional<CommandRecord> command);
     void add(const std::string& world, RunRecorder run);
 
     run_file::DataFolder& folder_;

@@ -78,6 +78,17 @@ struct CallMail {
     std::function<void()> call;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail>;
+/// A world that was constructed for a command, before it is added to the laboratory.
+struct BuiltWorld {
+    simulation::World world;
+    std::optional<run_file::RunBeginning> beginning; // for the run file; nullopt if runs are not stored
+};
+/// The build thread has constructed a world (world_builds.h).
+struct WorldBuilt {
+    std::uint64_t build = 0;
+    std::shared_ptr<base::Result<BuiltWorld>> world; // nullptr: it has only read the original world so far
+};
+
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail, WorldBuilt>;
 
 } // namespace evod::runtime

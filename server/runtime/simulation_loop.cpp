@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace evod::runtime {
@@ -24,13 +25,6 @@ constexpr std::chrono::milliseconds measuring_time{1000};
 /// Returns how many ticks take about `time`, at least 1 and at most `most`.
 std::uint64_t ticks_in(Clock::duration time, Clock::duration tick, std::int64_t most) {
     return static_cast<std::uint64_t>(tick.count() > 0 ? std::clamp<std::int64_t>(time / tick, 1, most) : 1);
-}
-
-/// Whether the command creates a world and changes nothing if that fails.
-bool creates_a_world(const simulation::Command& command) {
-    return std::holds_alternative<simulation::CreateWorld>(command) ||
-           std::holds_alternative<simulation::ResetWorld>(command) ||
-           std::holds_alternative<simulation::ForkWorld>(command);
 }
 
 /// The effect of a command on the run of its world.
@@ -62,7 +56,8 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
-    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply} {
+    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply}
+    , builds_{mailbox, executor} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
@@ -89,7 +84,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         return entry.control.speed.has_value() && !entry.replay;
     };
     const auto wants_tick = [this](const simulation::Entry& entry) {
-        return entry.wants_tick() && !waits_for_the_disk(entry);
+        return entry.wants_tick() && !has_to_wait(entry);
     };
     for (const auto& entry : laboratory_.entries()) {
         if (!has_to_be_in_time(*entry) || !wants_tick(*entry)) {
@@ -186,7 +181,8 @@ void SimulationLoop::poll_mailbox() {
                                             });
                                             replays_.forget(ended.session);
                                         },
-                                        [](CallMail& call) { call.call(); }},
+                                        [](CallMail& call) { call.call(); },
+                                        [this](WorldBuilt& built) { take(built); }},
                        mail);
         }
         mail_.clear();
@@ -234,7 +230,7 @@ void SimulationLoop::answer_query() {
 
 bool SimulationLoop::is_work_due(Clock::time_point now) const {
     return replays_.seeks().under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
-               if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
+               if (!entry->wants_tick() || has_to_wait(*entry)) {
                    return false;
                }
                return !entry->control.speed || tracks_.find(entry->name)->second.due <= now;
@@ -242,6 +238,9 @@ bool SimulationLoop::is_work_due(Clock::time_point now) const {
 }
 
 void SimulationLoop::apply(CommandMail& mail) {
+    if (waits_for_a_build(mail.command)) {
+        return kept_.push_back(std::move(mail));
+    }
     // From here on the command names its world explicitly, so that a rerun of the journal finds the same world.
     std::visit(
         [this](auto& command) {
@@ -256,11 +255,44 @@ void SimulationLoop::apply(CommandMail& mail) {
             }
         },
         mail.command);
-    if (std::holds_alternative<simulation::ForkWorld>(mail.command)) {
-        return fork(mail);
-    }
     const auto before = run_of(mail.command);
-    answer(mail, apply(mail.command), before);
+    if (auto refused = refusal_of(mail.command)) {
+        return answer(mail, *refused, before);
+    }
+    if (const auto* fork = std::get_if<simulation::ForkWorld>(&mail.command); fork && fork->at_generation) {
+        return fork_at_generation(mail, before);
+    }
+    std::visit(
+        [&]<class C>(const C& command) {
+            if constexpr (requires { laboratory_.construction(command); }) {
+                construct<C>(mail, before, laboratory_.construction(command));
+            } else {
+                answer(mail, apply(mail.command), before);
+            }
+        },
+        mail.command);
+}
+
+bool SimulationLoop::waits_for_a_build(const simulation::Command& command) const {
+    return std::visit(
+        [this](const auto& c) {
+            bool waits = false;
+            if constexpr (requires { c.world; }) {
+                waits |= builds_.holds(c.world);
+            }
+            if constexpr (requires { c.name; }) {
+                waits |= builds_.holds(c.name);
+            }
+            return waits;
+        },
+        command);
+}
+
+void SimulationLoop::take(const WorldBuilt& built) {
+    builds_.take(built);
+    for (CommandMail& command : std::exchange(kept_, {})) {
+        apply(command); // keeps it again if its world is still not free
+    }
 }
 
 const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Command& command) const {
@@ -302,49 +334,88 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
 }
 
 base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
-    if (auto refused = refusal_of(command)) {
-        return *refused;
-    }
     if (const auto* deleted = std::get_if<simulation::DeleteWorld>(&command);
         deleted && recorder_ && laboratory_.find_damaged(deleted->world)) {
         if (auto moved = recorder_->move_aside(deleted->world); !moved) {
             return moved.error();
         }
     }
-    if (creates_a_world(command)) {
-        return base::within_memory([&] { return laboratory_.apply(command); });
-    }
     return laboratory_.apply(command);
 }
 
-void SimulationLoop::fork(CommandMail& mail) {
-    const auto& command = std::get<simulation::ForkWorld>(mail.command);
-    const auto before = run_of(command);
-    const simulation::Entry* origin = entry_of_command(command);
-    auto refused = refusal_of(command);
-    if (!origin || refused || !command.at_generation) {
-        return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : base::within_memory([&] {
-                          return laboratory_.apply(command);
-                      }),
-                      before);
+template <class C>
+void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>& before,
+                               base::Result<simulation::Construction> construction) {
+    if (!construction) {
+        return answer(mail, construction.error(), before);
     }
-    if (*command.at_generation == origin->world.moment().generation) {
-        return answer(mail, base::within_memory([&] {
-                          return laboratory_.fork(command, origin->world.at_its_opening(executor_));
-                      }),
-                      before);
+    constexpr bool is_fork = std::is_same_v<C, simulation::ForkWorld>;
+    const C command = std::get<C>(mail.command);
+    WorldBuilds::Order order{.construction = *std::move(construction)};
+    bool at_its_opening = false;
+    if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
+        order.name = command.world;
+    } else {
+        order.name = command.name;
+    }
+    if constexpr (is_fork) {
+        at_its_opening = command.at_generation.has_value();
+        const simulation::World* read = std::exchange(order.construction.reads, nullptr);
+        if (read != nullptr && (*laboratory_.find(command.world))->replay) {
+            // Requests for replays do not wait for builds, so a replay is copied at once.
+            auto copy = base::within_memory([&]() -> base::Result<std::shared_ptr<simulation::World>> {
+                return std::make_shared<simulation::World>(order.construction.construct(executor_));
+            });
+            if (!copy) {
+                return answer(mail, copy.error(), before);
+            }
+            order.construction.construct = [copy = *copy](base::Executor&) { return std::move(*copy); };
+        } else if (read != nullptr) {
+            order.original = command.world;
+        }
+    }
+    order.finish = [name = order.name, run_id = command.run_id, is_recorded = recorder_ != nullptr, before,
+                    at_its_opening](simulation::World world, base::Executor& workers) {
+        if (at_its_opening) {
+            world = world.at_its_opening(workers);
+        }
+        if constexpr (is_fork) {
+            world.become_fork();
+        }
+        BuiltWorld built{std::move(world), {}};
+        if (is_recorded) {
+            built.beginning = is_fork ? run_file::beginning_of_fork(built.world, name, run_id, before->run_id, workers)
+                                      : run_file::beginning_of_run(built.world, name, run_id);
+        }
+        return built;
+    };
+    order.adopt = [this, waiting = std::make_shared<CommandMail>(std::move(mail)), command,
+                   before](base::Result<BuiltWorld> built) {
+        if (!built) {
+            return answer(*waiting, built.error(), before);
+        }
+        const auto applied = base::within_memory([&] { return laboratory_.adopt(command, std::move(built->world)); });
+        answer(*waiting, applied, before, std::move(built->beginning));
+    };
+    builds_.begin(std::move(order));
+}
+
+void SimulationLoop::fork_at_generation(CommandMail& mail, const std::optional<RunBefore>& before) {
+    const auto& command = std::get<simulation::ForkWorld>(mail.command);
+    const simulation::Entry* original = entry_of_command(command);
+    const std::uint64_t generation = *command.at_generation;
+    if (!original || generation == original->world.moment().generation) {
+        return construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
     }
     // The seek runs in slices, so that the thread can serve other clients meanwhile.
-    const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    replays_.seek_for_fork(origin->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
-        const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
+    replays_.seek_for_fork(original->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
         if (arrival) {
-            return answer(*waiting, base::within_memory([&] {
-                const simulation::World there = std::move(arrival->rerun).take();
-                return laboratory_.fork(fork, there.at_its_opening(executor_));
-            }),
-                          before);
+            const auto there = std::make_shared<simulation::World>(std::move(arrival->rerun).take());
+            return construct<simulation::ForkWorld>(
+                *waiting, before,
+                simulation::Construction{.construct = [there](base::Executor&) { return std::move(*there); },
+                                         .genes = simulation::genes_of(there->parameters().active)});
         }
         base::Refusal why = arrival.error();
         for (base::Violation& violation : why.violations) {
@@ -355,7 +426,7 @@ void SimulationLoop::fork(CommandMail& mail) {
 }
 
 void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
-                            const std::optional<RunBefore>& before) {
+                            const std::optional<RunBefore>& before, std::optional<run_file::RunBeginning> beginning) {
     publish_events();
     if (applied) {
         if (const auto track = tracks_.find(applied->world); track != tracks_.end()) {
@@ -368,7 +439,7 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
         count_damaged_worlds();
     }
     if (recorder_ && applied && changes_something(done.mail.command) && !deleted_damaged_world) {
-        record(std::move(done), before);
+        record(std::move(done), before, std::move(beginning));
     } else {
         outputs_.reply(std::move(done));
     }
@@ -390,7 +461,8 @@ CommandDone SimulationLoop::done_of(CommandMail mail, const base::Result<simulat
     return done;
 }
 
-void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& before) {
+void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& before,
+                            std::optional<run_file::RunBeginning> beginning) {
     const simulation::Applied applied = *done.outcome;
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
@@ -411,11 +483,10 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     }
     switch (effect) {
     case RunEffect::Begins:
-        return recorder_->begin(**entry, std::move(record));
     case RunEffect::BeginsAsFork:
-        return recorder_->begin_fork(**entry, before->run_id, std::move(record), executor_);
+        return recorder_->begin(*std::move(beginning), std::move(record));
     case RunEffect::BeginsAgain:
-        return recorder_->begin_after_reset(**entry, before->run_id, before->tick, std::move(record));
+        return recorder_->begin_after_reset(*std::move(beginning), before->run_id, before->tick, std::move(record));
     case RunEffect::Ends:
         return recorder_->end(applied.world, before->run_id, std::move(record));
     case RunEffect::Continues:
@@ -426,6 +497,10 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
 
 void SimulationLoop::close() {
     poll_mailbox();
+    while (builds_.holds("")) {
+        mailbox_.wait(std::nullopt);
+        poll_mailbox();
+    }
     while (!queries_.empty()) {
         answer_query();
     }
@@ -517,7 +592,8 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         track.recorder = recorder_->of(entry.name);
     }
     // A short wait for the disk does not count as a pause.
-    const bool wants_tick = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait());
+    const bool wants_tick =
+        entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait()) && !builds_.holds(entry.name);
     const double tick_s = entry.world.parameters().active.tick_s;
     const bool restarts = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
     if (wants_tick && (restarts || !track.running)) {

@@ -10,6 +10,7 @@
 //              share the remaining time in equal slices of at least one tick.
 // Queries      are answered in idle time, and in a small share of the other time (query_budget.h).
 // Disk         while the write queue is full, live worlds wait. Mail, replays and snapshots for new viewers continue.
+// Builds       another thread constructs large new worlds. A world that is being forked or reset waits meanwhile.
 // Threads      only the simulation thread calls it.
 // Determinism  the clock decides how many ticks are simulated. It does not influence what happens in them.
 #pragma once
@@ -25,6 +26,7 @@
 #include "server/runtime/replays.h"
 #include "server/runtime/replies.h"
 #include "server/runtime/snapshot.h"
+#include "server/runtime/world_builds.h"
 #include "server/simulation/laboratory.h"
 
 #include <deque>
@@ -115,28 +117,39 @@ class SimulationLoop {
     /// Whether a seek, a world at full speed or a due paced world would have to wait for other work.
     bool is_work_due(Clock::time_point now) const;
     void apply(CommandMail& mail);
-    void fork(CommandMail& mail);
     base::Result<simulation::Applied> apply(const simulation::Command& command);
+    /// Whether the command must wait because a build holds one of its worlds.
+    bool waits_for_a_build(const simulation::Command& command) const;
+    void take(const WorldBuilt& built);
     /// The run of the command's world before the command was applied.
     struct RunBefore {
         simulation::RunId run_id;
         std::uint64_t tick;
     };
     std::optional<RunBefore> run_of(const simulation::Command& command) const;
+    /// Constructs the world of a command of type C (CreateWorld, ResetWorld or ForkWorld), adopts it and answers.
+    template <class C>
+    void construct(CommandMail& mail, const std::optional<RunBefore>& before,
+                   base::Result<simulation::Construction> construction);
+    void fork_at_generation(CommandMail& mail, const std::optional<RunBefore>& before);
     const simulation::Entry* entry_of_command(const simulation::Command& command) const;
     /// Returns why the journal cannot store this command now; nullopt if it can, or if the command need not be stored.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
+    /// beginning  of the run that the command began; nullopt if it began none, or if runs are not stored.
     void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
-                const std::optional<RunBefore>& before);
+                const std::optional<RunBefore>& before, std::optional<run_file::RunBeginning> beginning = {});
     /// Builds the answer to a command, and the data about its effect that the network thread needs.
     CommandDone done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const;
     /// Writes an applied command to the journal.
-    void record(CommandDone done, const std::optional<RunBefore>& before);
+    void record(CommandDone done, const std::optional<RunBefore>& before,
+                std::optional<run_file::RunBeginning> beginning);
     void announce_moved_replays();
     void poll_demand();
     void poll_storage();
-    /// Whether the world must wait for the disk.
-    bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.replay; }
+    /// Whether the world must wait for the disk or for a build.
+    bool has_to_wait(const simulation::Entry& entry) const {
+        return (worlds_wait_ && !entry.replay) || builds_.holds(entry.name);
+    }
     void follow_worlds();
     /// Passes the names of the damaged worlds to the metrics. Must be called when they have changed.
     void count_damaged_worlds();
@@ -165,6 +178,8 @@ class SimulationLoop {
     std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
     Replays replays_;
     ForkCheck fork_check_;
+    WorldBuilds builds_;
+    std::vector<CommandMail> kept_; // commands to worlds that builds hold, in order of arrival
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;
     SnapshotPool pool_;

@@ -118,6 +118,10 @@ void resume_run(RunControl& control) {
 
 } // namespace
 
+std::uint64_t genes_of(const parameters::Parameters& p) {
+    return std::uint64_t{p.island_count} * p.population_size * evolution::gene_count(p);
+}
+
 bool remove_reached_goals(RunControl& control, const World& world) {
     bool reached = false;
     if (control.until_tick && world.moment().tick >= *control.until_tick) {
@@ -297,14 +301,31 @@ bool Laboratory::is_full() const {
     return world_count() >= worlds_max;
 }
 
-Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
+template <class C>
+Result<Applied> Laboratory::construct_and_adopt(const C& command) {
+    const Result<Construction> construction = this->construction(command);
+    if (!construction) {
+        return construction.error();
+    }
+    base::InlineExecutor executor; // a command is applied between two ticks, where no executor is available
+    return adopt(command, construction->construct(executor));
+}
+
+Result<Construction> Laboratory::construction(const CreateWorld& command) const {
     if (auto refused = refusal_of(command.name)) {
         return *refused;
     }
-    auto entry = std::make_unique<Entry>(
-        Entry{command.name, command.run_id, RunControl{},
-              World{command.parameters, command.seed, command.first_population, command.schedule, leader_}});
-    return add(std::move(entry));
+    return Construction{
+        .construct =
+            [command, leader = leader_](base::Executor&) {
+                return World{command.parameters, command.seed, command.first_population, command.schedule, leader};
+            },
+        .genes = genes_of(command.parameters),
+        .is_shared = leader_ != nullptr};
+}
+
+Result<Applied> Laboratory::adopt(const CreateWorld& command, World world) {
+    return add(command.name, command.run_id, std::move(world));
 }
 
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
@@ -324,8 +345,16 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
     return applied;
 }
 
-Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
-    const Result<parameters::Parameters> beginning = entry.world.beginning();
+Result<Construction> Laboratory::construction(const ResetWorld& command) const {
+    const Result<const Entry*> found = find(command.world);
+    if (!found) {
+        return found.error();
+    }
+    if (auto refused = refusal_if_replay(**found, command)) {
+        return *refused;
+    }
+    const World& world = (*found)->world;
+    const Result<parameters::Parameters> beginning = world.beginning();
     if (!beginning) {
         return Refusal{
             .code = RefusalCode::FailedPrecondition,
@@ -334,7 +363,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
             .violations = beginning.error().violations,
             .reason = base::Reason::ResetImpossible};
     }
-    if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty()) {
+    if (auto faults = faults_of(world.first_population(), *beginning, "population"); !faults.empty()) {
         return Refusal{
             .code = RefusalCode::FailedPrecondition,
             .message = "cannot reset the world: the requested parameters do not fit the first population that it was "
@@ -342,14 +371,25 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
             .violations = std::move(faults),
             .reason = base::Reason::ResetImpossible};
     }
-    Applied applied = applied_now(entry);
-    entry.world.reset(command.seed.value_or(entry.world.seed()), leader_);
+    return Construction{.construct = [&world, seed = command.seed.value_or(world.seed()),
+                                      leader = leader_](base::Executor&) { return world.restarted(seed, leader); },
+                        .genes = genes_of(*beginning),
+                        .reads = &world,
+                        .is_shared = leader_ != nullptr};
+}
+
+Result<Applied> Laboratory::adopt(const ResetWorld& command, World world) {
+    const Result<Entry*> found = find(command.world);
+    if (!found) {
+        return found.error();
+    }
+    Entry& entry = **found;
+    entry.world = std::move(world);
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;
     entry.control = {};
     entry.control.speed = speed;
-    applied.tick = entry.world.moment().tick;
-    return applied;
+    return applied_now(entry);
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
@@ -505,30 +545,46 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetFitness& command) {
     return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
-    if (command.at_generation) {
+Result<Applied> Laboratory::carry_out(const ForkWorld& command) {
+    if (command.at_generation && find(command.world)) {
         return refusal(
             RefusalCode::FailedPrecondition,
             "cannot fork from the beginning of a generation: it is stored only in a run file, and there is none; "
             "fork the world as it is now, or start the server without --keep-nothing",
             base::Reason::RunsNotKept);
     }
-    base::InlineExecutor executor; // a command is applied between two ticks, where no executor is available
-    return fork(command, entry.world.copy(executor, leader_));
+    return construct_and_adopt(command);
 }
 
-Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
+Result<Construction> Laboratory::construction(const ForkWorld& command) const {
+    const Result<const Entry*> found = find(command.world);
+    if (!found) {
+        return found.error();
+    }
     if (auto refused = refusal_of(command.name)) {
         return *refused;
     }
+    const World& world = (*found)->world;
+    return Construction{
+        .construct = [&world, leader = leader_](base::Executor& executor) { return world.copy(executor, leader); },
+        .genes = genes_of(world.parameters().active),
+        .reads = &world,
+        .is_shared = world.is_shared() || leader_ != nullptr};
+}
+
+Result<Applied> Laboratory::adopt(const ForkWorld& command, World world) {
     base::InlineExecutor executor;
     share(world, executor);
     (void)world.take_events(); // the events of the original have already been reported
     world.become_fork();
-    return add(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
+    return add(command.name, command.run_id, std::move(world));
 }
 
-Applied Laboratory::add(std::unique_ptr<Entry> entry) {
+Result<Applied> Laboratory::add(const std::string& name, const RunId& run_id, World world) {
+    if (auto refused = refusal_of(name)) {
+        return *refused;
+    }
+    auto entry = std::make_unique<Entry>(Entry{name, run_id, RunControl{}, std::move(world)});
     entry->storage = storage_;
     Applied applied = applied_now(*entry);
     entries_.push_back(std::move(entry)); // last, so that nothing needs to be undone if memory does not suffice

@@ -11,6 +11,7 @@
 #include "server/simulation/events.h"
 #include "server/simulation/world.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -93,6 +94,17 @@ struct DamagedWorld {
     base::Refusal refusal() const;
 };
 
+/// Returns the number of genes of all organisms with which a world of these parameters begins.
+std::uint64_t genes_of(const parameters::Parameters& p);
+
+/// The construction of the world of a CreateWorld, ResetWorld or ForkWorld.
+struct Construction {
+    std::function<World(base::Executor&)> construct; // throws std::bad_alloc if memory does not suffice
+    std::uint64_t genes = 0;      // number of genes of all its organisms; the time it takes grows with this number
+    const World* reads = nullptr; // must not change until `construct` returns
+    bool is_shared = false;       // other processes take part, so `construct` must run on the thread of the laboratory
+};
+
 /// The result of a command.
 struct Applied {
     std::string world;
@@ -110,6 +122,14 @@ class Laboratory {
     /// Applies a command now, between two ticks. A refused command has changed nothing. CreateWorld, ResetWorld and
     /// ForkWorld throw std::bad_alloc, with nothing changed, if memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
+    /// Does the same as apply() in three steps, of which another thread can carry out the second: checks the command,
+    /// constructs the world, and adds it. The last step checks the command again.
+    base::Result<Construction> construction(const CreateWorld& command) const;
+    base::Result<Construction> construction(const ResetWorld& command) const;
+    base::Result<Construction> construction(const ForkWorld& command) const;
+    base::Result<Applied> adopt(const CreateWorld& command, World world);
+    base::Result<Applied> adopt(const ResetWorld& command, World world);
+    base::Result<Applied> adopt(const ForkWorld& command, World world);
 
     /// Shares the live worlds with the other processes, also those that are created later. A world with fewer islands
     /// than processes is not shared.
@@ -125,8 +145,6 @@ class Laboratory {
     }
     /// Adds a damaged world; its name must be unused.
     void adopt(DamagedWorld world) { damaged_.push_back(std::move(world)); }
-    /// Adds `world` as a fork. Refuses the command in the cases in which CreateWorld is refused.
-    base::Result<Applied> fork(const ForkWorld& command, World world);
 
     /// Sets the storage state of all live worlds, including those created later. The simulation loop calls it, so that
     /// clients can read the state.
@@ -160,9 +178,12 @@ class Laboratory {
     std::vector<Event> take_events() { return std::exchange(events_, {}); }
 
   private:
-    base::Result<Applied> carry_out(const CreateWorld&);
+    template <class C>
+    base::Result<Applied> construct_and_adopt(const C& command);
+    base::Result<Applied> carry_out(const CreateWorld& command) { return construct_and_adopt(command); }
+    base::Result<Applied> carry_out(const ResetWorld& command) { return construct_and_adopt(command); }
+    base::Result<Applied> carry_out(const ForkWorld&);
     base::Result<Applied> carry_out(const DeleteWorld&);
-    base::Result<Applied> carry_out(Entry& entry, const ResetWorld&);
     base::Result<Applied> carry_out(Entry& entry, const Run&);
     base::Result<Applied> carry_out(Entry& entry, const RunUntilTick&);
     base::Result<Applied> carry_out(Entry& entry, const ReleaseLease&);
@@ -174,8 +195,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const PlaceEntities&);
     base::Result<Applied> carry_out(Entry& entry, const RemoveEntities&);
     base::Result<Applied> carry_out(Entry& entry, const SetFitness&);
-    base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
-    Applied add(std::unique_ptr<Entry> entry);
+    base::Result<Applied> add(const std::string& name, const RunId& run_id, World world);
     /// The number of worlds, not counting replays whose original world is in the laboratory.
     std::size_t world_count() const;
     /// Returns the name itself or, if it is empty, the name that it means.

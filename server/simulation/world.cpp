@@ -140,11 +140,10 @@ base::Result<parameters::Parameters> World::beginning() const {
     return parameters::assign(parameters_.requested, schedule_.at(1));
 }
 
-void World::reset(base::Seed seed, Leader* leader) {
+World World::restarted(base::Seed seed, Leader* leader) const {
     const parameters::Parameters first = beginning().value();
-    World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_,
-                Sharing{leader, first.island_count}};
-    *this = std::move(fresh);
+    return {parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_,
+            Sharing{leader, first.island_count}};
 }
 
 void World::begin_run() {

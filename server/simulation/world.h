@@ -153,12 +153,12 @@ class World {
     /// Returns the parameters that the run begins with after a reset: the requested parameters, with the schedule's
     /// values of generation 1. Returns a refusal if they are not valid together.
     base::Result<parameters::Parameters> beginning() const;
-    /// Restarts the run with the parameters of beginning(), the same schedule and, if one was given, the same first
-    /// population. That population must be valid for these parameters. Throws std::bad_alloc, with nothing changed, if
-    /// memory does not suffice for the new world beside the old one.
+    /// Returns the world with which the run restarts after a reset: with the parameters of beginning(), the same
+    /// schedule and, if one was given, the same first population. That population must be valid for these parameters.
+    /// Throws std::bad_alloc if memory does not suffice for the new world beside this one.
     ///
     /// leader  as for a new world.
-    void reset(base::Seed seed, Leader* leader = nullptr);
+    World restarted(base::Seed seed, Leader* leader = nullptr) const;
 
     /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running, and the
     /// world not to await fitness.

@@ -45,7 +45,7 @@ base::Result<simulation::Applied> Twins::fork(const simulation::ForkWorld& comma
     if (opening == before.openings.end()) {
         return base::refusal(base::RefusalCode::NotFound, "the twin does not remember this generation");
     }
-    auto applied = laboratory_.fork(command, opening->second.copy(executor_));
+    auto applied = laboratory_.adopt(command, opening->second.copy(executor_));
     if (applied) {
         begin_memory(command.name);
     }

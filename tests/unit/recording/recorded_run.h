@@ -57,10 +57,11 @@ class RecordedRun {
         EXPECT_TRUE(parameters) << to_text(parameters.error());
         EXPECT_TRUE(laboratory_.apply(
             simulation::CreateWorld{"w", *parameters, seed, {1, 2}, std::move(first_population), schedule}));
-        recorder_.begin(entry());
+        recorder_.begin(beginning());
     }
 
     simulation::Entry& entry() { return **laboratory_.find("w"); }
+    run_file::RunBeginning beginning() { return run_file::beginning_of_run(world(), entry().name, entry().run_id); }
     simulation::World& world() { return entry().world; }
     Recorder& recorder() { return recorder_; }
     const simulation::Laboratory& laboratory() const { return laboratory_; }
@@ -84,8 +85,9 @@ class RecordedRun {
         request.mutable_fork_world()->set_name("fork");
         const auto applied = laboratory_.apply(simulation::ForkWorld{"w", "fork", {}, run_id});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.begin_fork(**laboratory_.find("fork"), entry().run_id, record_of(request, *applied, std::move(done)),
-                             executor_);
+        const simulation::Entry& fork = **laboratory_.find("fork");
+        recorder_.begin(run_file::beginning_of_fork(fork.world, fork.name, run_id, entry().run_id, executor_),
+                        record_of(request, *applied, std::move(done)));
     }
 
     /// Resets the world; the new run has a file of its own.
@@ -97,7 +99,7 @@ class RecordedRun {
         request.mutable_reset_world()->set_world("w");
         const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.begin_after_reset(entry(), before, tick, record_of(request, *applied, std::move(done)));
+        recorder_.begin_after_reset(beginning(), before, tick, record_of(request, *applied, std::move(done)));
     }
 
     void command(

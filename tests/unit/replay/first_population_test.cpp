@@ -95,7 +95,7 @@ TEST_F(FirstPopulationTest, AResetAfterARestartBeginsWithIt) {
         simulation::Entry& entry = **laboratory.find("w");
         ASSERT_TRUE(laboratory.apply(simulation::ResetWorld{"w", base::Seed{8}, {3, 4}}));
         expect_begins_with_it(entry.world);
-        (*archive)->recorder().begin_after_reset(entry, {1, 2}, 200);
+        (*archive)->recorder().begin_after_reset(run_file::beginning_of_run(entry.world, "w", {3, 4}), {1, 2}, 200);
         for (int tick = 0; tick < 150; ++tick) {
             laboratory.advance(entry, executor);
             (*archive)->recorder().of("w")->follow(entry.world);
@@ -129,7 +129,7 @@ TEST_F(FirstPopulationTest, AForkContinuesTheRunAndResetsToItsPopulation) {
             recovered->world.advance_tick(executor);
         }
         EXPECT_EQ(recovered->world.hash(), hash);
-        recovered->world.reset({7});
+        recovered->world = recovered->world.restarted({7});
         expect_begins_with_it(recovered->world);
     }
 }

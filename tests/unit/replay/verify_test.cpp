@@ -231,7 +231,7 @@ TEST_F(VerifyTest, AFunctionOfTheChromosomeIsVerifiedTickByTick) {
         ASSERT_TRUE(laboratory.apply(simulation::CreateWorld{"w", parameters, {3}, {1, 2}}));
         Recorder recorder{data, thread};
         simulation::Entry& entry = **laboratory.find("w");
-        recorder.begin(entry);
+        recorder.begin(run_file::beginning_of_run(entry.world, "w", {1, 2}));
         for (int tick = 0; tick < 150; ++tick) {
             entry.world.advance_tick(one_thread);
             recorder.of("w")->follow(entry.world);

@@ -65,7 +65,7 @@ TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
             world.advance_tick(executor); // the first tick of the next generation
             EXPECT_EQ(holds(), description.effect != base::Effect::Reset) << description.name;
         }
-        world.reset(base::Seed{1});
+        world = world.restarted(base::Seed{1});
         EXPECT_TRUE(holds()) << description.name;
         EXPECT_TRUE(world.parameters().active == world.parameters().requested);
     }

@@ -177,7 +177,7 @@ TEST_F(ScheduleTest, AResetRestartsTheSchedule) {
     const World first = world;
     advance_to(world, 2, 3);
     set(world, "food_health", 30.0);
-    world.reset(base::Seed{5});
+    world = world.restarted(base::Seed{5});
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.3);
     EXPECT_EQ(world.parameters().requested.mutation_chance, 0.3);
     EXPECT_EQ(world.parameters().active.food_health, 30) << "unscheduled parameters keep their requested values";

@@ -326,7 +326,7 @@ TEST_F(WorldTest, FindsFoundersAcrossIslands) {
     later.advance_tick(executor);
     later.turn_over(executor);
     EXPECT_TRUE(later.founders(later.islands()[0]).empty()) << "unknown without the first generation";
-    later.reset(base::Seed{6});
+    later = later.restarted(base::Seed{6});
     EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
 }
 
@@ -491,14 +491,14 @@ TEST_F(WorldTest, ResetGivesTheSameHashesAgain) {
         world.advance_tick(executor);
         hashes.push_back(world.hash());
     }
-    world.reset(base::Seed{5});
+    world = world.restarted(base::Seed{5});
     EXPECT_TRUE(world.history().empty());
     EXPECT_EQ(world.hash(), hashes[0]);
     for (std::size_t tick = 1; tick <= 30; ++tick) {
         world.advance_tick(executor);
         ASSERT_EQ(world.hash(), hashes[tick]) << "tick " << tick;
     }
-    world.reset(base::Seed{6});
+    world = world.restarted(base::Seed{6});
     EXPECT_NE(world.hash(), hashes[0]);
 }
 
