@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -158,8 +159,9 @@ bool read_range(Dimension& dimension, const JsonNode& node, const std::string& f
     }
     if (errors.violations.size() == errors_before && !(range.from < range.to)) {
         errors.add(field, node, "a \"from\" less than \"to\"");
-    } else if (errors.violations.size() == errors_before && range.log && range.from <= 0) {
-        errors.add(field, node, "a \"from\" above 0 if the scale is log");
+    } else if (errors.violations.size() == errors_before && range.log &&
+               range.from < std::numeric_limits<double>::min()) { // base::log() takes no subnormal number
+        errors.add(field, node, "a \"from\" above 0, at least 2.3e-308, if the scale is log");
     }
     dimension.range = range;
     return errors.violations.size() == errors_before;

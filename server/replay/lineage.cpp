@@ -6,6 +6,7 @@
 #include "server/replay/generation_reader.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <span>
@@ -80,8 +81,22 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
     return places;
 }
 
+/// Returns whether migrants can be chosen from these organisms: each has a finite fitness.
+bool are_rated(const Births& births) {
+    return std::ranges::all_of(births.islands, [](const Births::Island& island) {
+        return island.organism_count >= 1 && island.fitness.size() == island.organism_count &&
+               std::ranges::all_of(island.fitness, [](double fitness) { return std::isfinite(fitness); });
+    });
+}
+
 /// The parents of all organisms in `children`; empty if unknown.
 Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& children, const Births& parents) {
+    if (!are_rated(parents)) {
+        return Refusal{.code = base::RefusalCode::DataLoss,
+                       .message = file.path() + " is damaged: generation " + std::to_string(children.generation) +
+                                  " was bred from organisms without a finite fitness",
+                       .violations = {}};
+    }
     const auto places = breeders(file, parents, children);
     if (!places) {
         return ParentPlaces{};

@@ -8,6 +8,7 @@
 #include "server/simulation/rating.h"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -66,6 +67,41 @@ std::uint64_t last_entry_before(const run_file::RunFile& file, const run_file::G
                            ? changes.begin()
                            : std::ranges::upper_bound(changes, opening.tick, {}, &WorldChange::tick);
     return first == changes.begin() ? 0 : std::prev(first)->entry;
+}
+
+/// Returns whether the chromosomes of an island can be those of organisms that live there.
+bool are_possible(const evolution::GeneMatrix& genes, parameters::Parameters parameters) {
+    if (genes.cols() != static_cast<Eigen::Index>(parameters.population_size)) {
+        return false;
+    }
+    constexpr float greatest = 1e6f; // no parameter allows a gene beyond it
+    if (!(genes.array().abs() <= greatest).all() || !(genes.topRows(evolution::body_gene_count).array() >= 0).all() ||
+        !(genes.row(evolution::BodySize).array() > 0).all()) { // a NaN fails each comparison
+        return false;
+    }
+    const auto widest = static_cast<double>(genes.row(evolution::BodySize).maxCoeff());
+    parameters.body_size_max = std::max(parameters.body_size_max, widest);
+    return parameters::validate(parameters).empty(); // the organisms have room
+}
+
+/// Returns what no server could have written in the beginning of a generation; nullptr if there is nothing. Row
+/// checksums find damaged bytes, but not what another program has written.
+const char* impossible_part_of(const run_file::GenerationBegun& begun) {
+    const simulation::Moment& moment = begun.opening.moment;
+    const parameters::ParameterSet& set = begun.opening.parameters;
+    const auto is_valid_from = [&](base::Effect reached) {
+        return parameters::validate(parameters::taking_effect(set.active, set.requested, reached)).empty();
+    };
+    if (moment.generation < 1 || !(moment.simulated_s >= 0) || !std::isfinite(moment.simulated_s)) {
+        return "moment";
+    }
+    if (!parameters::validate(set.active).empty() || !is_valid_from(base::Effect::NextTick) ||
+        !is_valid_from(base::Effect::NextGeneration)) {
+        return "parameters";
+    }
+    const bool possible = std::ranges::all_of(
+        begun.born, [&](const evolution::NextGeneration& island) { return are_possible(island.genes, set.active); });
+    return possible ? nullptr : "population";
 }
 
 } // namespace
@@ -227,6 +263,10 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
 Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                           const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
                           simulation::World::History history, base::Executor& executor, simulation::Changes past) {
+    if (const char* part = impossible_part_of(begun)) {
+        return damaged(file, "generation " + std::to_string(begun.opening.moment.generation) +
+                                 " begins with an impossible " + part);
+    }
     simulation::World world{file.identity().seed,
                             begun.opening,
                             begun.born,

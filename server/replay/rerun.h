@@ -62,6 +62,8 @@ class ComingChanges {
     void apply_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
     /// Number of the last journal entry that was added.
     std::uint64_t last_entry() const { return last_entry_; }
+    /// The number of changes that were not applied yet. The others are not kept.
+    std::size_t waiting_count() const { return changes_.size(); }
     /// Set if a change cannot have been accepted at its moment, or is missing; the file is then damaged.
     const std::optional<base::Refusal>& fault() const { return fault_; }
     /// Sets fault(): the journal lacks the fitness without which this generation cannot end.
@@ -71,8 +73,8 @@ class ComingChanges {
     /// Applies one change, as Laboratory applied it. Returns false if Laboratory cannot have accepted the change.
     static bool apply(const WorldChange& change, simulation::World& world);
 
-    std::uint64_t last_entry_; // number of the last journal entry that was added
-    std::string path_;         // path of the file
+    std::uint64_t last_entry_;        // number of the last journal entry that was added
+    std::string path_;                // path of the file
     std::deque<WorldChange> changes_; // those that were not applied yet
     std::optional<base::Refusal> fault_;
 };
@@ -111,7 +113,8 @@ class Rerun {
                                         base::Executor& executor);
     /// Like begun_at(), for records that have already been read. Uses only the identity from the file.
     ///
-    /// begun       a valid beginning of a generation. The run must follow the model of this program.
+    /// begun       a beginning of a generation; refused if it is impossible. The run must follow the model of this
+    ///             program.
     /// checkpoint  a checkpoint of this generation, to start from; nullptr: its first tick.
     /// changes     in order of ticks. Changes that `begun` or `checkpoint` already contains are skipped.
     /// past        what the world then reports as its past changes.

@@ -39,18 +39,20 @@ MoreGenesTable::Row more_genes_row(std::uint64_t generation, std::uint64_t islan
     return row;
 }
 
-/// Adds the genes of a row to those of the body. Returns false if the row does not fit.
-bool add_account(const MoreGenesTable::Row& row, std::optional<evolution::SelectionAccount>& account) {
+/// Adds the genes of a row to those of the body. Returns false if the result has not `gene_count` genes.
+bool add_account(const MoreGenesTable::Row& row, std::size_t gene_count,
+                 std::optional<evolution::SelectionAccount>& account) {
     for (std::size_t i = 0; account && i + 3 < row.account.size(); i += 4) {
         account->push_back({row.account[i], row.account[i + 1], row.account[i + 2], row.account[i + 3]});
     }
-    return row.account.size() % 4 == 0 && account.has_value() == !row.account.empty();
+    return row.account.size() % 4 == 0 && (account ? account->size() == gene_count : row.account.empty());
 }
-bool add_statistics(const MoreGenesTable::Row& row, std::vector<simulation::GeneStatistics>& genes) {
+bool add_statistics(const MoreGenesTable::Row& row, std::size_t gene_count,
+                    std::vector<simulation::GeneStatistics>& genes) {
     for (std::size_t i = 0; i + 3 < row.statistics.size(); i += 4) {
         genes.push_back({row.statistics[i], row.statistics[i + 1], row.statistics[i + 2], row.statistics[i + 3]});
     }
-    return row.statistics.size() % 4 == 0;
+    return row.statistics.size() % 4 == 0 && genes.size() == gene_count;
 }
 
 constexpr const char* of_generation = "generation = ? ORDER BY island";
@@ -93,6 +95,10 @@ Generations::Writers& Generations::writers() {
     return *writers_;
 }
 
+std::size_t Generations::gene_count() const {
+    return evolution::gene_count(identity_.parameters);
+}
+
 std::uint64_t Generations::at_tick(std::uint64_t tick) {
     return std::max(
         identity_.first_generation,
@@ -127,7 +133,7 @@ Result<std::vector<evolution::NextGeneration>> Generations::read_populations(con
     while (rows.next(row)) {
         const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
         if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
-            row.born.genes.rows() != genes ||
+            row.born.genes.rows() != genes || static_cast<std::size_t>(genes) != gene_count() ||
             // Organisms of the first generation have no parents.
             (!row.born.parents.empty() && row.born.parents.size() != organisms)) {
             return bad();
@@ -190,7 +196,7 @@ Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation,
             return more.error();
         }
         for (std::size_t island = 0; island < island_count; ++island) {
-            if (!add_account((*more)[island], islands[island])) {
+            if (!add_account((*more)[island], gene_count(), islands[island])) {
                 return database_.damaged(more_genes_text(generation));
             }
         }
@@ -302,7 +308,7 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
             return more.error();
         }
         for (std::size_t i = 0; i < statistics.size(); ++i) {
-            if (!add_statistics((*more)[i], statistics[i].genes)) {
+            if (!add_statistics((*more)[i], gene_count(), statistics[i].genes)) {
                 return database_.damaged(more_genes_text(generation));
             }
         }
@@ -363,8 +369,8 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
         if (more_genes) {
             MoreGenesTable::Row row;
             if (!more_genes->next(row) || !more_genes->sound() || row.generation != expected ||
-                row.island != statistics.island || !add_statistics(row, rows.back().genes) ||
-                !add_account(row, rows.back().account)) {
+                row.island != statistics.island || !add_statistics(row, gene_count(), rows.back().genes) ||
+                !add_account(row, gene_count(), rows.back().account)) {
                 return database_.damaged(more_genes_text(expected));
             }
         }

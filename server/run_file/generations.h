@@ -51,6 +51,8 @@ class Generations {
     struct Writers;
     using Accounts = std::vector<std::optional<evolution::SelectionAccount>>;
 
+    /// The number of genes of each chromosome of the run.
+    std::size_t gene_count() const;
     base::Result<std::vector<evolution::NextGeneration>> read_populations(const simulation::Opening& opening);
     base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
     /// The selection accounts of a generation, one per island. A fork also has them for the generations that it

@@ -87,8 +87,12 @@ void Living::reorder(const physics::Reordering& reordering) {
 }
 
 float health_cap(const evolution::BodyGenes& genes, const parameters::Parameters& p) {
-    return p.health_cap_per_size > 0 ? static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize)
-                                     : std::numeric_limits<float>::infinity();
+    if (p.health_cap_per_size <= 0) {
+        return std::numeric_limits<float>::infinity();
+    }
+    // A tiny limit rounds to 0. A meal leaves the living alive, so their health stays above 0.
+    return std::max(static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize),
+                    std::numeric_limits<float>::denorm_min());
 }
 
 BodyShape body_shape(float body_size_gene, const parameters::Parameters& p) {

@@ -55,7 +55,7 @@ struct Living {
     std::uint32_t weight_count_ = 0;
 };
 
-/// Returns the limit above which a meal cannot raise health; infinity if there is no limit.
+/// Returns the limit above which a meal cannot raise health, > 0; infinity if there is no limit.
 float health_cap(const evolution::BodyGenes& genes, const parameters::Parameters& parameters);
 
 /// The radius and mass of an organism's body, which its gene body_size determines.

@@ -16,8 +16,11 @@ using physics::Coordinate;
 constexpr int tries_max = 1'000'000;
 
 /// Draws a coordinate that is uniform in margin … size − margin.
+///
+/// margin  less than half of `size` in px. Rounding may have made it greater than that half: then the coordinate is in
+///         the middle.
 Coordinate uniform_coordinate(base::RandomStream& random, Coordinate margin, Coordinate size) {
-    EVOD_ASSERT(size >= 2 * std::int64_t{margin});
+    margin = std::min(margin, size / 2);
     return margin + static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(size - 2 * margin) + 1));
 }
 

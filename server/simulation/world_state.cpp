@@ -18,8 +18,8 @@ namespace {
 /// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
 /// so large a float.
 constexpr float health_reachable = 0x1p38f;
-/// No parameter allows a gene above this value.
-constexpr float gene_reachable = 10'000;
+/// No parameter allows a gene of the body, or the gene body_size, above these values.
+constexpr float gene_reachable = 10'000, body_size_reachable = 1'000;
 
 } // namespace
 
@@ -95,7 +95,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
             !std::ranges::all_of(std::span{placed.genes}.first<evolution::body_gene_count>(), is_body_gene) ||
             !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
-            placed.genes[evolution::BodySize] <= 0) {
+            placed.genes[evolution::BodySize] <= 0 || placed.genes[evolution::BodySize] > body_size_reachable) {
             return wrong("a placed organism");
         }
     }

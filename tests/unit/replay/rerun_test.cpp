@@ -5,7 +5,11 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
+#include <initializer_list>
+#include <limits>
 #include <random>
+#include <sstream>
 
 namespace evod::replay {
 namespace {
@@ -161,6 +165,93 @@ TEST_F(RerunTest, ARunOfAnotherModelIsReadButNotSimulated) {
     const auto refused = recover(**file, executor).error();
     EXPECT_EQ(refused.code, base::RefusalCode::FailedPrecondition);
     EXPECT_THAT(refused.message, HasSubstr("evod 0.0.9"));
+}
+
+TEST_F(RerunTest, AppliedChangesAreNotKept) {
+    RecordedRun run{data, *thread};
+    for (int change = 0; change < 50; ++change) {
+        run.command(set_parameter("food_health", 1.0 + change));
+        run.advance(4);
+    }
+    const auto file = file_left();
+    auto rerun = Rerun::at(*file, 1, executor);
+    ASSERT_TRUE(rerun) << to_text(rerun.error());
+    rerun->apply_changes();
+    EXPECT_EQ(rerun->changes().waiting_count(), 49u);
+    rerun->advance_to(100, executor);
+    EXPECT_EQ(rerun->changes().waiting_count(), 24u);
+    rerun->advance_to(200, executor);
+    EXPECT_EQ(rerun->changes().waiting_count(), 0u);
+    EXPECT_EQ(rerun->world().hash(), run.world().hash());
+}
+
+/// Writes another beginning of generation 2, with right checksums.
+struct OtherBeginning {
+    const char* impossible;
+    std::function<void(GenerationBegun&)> make;
+};
+
+TEST_F(RerunTest, AnImpossibleBeginningIsReported) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinite = std::numeric_limits<float>::infinity();
+    const auto gene = [](unsigned which, float value) {
+        return [which, value](GenerationBegun& begun) { begun.born[1].genes(which, 3) = value; };
+    };
+    for (const OtherBeginning& other : std::initializer_list<OtherBeginning>{
+             {"population", gene(evolution::BodySize, nan)},
+             {"population", gene(evolution::BodySize, 0)},
+             {"population", gene(evolution::BodySize, -1)},
+             {"population", gene(evolution::BodySize, 9'000)}, // wider than the island
+             {"population", gene(evolution::NormalSpeed, infinite)},
+             {"population", gene(evolution::BaseHealth, 1e30f)},
+             {"population",
+              [](GenerationBegun& begun) {
+                  begun.born[0].genes.resize(Eigen::NoChange, 0);
+                  begun.born[0].parents.clear();
+                  begun.founders[0].clear();
+              }},
+             {"moment",
+              [](GenerationBegun& begun) {
+                  begun.opening.moment.simulated_s = std::numeric_limits<double>::infinity();
+              }},
+             // Each set is valid, but after the next tick the organisms of this generation would not have room.
+             {"parameters",
+              [](GenerationBegun& begun) {
+                  begun.opening.parameters.requested.body_size_max = 1'000;
+                  begun.opening.parameters.requested.population_size = 5;
+              }},
+         }) {
+        begin_again();
+        {
+            RecordedRun run{data, *thread};
+            run.advance(300);
+        }
+        const auto file = file_left();
+        GenerationBegun begun = **file->generations().beginning_of(2);
+        other.make(begun);
+        file->begin();
+        file->write(begun);
+        ASSERT_TRUE(file->commit());
+        const auto rerun = Rerun::at(*file, 2, executor);
+        ASSERT_FALSE(rerun);
+        EXPECT_EQ(rerun.error().code, base::RefusalCode::DataLoss);
+        EXPECT_THAT(rerun.error().message,
+                    HasSubstr(std::string{" is damaged: generation 2 begins with an impossible "} + other.impossible));
+    }
+}
+
+TEST_F(RerunTest, ALineageFromImpossibleFitnessIsReported) {
+    RecordedRun run{data, *thread};
+    run.advance(500);
+    const auto file = file_left();
+    GenerationEnded ended = **file->generations().outcome_of(2); // migrants are chosen at its end
+    ended.outcomes[1].fitness[4] = std::numeric_limits<double>::quiet_NaN();
+    file->begin();
+    file->write(ended);
+    ASSERT_TRUE(file->commit());
+    std::ostringstream text;
+    const auto written = write_table({*file, executor}, {.table = RunTable::Lineage}, text);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message, HasSubstr("generation 3 was bred from organisms without a finite fitness"));
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <map>
 #include <random>
+#include <sstream>
 
 namespace evod::replay {
 namespace {
@@ -144,6 +145,22 @@ TEST_P(WideRunTest, AForkContinuesExactly) {
     const auto moment = replay::fork(*file, {}, data.file_of("again"), "again", {5, 6}, executor);
     ASSERT_TRUE(moment) << to_text(moment.error());
     expect_agrees(*file_left("again"));
+}
+
+TEST_P(WideRunTest, StatisticsOfFewerGenesAreReported) {
+    const auto run = begin();
+    run->advance(300);
+    const auto file = file_left();
+    GenerationEnded ended = **file->generations().outcome_of(1);
+    ended.statistics[1].genes.pop_back();
+    file->begin();
+    file->write(ended);
+    ASSERT_TRUE(file->commit());
+    std::ostringstream text;
+    const auto written = write_table({*file, executor}, {.table = RunTable::Generations}, text);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message, HasSubstr("is damaged: a row of the further genes of generation 1"));
+    EXPECT_FALSE(Rerun::at(*file, 2, executor)) << "its world has these statistics";
 }
 
 TEST_P(WideRunTest, AResetChangesTheNumberOfGenes) {

@@ -348,5 +348,15 @@ TEST_F(SmallIsland, HasNoBodiesForAChromosomeFitness) {
     EXPECT_EQ(fitness(), (std::vector<double>{21, 210}));
 }
 
+TEST(HealthCap, IsAboveZero) {
+    parameters::Parameters parameters;
+    evolution::BodyGenes genes;
+    genes.setConstant(1);
+    for (const double per_size : {5e-324, 1e-46, 1e-45, 1e-30, 3.0}) {
+        parameters.health_cap_per_size = per_size;
+        EXPECT_GT(health_cap(genes, parameters), 0) << per_size;
+    }
+}
+
 } // namespace
 } // namespace evod::simulation

@@ -354,6 +354,18 @@ TEST(SpawnMargin, KeepsTheCentresOfEverythingAwayFromWalls) {
     }
 }
 
+TEST(SpawnMargin, MayRoundToMoreThanHalfOfTheIsland) {
+    // A float has no number between 249999.984375 and 250000.
+    const double width_px = 499'999.99, margin_px = 249'999.994;
+    ASSERT_LT(2 * margin_px, width_px);
+    const Area area{to_units(width_px), to_units(500'000.0)};
+    const auto margin = static_cast<float>(margin_px);
+    ASSERT_GT(2 * to_units(margin), area.width);
+    base::RandomStream random{base::RandomKey{base::Seed{1}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    const Place place = random_place(random, area, 4, BoxGrid{}, margin);
+    EXPECT_EQ(place.x, area.width / 2);
+}
+
 TEST(SpawnMargin, NoGreaterThanTheRadiusChangesNothing) {
     const physics::Area area{physics::to_units(400.0), physics::to_units(300.0)};
     const auto draw = [&](float margin_px) {
