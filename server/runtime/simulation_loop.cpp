@@ -62,7 +62,8 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
-    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply} {
+    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply}
+    , file_faults_{laboratory_, recorder, replays_} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
@@ -74,6 +75,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
     poll_storage();
+    poll_run_files();
     poll_mailbox();
     answer_queries();
     poll_demand();
@@ -296,6 +298,9 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     }
     const auto* created = std::get_if<simulation::CreateWorld>(&command);
     const auto* forked = std::get_if<simulation::ForkWorld>(&command);
+    if (auto refused = entry && !forked ? file_faults_.refusal_of(entry->name) : std::nullopt) {
+        return refused;
+    }
     const std::string* name = created ? &created->name : forked ? &forked->name : nullptr;
     // The laboratory refuses the name of a damaged world.
     return name && !laboratory_.find_damaged(*name) ? recorder_->refusal_of_place(*name) : std::nullopt;
@@ -402,12 +407,17 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
                                     .origin = done.mail.origin,
                                     .answer = done.frame};
     // After the command was written to the disk, the storage thread passes it on.
+    const auto waiting = std::make_shared<CommandDone>(std::move(done));
+    record.refused = [reply = outputs_.reply, waiting](const base::Refusal& why) {
+        const std::string world = waiting->outcome->world;
+        reply(refused(std::move(*waiting), damaged_world(world, {}, why).refusal()));
+    };
     if (effect == RunEffect::BeginsAsFork) {
         const simulation::Entry& fork = **entry;
         record.done = fork_check_.read_back(recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash(),
-                                            std::move(done), outputs_.reply);
+                                            waiting, outputs_.reply);
     } else {
-        record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
+        record.done = [reply = outputs_.reply, waiting] { reply(std::move(*waiting)); };
     }
     switch (effect) {
     case RunEffect::Begins:
@@ -476,6 +486,20 @@ void SimulationLoop::poll_storage() {
     }
     laboratory_.set_storage(now);
     outputs_.storage(now);
+}
+
+void SimulationLoop::poll_run_files() {
+    const FileFaults::Changes changes = file_faults_.poll();
+    if (!changes.damaged.empty()) {
+        count_damaged_worlds();
+        follow_worlds();
+    }
+    for (const simulation::DamagedWorld& world : changes.damaged) {
+        outputs_.damaged(world);
+    }
+    for (const auto& [world, storage] : changes.storage) {
+        outputs_.storage_of_world(world, storage);
+    }
 }
 
 void SimulationLoop::follow_worlds() {

@@ -19,6 +19,7 @@
 #include "server/recording/recorder.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
+#include "server/runtime/file_faults.h"
 #include "server/runtime/fork_check.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
@@ -45,6 +46,10 @@ struct LoopOutputs {
     std::function<void(Reply)> reply = [](Reply) {};
     /// Receives a new state of the disk.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
+    /// Receives a new state of the disk for one world, whose run file was moved or deleted, or is back.
+    std::function<void(const std::string& world, const simulation::Storage&)> storage_of_world = [](auto&&...) {};
+    /// Receives a world that has stopped, because its run file is damaged.
+    std::function<void(const simulation::DamagedWorld&)> damaged = [](const simulation::DamagedWorld&) {};
     /// The metrics of each live world. Must outlive the loop; nullptr: no metrics.
     metrics::Worlds* counted = nullptr;
 };
@@ -135,8 +140,12 @@ class SimulationLoop {
     void announce_moved_replays();
     void poll_demand();
     void poll_storage();
+    /// Stops the worlds whose run files are damaged, and lets those wait whose run files were moved or deleted.
+    void poll_run_files();
     /// Whether the world must wait for the disk.
-    bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.replay; }
+    bool waits_for_the_disk(const simulation::Entry& entry) const {
+        return !entry.replay && (worlds_wait_ || file_faults_.is_displaced(entry.name));
+    }
     void follow_worlds();
     /// Passes the names of the damaged worlds to the metrics. Must be called when they have changed.
     void count_damaged_worlds();
@@ -164,6 +173,7 @@ class SimulationLoop {
     bool worlds_wait_ = false;                       // true: live worlds wait for the disk
     std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
     Replays replays_;
+    FileFaults file_faults_;
     ForkCheck fork_check_;
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;
