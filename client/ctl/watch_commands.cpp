@@ -150,6 +150,9 @@ class WatchDisplay {
             end(world_.name() + " has ended: " + state_of(world_));
         } else if (event.has_world_deleted()) {
             end(world_.name() + " was deleted by " + core::to_text(event.world_deleted().by()));
+        } else if (event.has_world_damaged()) {
+            throw Stop{ExitCode::Refused,
+                       "the world " + world_.name() + " does not run: " + event.world_damaged().reason()};
         } else if (event.has_world_reset()) {
             lines_.clear();
         }
@@ -331,11 +334,14 @@ std::string text_of(const v1::Event& event) {
                std::to_string(event.world_reset().world().seed());
     case v1::Event::kWorldDeleted:
         return where + "deleted by " + core::to_text(event.world_deleted().by());
+    case v1::Event::kWorldDamaged:
+        return event.world() + " does not run: " + event.world_damaged().reason();
     case v1::Event::kServerGoingAway:
         return "the server is shutting down";
     case v1::Event::kStorageChanged: {
         const std::string trouble = storage_problem(event.storage_changed().storage());
-        return trouble.empty() ? "run files can be written again" : trouble;
+        return (event.world().empty() ? "" : event.world() + ": ") +
+               (trouble.empty() ? "run files can be written again" : trouble);
     }
     case v1::Event::kEventsDropped:
         return std::to_string(event.events_dropped().dropped_count()) + " events were dropped: too many at once";

@@ -353,6 +353,12 @@ void Dispatcher::on_done(runtime::CommandDone done) {
     }
 }
 
+void Dispatcher::on_damaged(const v1::Event& event) {
+    leases_.end(event.world());
+    streams_.forget_world(event.world());
+    streams_.publish(event);
+}
+
 void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
                             const SharedBytes& frame) {
     if (mail.session == 0) {

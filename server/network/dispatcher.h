@@ -32,6 +32,8 @@ class Dispatcher {
     void handle(Session& session, v1::Request request);
     /// Handles deliveries from the outbox in order.
     void deliver(std::vector<runtime::Delivery> deliveries);
+    /// Ends the lease and the snapshot streams of a world that has become damaged, and publishes the event.
+    void on_damaged(const v1::Event& event);
 
     /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
     /// is full, the command is dropped.

@@ -310,6 +310,14 @@ bool Server::run() {
                         streams_.publish(event);
                     });
                 },
+            .storage_of_world =
+                [this](const std::string& world, const simulation::Storage& storage) {
+                    outbox_.answer([this, event = protocol::event_of(storage, world)] { streams_.publish(event); });
+                },
+            .damaged =
+                [this](const simulation::DamagedWorld& damaged) {
+                    outbox_.answer([this, event = protocol::event_of(damaged)] { dispatcher_.on_damaged(event); });
+                },
             .counted = &worlds_counted_,
         },
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));

@@ -76,7 +76,11 @@ void Streams::publish(v1::Event event) {
             return item.second.world ? world.empty() || *item.second.world == world
                                      : simulation::is_world_name(world) || world.empty();
         });
-        if (!wanted) {
+        // A subscription to snapshots ends with this event, although the session may have no subscription to events.
+        const bool ends_snapshots = event.has_world_damaged() &&
+                                    std::ranges::any_of(session->snapshots.subscriptions,
+                                                        [&](const auto& item) { return item.second.world == world; });
+        if (!wanted && !ends_snapshots) {
             continue;
         }
         const bool is_viewer = session->visitor().role < access::Role::Controller;

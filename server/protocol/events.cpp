@@ -169,8 +169,19 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
     return message;
 }
 
-v1::Event event_of(const simulation::Storage& storage) {
+v1::Event event_of(const simulation::DamagedWorld& damaged) {
     v1::Event message;
+    message.set_world(damaged.name);
+    if (damaged.run_id) {
+        message.set_run_id(to_text(*damaged.run_id));
+    }
+    message.mutable_world_damaged()->set_reason(damaged.reason);
+    return message;
+}
+
+v1::Event event_of(const simulation::Storage& storage, const std::string& world) {
+    v1::Event message;
+    message.set_world(world);
     *message.mutable_storage_changed()->mutable_storage() = to_proto(storage);
     return message;
 }

@@ -19,7 +19,12 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory);
 
+/// Returns the event that reports a world that has stopped, because its run file is damaged.
+v1::Event event_of(const simulation::DamagedWorld& damaged);
+
 /// Returns the event that reports a new state of the disk.
-v1::Event event_of(const simulation::Storage& storage);
+///
+/// world  the only world that the state concerns; empty: all worlds.
+v1::Event event_of(const simulation::Storage& storage, const std::string& world = {});
 
 } // namespace evod::protocol

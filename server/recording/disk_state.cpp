@@ -11,6 +11,21 @@ std::optional<std::string> DiskState::trouble() const {
     return trouble_.empty() ? std::nullopt : std::optional{trouble_};
 }
 
+RunFaults DiskState::faults() const {
+    const std::lock_guard lock{mutex_};
+    return faults_;
+}
+
+void DiskState::set_faults(RunFaults faults) {
+    const std::lock_guard lock{mutex_};
+    if (faults_ != faults) {
+        faults_ = std::move(faults);
+        if (when_changed_) {
+            when_changed_();
+        }
+    }
+}
+
 void DiskState::when_changed(std::function<void()> changed) {
     const std::lock_guard lock{mutex_};
     when_changed_ = std::move(changed);

@@ -1,8 +1,11 @@
 // Disk state: whether run files can be written, and how many bytes wait to be written.
 //
+// Faults         of single runs, whose files cannot be written although the disk can (run_fault.h).
 // Backpressure   if at least `waiting_bytes_max` bytes wait, has_room() is false and the caller produces no records.
 // Threads        any. The storage thread changes the state, and calls the callback of when_changed().
 #pragma once
+
+#include "server/recording/run_fault.h"
 
 #include <atomic>
 #include <cstddef>
@@ -22,7 +25,9 @@ class DiskState {
     bool has_room() const { return waiting_bytes() < waiting_bytes_max; }
     /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const;
-    /// The storage thread calls `changed` when trouble() or has_room() has changed. `changed` must neither block nor
+    /// The runs whose files cannot be written now, or never again. A run is in the list until it ends.
+    RunFaults faults() const;
+    /// The storage thread calls `changed` when trouble(), faults() or has_room() has changed. `changed` must neither block nor
     /// call this object. When this function returns, the previous callback is not called any more.
     void when_changed(std::function<void()> changed);
 
@@ -30,11 +35,13 @@ class DiskState {
     void written(std::size_t bytes);
     /// why  the reason why nothing can be written; empty: writing works.
     void set_trouble(const std::string& why);
+    void set_faults(RunFaults faults);
 
   private:
     std::atomic<std::size_t> waiting_bytes_ = 0;
     mutable std::mutex mutex_; // guards the members below
     std::string trouble_;
+    RunFaults faults_;
     std::function<void()> when_changed_;
 };
 

@@ -71,7 +71,8 @@ std::optional<std::chrono::steady_clock::time_point> RecordQueue::waiting_since(
     return taken_since_ ? taken_since_ : handed_over_since_;
 }
 
-HandedOver RecordQueue::take(bool more, std::optional<std::chrono::milliseconds> retry_after, bool jobs_run) {
+HandedOver RecordQueue::take(bool more, std::optional<std::chrono::milliseconds> retry_after,
+                             std::optional<std::chrono::steady_clock::time_point> wake_at, bool jobs_run) {
     std::unique_lock lock{mutex_};
     const bool& stopping = handed_over_.stopping;
     const auto hurries = [&] { return urgent_ || !results_.empty() || (stopping && !jobs_run); };
@@ -79,9 +80,16 @@ HandedOver RecordQueue::take(bool more, std::optional<std::chrono::milliseconds>
         changed_.wait_for(lock, *retry_after, [&] { return stopping && (!jobs_run || !results_.empty()); });
     } else if (!more) {
         --unfinished;
-        changed_.wait(lock, [&] { return hurries() || !handed_over_.records.empty(); });
+        const auto has_work = [&] { return hurries() || !handed_over_.records.empty(); };
+        if (wake_at) {
+            changed_.wait_until(lock, *wake_at, has_work);
+        } else {
+            changed_.wait(lock, has_work);
+        }
         ++unfinished;
-        changed_.wait_for(lock, gathering_time, [&] { return hurries() || stopping; });
+        if (has_work()) {
+            changed_.wait_for(lock, gathering_time, [&] { return hurries() || stopping; });
+        }
     }
     const auto now = std::chrono::steady_clock::now();
     if (more && !retry_after && !urgent_ && !stopping &&

@@ -54,8 +54,10 @@ class RecordQueue {
     ///
     /// more         true: does not wait, because the caller has other work.
     /// retry_after  if set, waits for this time, because a write has failed.
+    /// wake_at      if set, waits for records until this time at most, because a single run must then be tried again.
     /// jobs_run     true: jobs are running; the thread must not end before their results have arrived.
-    HandedOver take(bool more, std::optional<std::chrono::milliseconds> retry_after, bool jobs_run);
+    HandedOver take(bool more, std::optional<std::chrono::milliseconds> retry_after,
+                    std::optional<std::chrono::steady_clock::time_point> wake_at, bool jobs_run);
     /// Called when all records that were taken are written.
     void all_written();
     /// Whether a record with a `done` waits.

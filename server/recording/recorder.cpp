@@ -47,7 +47,7 @@ run_file::JournalEntry RunRecorder::entry(CommandRecord& command) {
 void RunRecorder::journal(CommandRecord command) {
     std::vector<Record> records;
     records.emplace_back(entry(command));
-    thread_.write(number_, {std::move(records), std::move(command.done)});
+    thread_.write(number_, {std::move(records), std::move(command.done), std::move(command.refused)});
 }
 
 StorageThread::Batch RunRecorder::first(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
@@ -57,6 +57,7 @@ StorageThread::Batch RunRecorder::first(run_file::RunBeginning beginning, std::o
     if (command) {
         batch.records.emplace_back(entry(*command));
         batch.done = std::move(command->done);
+        batch.refused = std::move(command->refused);
     }
     return batch;
 }
@@ -82,6 +83,26 @@ std::optional<base::Refusal> Recorder::refusal() const {
                          .message = "the server accepts no commands because it cannot record them: " + *why +
                                     "; send the command again when the disk can be written",
                          .violations = {}};
+}
+
+std::map<std::string, RunFault> Recorder::faults() const {
+    std::map<std::string, RunFault> of_worlds;
+    const RunFaults faults = thread_.disk().faults();
+    if (!faults.empty()) {
+        for (const auto& [world, run] : runs_) {
+            if (const auto found = faults.find(run.number_); found != faults.end()) {
+                of_worlds.emplace(world, found->second);
+            }
+        }
+    }
+    return of_worlds;
+}
+
+void Recorder::give_up(const std::string& world) {
+    const auto run = runs_.find(world);
+    EVOD_ASSERT(run != runs_.end());
+    thread_.close(run->second.number_, {});
+    runs_.erase(run);
 }
 
 std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world) const {

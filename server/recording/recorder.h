@@ -23,6 +23,7 @@ struct CommandRecord {
     run_file::Origin origin = {};
     std::string answer = {};
     Done done = {};
+    Refused refused = {}; // called instead of `done` if the file is damaged
 };
 
 /// Finds new records in a world after a tick: the beginning and end of a generation, and the state hash.
@@ -87,7 +88,10 @@ class RunRecorder {
     }
     void journal(CommandRecord command);
     /// Calls `done` on the storage thread once all records passed so far are on the disk.
-    void once_written(Done done) { thread_.write(number_, {{}, std::move(done)}); }
+    /// If the file is damaged, calls `refused`.
+    void once_written(Done done, Refused refused = {}) {
+        thread_.write(number_, {{}, std::move(done), std::move(refused)});
+    }
     /// Whether a checkpoint is due right after the last followed tick.
     ///
     /// spent  time that the simulation took since the previous call.
@@ -127,6 +131,10 @@ class Recorder {
 
     /// The reason why no command can be accepted now; nullopt if commands can be accepted.
     std::optional<base::Refusal> refusal() const;
+    /// The worlds whose run files cannot be written, although the disk can.
+    std::map<std::string, RunFault> faults() const;
+    /// Ends the recording of a world whose file is damaged, without writing anything.
+    void give_up(const std::string& world);
     /// The reason why no world with this name can be created: its run file would have the path of a file that belongs
     /// to no world of this server. Returns nullopt if the world can be created or already exists.
     std::optional<base::Refusal> refusal_of_place(const std::string& world) const;
@@ -134,7 +142,7 @@ class Recorder {
     bool has_room() const { return thread_.disk().has_room(); }
     /// The reason why nothing can be written now; nullopt if writing works.
     std::optional<std::string> trouble() const { return thread_.disk().trouble(); }
-    /// The storage thread calls `changed` when has_room() or trouble() has changed.
+    /// The storage thread calls `changed` when has_room(), trouble() or faults() has changed.
     void when_changed(std::function<void()> changed) { thread_.disk().when_changed(std::move(changed)); }
 
     /// The recorder of a world; nullptr if the world has no file.

@@ -18,7 +18,10 @@ using base::Result;
 
 /// Returns the refusal for a file that was moved or deleted. `other_file` states whether another file has its name now.
 Refusal moved_file_refusal(const std::string& path, bool other_file) {
-    return {.code = base::RefusalCode::NotFound,
+    // If the whole folder is missing, this concerns all runs.
+    std::error_code error;
+    const bool has_folder = std::filesystem::exists(std::filesystem::path{path}.parent_path(), error);
+    return {.code = has_folder ? base::RefusalCode::NotFound : base::RefusalCode::Unavailable,
             .message =
                 path + (other_file ? " is not the file that the server writes" : " has been moved or deleted") +
                 ": move the original file back; otherwise everything written from now on is lost when the server "
@@ -92,8 +95,8 @@ Result<bool> RunLog::open() {
     const bool is_new = to_create && !opened;
     if (is_new) { // one transaction for all first records, so that a reader sees all of them or none
         opened = run_file::RunFile::begin_new(name_now, creation->identity, options);
-    } else if (to_create && (*opened)->identity().run_id != creation->identity.run_id) {
-        opened = exists_already(name_now);
+    } else if (opened && (*opened)->identity().run_id != run_id) {
+        opened = to_create ? exists_already(name_now) : moved_file_refusal(name_now, true);
     }
     std::error_code error;
     if (!opened && !to_create && !std::filesystem::exists(name_now, error)) {

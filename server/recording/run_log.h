@@ -9,11 +9,12 @@
 // Log copies   when a write-ahead log reaches Options::log_pages_max, a job copies it into its file. Meanwhile this
 //              file gets no background writes, so that SQLite can restart the log.
 // Errors       after a failed write the file is closed. The next write opens it again. Records are kept until they are
-//              committed.
+//              committed, or until the file is found to be damaged (run_fault.h).
 //
 // Owner        the storage thread. No other thread uses it.
 #pragma once
 
+#include "server/recording/run_fault.h"
 #include "server/recording/waiting_record.h"
 
 #include <sys/types.h>
@@ -25,9 +26,6 @@
 #include <vector>
 
 namespace evod::recording {
-
-/// Identifies a run as long as the storage thread writes it.
-using RunNumber = std::uint64_t;
 
 /// Detects that a file was moved or deleted while it is open. Data written to it afterwards would be lost.
 class FileNameWatch {
@@ -64,6 +62,7 @@ struct RunLog {
 
     RunNumber number = 0;
     std::string path = {};
+    simulation::RunId run_id = {};
     run_file::RunFile::Options options = {};
 
     std::optional<Creation> creation = {};        // set until the new file has its final name
@@ -76,7 +75,11 @@ struct RunLog {
     LogCopy log_copy = {};
     bool large_reported = false;
     FileNameWatch name = {};
+    std::optional<RunFault> fault = {};
+    std::chrono::steady_clock::time_point retry_at = {}; // when a displaced file is tried again
+    bool retry_is_due = false;                           // a displaced file is tried in this round
 
+    bool is_damaged() const { return fault && fault->kind == RunFault::Kind::Damaged; }
     bool is_finished() const { return closing && closing->finished; }
     /// The first uncompressed checkpoint; nullptr if there is none, or while another one is being compressed.
     WaitingRecord* next_to_compress();

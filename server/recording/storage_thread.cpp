@@ -22,6 +22,7 @@ std::vector<WaitingRecord> records_of(StorageThread::Batch batch, DiskState& dis
         records.back().handed_over = std::chrono::steady_clock::now();
     }
     records.back().done = std::move(batch.done);
+    records.back().refused = std::move(batch.refused);
     disk.added(bytes);
     return records;
 }
@@ -48,6 +49,7 @@ bool StorageThread::finish() {
 RunNumber StorageThread::create(const std::string& path, run_file::RunIdentity identity, Batch first) {
     RunLog run{.options = options_};
     run.path = path;
+    run.run_id = identity.run_id;
     run.creation = RunLog::Creation{.identity = std::move(identity)};
     return queue_.add_run(std::move(run), records_of(std::move(first), disk_));
 }
@@ -56,6 +58,7 @@ RunNumber StorageThread::replace(RunNumber old_run, Ending ending, const std::st
                                  run_file::RunIdentity identity, Batch first) {
     RunLog run{.options = options_};
     run.path = path;
+    run.run_id = identity.run_id;
     run.creation = RunLog::Creation{.identity = std::move(identity), .replaces = old_run};
     Closing closing{
         .last = records_of(std::move(ending.last), disk_), .renamed = std::move(ending.renamed), .replaced = true};
@@ -65,6 +68,7 @@ RunNumber StorageThread::replace(RunNumber old_run, Ending ending, const std::st
 RunNumber StorageThread::adopt(std::unique_ptr<run_file::RunFile> file) {
     RunLog run{.options = options_};
     run.path = file->path();
+    run.run_id = file->identity().run_id;
     run.file = std::move(file);
     (void)run.name.check(run.path, {}); // remembers this file
     return queue_.add_run(std::move(run), {});

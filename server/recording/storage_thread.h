@@ -12,8 +12,12 @@
 // Errors         `done` is not called for a record that could not be written. The thread keeps the record. At intervals
 //                of `retry_time` it opens the file again and writes all records that may be missing.
 //                DiskState::trouble() returns the reason.
-// File names     a moved or deleted file counts as an error, because data written to it would be lost when the server
-//                stops. The file stays open, so the error ends when the file is moved back.
+// File names     a moved or deleted file counts as an error of its run, because data written to it would be lost when the
+//                server stops. The file stays open, so the error ends when the file is moved back. The thread continues to
+//                write the other runs.
+// Damage         if a file is damaged, the thread closes it, drops the records of its run, calls `refused` instead of
+//                `done`, and writes nothing to the file any more. DiskState::faults() returns the reason. The run remains
+//                in the list until it is closed.
 //
 // Threads        only the simulation thread calls create(), write(), close() and so on. It never waits for the disk.
 //                Run files belong to the storage thread.
@@ -59,8 +63,10 @@ class StorageThread {
     struct Batch {
         std::vector<Record> records;
         Done done;
+        Refused refused = {};
     };
-    /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path.
+    /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path. A damaged
+    /// file gets no last records.
     struct Ending {
         Batch last; // the last of these records is the end mark
         std::string renamed;

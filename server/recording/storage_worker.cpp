@@ -1,6 +1,7 @@
 #include "server/recording/storage_worker.h"
 
 #include "server/log/log.h"
+#include "server/run_file/data_folder.h"
 
 #include <pthread.h>
 
@@ -39,28 +40,42 @@ bool StorageWorker::work() {
             }
             disk_.set_trouble({});
         }
+        report_faults();
         // When the server stops, retries failed records as long as any record can still be written. After that, the
         // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
         if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failed_ && advanced)) {
-            return !failed_ || log_lost_records();
+            const bool displaced = next_retry().has_value();
+            return (!(failed_ || displaced) || log_lost_records()) && !lost_;
         }
     }
 }
 
 bool StorageWorker::take(bool more) {
-    HandedOver taken = queue_.take(more, failed_ ? std::optional{retry_after_} : std::nullopt, jobs_.are_running());
+    HandedOver taken =
+        queue_.take(more, failed_ ? std::optional{retry_after_} : std::nullopt, next_retry(), jobs_.are_running());
+
     runs_.merge(taken.new_runs);
     for (auto& [number, records] : taken.records) {
         RunLog& run = runs_[number];
         for (WaitingRecord& record : records) {
             (record.writing ? run.checkpoints : run.waiting).push_back(std::move(record));
         }
+        if (run.is_damaged()) {
+            refuse_records_of_damaged(run);
+        }
     }
     for (auto& [number, closing] : taken.closing) {
         runs_[number].closing = std::move(closing);
     }
     jobs_.apply_results(runs_, false);
+    const auto now = std::chrono::steady_clock::now();
+    for (auto& [number, run] : runs_) {
+        run.retry_is_due = taken.stopping || now >= run.retry_at;
+        if (run.retry_is_due) {
+            run.retry_at = now + retry_after_;
+        }
+    }
     return taken.stopping;
 }
 
@@ -88,6 +103,12 @@ bool StorageWorker::write_records() {
 }
 
 bool StorageWorker::write_records(RunLog& run) {
+    if (run.is_damaged()) {
+        return end_damaged(run);
+    }
+    if (waits_for_its_file(run)) {
+        return false;
+    }
     const auto is_uncompressed = [](const WaitingRecord& record) {
         return record.record && std::holds_alternative<run_file::Checkpoint>(*record.record);
     };
@@ -112,13 +133,13 @@ bool StorageWorker::write_records(RunLog& run) {
     }
     if (has_records && run.file) {
         if (const auto shrunk = run.shrink(); !shrunk) { // the records are written even if this fails
-            return fail(shrunk.error());
+            return fail(run, shrunk.error());
         }
     }
     return true;
 }
 
-bool StorageWorker::is_its_turn(const RunLog& run) {
+bool StorageWorker::is_its_turn(RunLog& run) {
     for (auto& [number, earlier] : runs_) {
         if (number >= run.number) {
             break;
@@ -127,10 +148,17 @@ bool StorageWorker::is_its_turn(const RunLog& run) {
             continue;
         }
         const bool is_replaced = run.creation && run.creation->replaces == number;
-        const auto is_out_of_the_way = [&, &log = earlier] { return is_replaced ? !log.creation : log.is_finished(); };
+        const auto is_out_of_the_way = [&, &log = earlier] {
+            return is_replaced ? !log.creation || log.is_damaged() : log.is_finished();
+        };
         if (!is_out_of_the_way()) {
             (void)write_records(earlier);
             if (!is_out_of_the_way()) {
+                if (earlier.fault && !earlier.is_damaged()) {
+                    run.fault = earlier.fault; // otherwise its records would wait without a reason
+                    run.retry_at = earlier.retry_at;
+                    run.retry_is_due = false;
+                }
                 return false;
             }
         }
@@ -141,11 +169,12 @@ bool StorageWorker::is_its_turn(const RunLog& run) {
 bool StorageWorker::commit(RunLog& run, const std::vector<WaitingRecord>& records) {
     const auto took = run.commit(records);
     if (!took) {
-        return fail(took.error());
+        return fail(run, took.error());
     }
     if (took->count() > 0) {
         times_.commit.add(*took);
         jobs_.copy_log_if_due(run);
+        recovered(run);
         advanced_ = true;
     }
     return true;
@@ -161,8 +190,9 @@ bool StorageWorker::rename_to_final_name(RunLog& run) {
         }
     }
     if (const auto named = run.rename_to_final_name(); !named) {
-        return fail(named.error());
+        return fail(run, named.error());
     }
+    recovered(run);
     advanced_ = true;
     return true;
 }
@@ -193,7 +223,7 @@ bool StorageWorker::end(RunLog& run) {
         run.file.reset();
     }
     if (const auto renamed = run.rename_ended_file(); !renamed) {
-        return fail(renamed.error());
+        return fail(run, renamed.error());
     }
     closing.finished = true;
     advanced_ = true;
@@ -215,11 +245,15 @@ bool StorageWorker::background_step() {
 }
 
 bool StorageWorker::background_step(RunLog& run) {
+    if (run.is_damaged() || waits_for_its_file(run)) {
+        return false;
+    }
     const auto step = run.background_step();
     if (!step) {
-        return fail(step.error());
+        return fail(run, step.error());
     }
     if (*step) {
+        recovered(run);
         report_written(run.written);
         jobs_.copy_log_if_due(run);
     }
@@ -245,52 +279,178 @@ void StorageWorker::report_written(std::vector<WaitingRecord>& records) {
     disk_.written(bytes);
 }
 
-bool StorageWorker::fail(const base::Refusal& why) {
-    if (!std::exchange(failed_, true)) {
-        disk_.set_trouble(why.message); // reports only the first error of a round
+void StorageWorker::refuse(std::vector<WaitingRecord>& records, const base::Refusal& why) {
+    std::size_t bytes = 0;
+    for (const WaitingRecord& record : std::exchange(records, {})) {
+        bytes += record.bytes;
+        if (record.refused) {
+            record.refused(why);
+        }
+        if (record.writing) {
+            record.writing->waits = false;
+            --queue_.unfinished;
+        }
+    }
+    disk_.written(bytes);
+}
+
+void StorageWorker::refuse_records_of_damaged(RunLog& run) {
+    for (std::vector<WaitingRecord>* records : {&run.written, &run.waiting, &run.checkpoints}) {
+        refuse(*records, run.fault->why);
+    }
+}
+
+bool StorageWorker::fail(RunLog& run, const base::Refusal& why) {
+    const auto fault = fault_of(why);
+    if (!fault) {
+        if (!std::exchange(failed_, true)) {
+            disk_.set_trouble(why.message); // reports only the first error of a round
+        }
+    } else if (fault->kind == RunFault::Kind::Damaged) {
+        give_up(run, why);
+    } else {
+        if (!run.fault) {
+            const std::string world = run_file::world_of(run.path);
+            log::error({.world = world},
+                       "{}; commands of the world \"{}\" are refused until the file can be written again", why.message,
+                       world);
+        }
+        run.fault = fault;
+        run.retry_at = std::chrono::steady_clock::now() + retry_after_;
+        run.retry_is_due = false;
     }
     return false;
+}
+
+void StorageWorker::give_up(RunLog& run, const base::Refusal& why) {
+    while (run.log_copy.running) { // the simulation thread may rename the file as soon as the fault is reported
+        jobs_.apply_results(runs_, true);
+    }
+    run.file.reset();
+    run.fault = RunFault{.kind = RunFault::Kind::Damaged, .why = why};
+    (void)log_lost_records(run);
+    keep_old_run(run);
+    report_faults(); // before the refusals, so that a client that has received one finds the world damaged
+    refuse_records_of_damaged(run);
+    lost_ |= run.closing && run.closing->renamed.empty();
+    if (run.closing) {
+        (void)end_damaged(run);
+    }
+}
+
+void StorageWorker::keep_old_run(RunLog& replacement) {
+    const auto old = replacement.creation && replacement.creation->replaces
+                         ? runs_.find(*replacement.creation->replaces)
+                         : runs_.end();
+    if (old == runs_.end() || !old->second.closing || !old->second.closing->replaced) {
+        return;
+    }
+    Closing& closing = *old->second.closing;
+    refuse(closing.last, replacement.fault->why);
+    closing = Closing{.last = {}, .renamed = {}};
+    closing.last.emplace_back();
+    (void)write_records(old->second);
+}
+
+bool StorageWorker::end_damaged(RunLog& run) {
+    if (!run.closing || run.closing->replaced) {
+        return false;
+    }
+    Closing& closing = *run.closing;
+    const std::string name_now = run.creation ? run_file::DataFolder::next_file_of(run.path) : run.path;
+    std::error_code error;
+    if (closing.renamed.empty()) {
+        refuse(closing.last, run.fault->why);
+    } else if (std::filesystem::exists(name_now, error)) {
+        if (const auto renamed = run_file::rename_run_file(name_now, closing.renamed); !renamed) {
+            if (!std::exchange(failed_, true)) {
+                disk_.set_trouble(renamed.error().message);
+            }
+            return false;
+        }
+    }
+    closing.finished = true;
+    advanced_ = true;
+    report_written(closing.last); // the world is deleted, although its file has no end mark
+    return true;
+}
+
+bool StorageWorker::waits_for_its_file(const RunLog& run) const {
+    return run.fault && !run.is_damaged() && !run.retry_is_due;
+}
+
+void StorageWorker::recovered(RunLog& run) {
+    if (run.fault) {
+        run.fault.reset();
+        const std::string world = run_file::world_of(run.path);
+        log::info({.world = world}, "the run file of the world \"{}\" can be written again", world);
+    }
+}
+
+void StorageWorker::report_faults() {
+    RunFaults faults;
+    for (const auto& [number, run] : runs_) {
+        if (run.fault) {
+            faults.emplace(number, *run.fault);
+        }
+    }
+    disk_.set_faults(std::move(faults));
+}
+
+std::optional<std::chrono::steady_clock::time_point> StorageWorker::next_retry() const {
+    std::optional<std::chrono::steady_clock::time_point> next;
+    for (const auto& [number, run] : runs_) {
+        if (run.fault && !run.is_damaged()) {
+            next = next ? std::min(*next, run.retry_at) : run.retry_at;
+        }
+    }
+    return next;
 }
 
 bool StorageWorker::log_lost_records() const {
     bool lost_any = false;
     for (const auto& [number, run] : runs_) {
-        std::size_t bytes = 0, commands = 0, generations = 0;
-        const auto count = [&](const std::vector<WaitingRecord>& records) {
-            for (const WaitingRecord& waiting : records) {
-                bytes += waiting.bytes;
-                commands += waiting.record && std::holds_alternative<run_file::JournalEntry>(*waiting.record);
-                generations += waiting.record && std::holds_alternative<run_file::GenerationEnded>(*waiting.record);
-            }
-        };
-        count(run.waiting);
-        if (run.closing && !run.closing->marked) {
-            count(run.closing->last);
-        }
-        if (bytes == 0) {
-            continue;
-        }
-        lost_any = true;
-        const std::string world = std::filesystem::path{run.path}.stem().string();
-        const std::string lost =
-            fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
-                        "and the last tick",
-                        bytes, generations, commands);
-        if (run.name.is_lost()) {
-            log::error({.world = world},
-                       "world \"{}\": {}. Its file, {}, has been moved or deleted: move it back, or restore a copy",
-                       world, lost, run.path);
-        } else if (run.creation) {
-            log::error({.world = world}, "world \"{}\": {}. {} was not created, and no client received a success reply",
-                       world, lost, run.path);
-        } else {
-            log::error({.world = world},
-                       "world \"{}\": {}. {} contains every acknowledged command: when the disk can be written again, "
-                       "restart the server to continue the world from that point",
-                       world, lost, run.path);
-        }
+        lost_any |= log_lost_records(run);
     }
     return !lost_any;
+}
+
+bool StorageWorker::log_lost_records(const RunLog& run) const {
+    std::size_t bytes = 0, commands = 0, generations = 0;
+    const auto count = [&](const std::vector<WaitingRecord>& records) {
+        for (const WaitingRecord& waiting : records) {
+            bytes += waiting.bytes;
+            commands += waiting.record && std::holds_alternative<run_file::JournalEntry>(*waiting.record);
+            generations += waiting.record && std::holds_alternative<run_file::GenerationEnded>(*waiting.record);
+        }
+    };
+    count(run.waiting);
+    if (run.closing && !run.closing->marked) {
+        count(run.closing->last);
+    }
+    if (bytes == 0) {
+        return false;
+    }
+    const std::string world = std::filesystem::path{run.path}.stem().string();
+    const std::string lost = fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
+                                         "and the last tick",
+                                         bytes, generations, commands);
+    if (run.is_damaged()) {
+        log::error({.world = world}, "world \"{}\": {}. The reason is: {}", world, lost, run.fault->why.message);
+    } else if (run.fault || run.name.is_lost()) {
+        log::error({.world = world},
+                   "world \"{}\": {}. Its file, {}, has been moved or deleted: move it back, or restore a copy", world,
+                   lost, run.path);
+    } else if (run.creation) {
+        log::error({.world = world}, "world \"{}\": {}. {} was not created, and no client received a success reply",
+                   world, lost, run.path);
+    } else {
+        log::error({.world = world},
+                   "world \"{}\": {}. {} contains every acknowledged command: when the disk can be written again, "
+                   "restart the server to continue the world from that point",
+                   world, lost, run.path);
+    }
+    return true;
 }
 
 } // namespace evod::recording

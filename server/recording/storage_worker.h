@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,19 +43,35 @@ class StorageWorker {
     /// order of their creation. A run may begin when all earlier runs have ended. If it replaces the last of them, it
     /// may begin when the file of that run has its final name. Writes the earlier runs first. Returns false if one
     /// of them still uses the name.
-    bool is_its_turn(const RunLog& run);
+    bool is_its_turn(RunLog& run);
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
     bool rename_to_final_name(RunLog& run);
     bool end(RunLog& run);
+    /// Ends a run whose file is damaged. A deleted world's file gets its final name, so that the name of the world is free.
+    bool end_damaged(RunLog& run);
     /// Does one background step for one run; the runs take turns. Returns whether there was any work.
     bool background_step();
     bool background_step(RunLog& run);
 
     /// Calls the `done` of each record and frees the memory of the records. They must be on the disk.
     void report_written(std::vector<WaitingRecord>& records);
-    bool fail(const base::Refusal& why);
+    /// Frees the memory of the records and calls their `refused`. They will not be written.
+    void refuse(std::vector<WaitingRecord>& records, const base::Refusal& why);
+    void refuse_records_of_damaged(RunLog& run);
+    /// Handles a failed write of a run's file. Returns false.
+    bool fail(RunLog& run, const base::Refusal& why);
+    void give_up(RunLog& run, const base::Refusal& why);
+    /// Keeps the old run of a world, because the file of the run that should replace it cannot be created.
+    void keep_old_run(RunLog& replacement);
+    /// Whether the run must not be tried now.
+    bool waits_for_its_file(const RunLog& run) const;
+    void recovered(RunLog& run);
+    void report_faults();
+    /// The time at which the next displaced file must be tried again; nullopt: no file is displaced.
+    std::optional<std::chrono::steady_clock::time_point> next_retry() const;
     /// Logs for each run how much could not be written. Returns false if anything could not be written.
     bool log_lost_records() const;
+    bool log_lost_records(const RunLog& run) const;
 
     RecordQueue& queue_;
     DiskState& disk_;
@@ -65,6 +82,7 @@ class StorageWorker {
     RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
     bool failed_ = false;                              // a write has failed in this round
     bool advanced_ = false;                            // something has been written in this round
+    bool lost_ = false; // the last records of a run were lost, because its file is damaged
 };
 
 } // namespace evod::recording

@@ -17,6 +17,8 @@ using Record = run_file::RunFile::Record;
 
 /// A function that the storage thread calls once the record is on the disk.
 using Done = std::function<void()>;
+/// A function that the storage thread calls instead of Done, if the file is damaged: the record will never be on the disk.
+using Refused = std::function<void(const base::Refusal& why)>;
 
 /// The progress of a checkpoint. The storage thread and the recorder share it.
 struct CheckpointWriting {
@@ -28,6 +30,7 @@ struct CheckpointWriting {
 struct WaitingRecord {
     std::optional<Record> record; // nullopt: only `done` waits
     Done done = {};
+    Refused refused = {};
     std::shared_ptr<CheckpointWriting> writing = {}; // only for a checkpoint
     std::size_t bytes = 0;
     std::chrono::steady_clock::time_point handed_over = {}; // time of the hand-over, only for a record with `done`

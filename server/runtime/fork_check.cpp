@@ -2,7 +2,6 @@
 
 #include "server/base/inline_executor.h"
 #include "server/log/log.h"
-#include "server/protocol/answers.h"
 #include "server/replay/recovery.h"
 
 #include <chrono>
@@ -40,29 +39,24 @@ base::Result<void> check_file(const std::vector<std::string>& paths, const simul
     return checked;
 }
 
-CommandDone refused(CommandDone done, const std::string& why) {
-    const simulation::Laboratory no_worlds; // a refusal reads none
-    done.outcome = base::refusal(base::RefusalCode::DataLoss,
-                                 "the fork was created, but its run file cannot be read back: " + why +
-                                     "; delete the fork, and report this error");
-    done.frame = protocol::frame_of(
-        protocol::answer_of(done.mail.origin.request_id, done.mail.request_name, no_worlds, done.outcome));
-    done.event.reset();
-    return done;
+base::Refusal unreadable_fork(const std::string& why) {
+    return base::refusal(base::RefusalCode::DataLoss, "the fork was created, but its run file cannot be read back: " +
+                                                          why + "; delete the fork, and report this error");
 }
 
 } // namespace
 
 recording::Done ForkCheck::read_back(std::vector<std::string> paths, const simulation::RunId& run_id,
-                                     const base::StateHash& hash, CommandDone done, std::function<void(Reply)> reply) {
-    return [jobs = jobs_, paths = std::move(paths), run_id, hash,
-            waiting = std::make_shared<CommandDone>(std::move(done)), reply = std::move(reply)] {
+                                     const base::StateHash& hash, std::shared_ptr<CommandDone> done,
+                                     std::function<void(Reply)> reply) {
+    return [jobs = jobs_, paths = std::move(paths), run_id, hash, waiting = std::move(done), reply = std::move(reply)] {
         jobs->add([=](const std::stop_token&) {
             const auto checked = check_file(paths, run_id, hash);
             if (!checked) {
                 log::error({.world = waiting->outcome->world}, "{}", checked.error().message);
             }
-            reply(checked ? std::move(*waiting) : refused(std::move(*waiting), checked.error().message));
+            reply(checked ? std::move(*waiting)
+                          : refused(std::move(*waiting), unreadable_fork(checked.error().message)));
         });
     };
 }

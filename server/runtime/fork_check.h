@@ -26,7 +26,8 @@ class ForkCheck {
     /// hash    state hash of the fork at its beginning.
     /// reply   any thread may call it.
     recording::Done read_back(std::vector<std::string> paths, const simulation::RunId& run_id,
-                              const base::StateHash& hash, CommandDone done, std::function<void(Reply)> reply);
+                              const base::StateHash& hash, std::shared_ptr<CommandDone> done,
+                              std::function<void(Reply)> reply);
 
   private:
     std::shared_ptr<jobs::JobQueue> jobs_ = std::make_shared<jobs::JobQueue>(jobs::JobQueue::Options{"fork check"});

@@ -45,6 +45,8 @@ class Replays {
     /// Makes requests that wait for the disk continue with the present file. Called when nothing can be written to the
     /// disk.
     void stop_waiting() { reader_.stop_waiting(); }
+    /// Does the same for the requests that wait for one world, whose run file cannot be written.
+    void stop_waiting(const std::string& world) { reader_.stop_waiting(world); }
 
   private:
     void open(const OpenReplay& request, const ReplayMail& mail);

@@ -47,6 +47,10 @@ struct RunFound {
     base::Result<FoundRun> run;
 };
 
+/// Turns the answer to an applied command into a refusal. The command has changed the world but was not recorded, or the
+/// record cannot be read.
+CommandDone refused(CommandDone done, base::Refusal why);
+
 using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound>;
 
 } // namespace evod::runtime

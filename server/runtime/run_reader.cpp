@@ -1,6 +1,7 @@
 #include "server/runtime/run_reader.h"
 
 #include <utility>
+#include <vector>
 
 namespace evod::runtime {
 
@@ -10,18 +11,33 @@ void RunReader::once_written(const std::string& world, std::function<void(bool)>
         return then(false); // nothing more will be written, so the caller reads the file in its present state
     }
     const std::uint64_t number = ++last_waiting_;
-    waiting_.emplace(number, std::move(then));
-    recorder->once_written([this, number] {
-        mailbox_.push(CallMail{[this, number] {
+    waiting_.emplace(number, Waiting{world, std::move(then)});
+    const auto done = [this, number](bool all_is_written) {
+        mailbox_.push(CallMail{[this, number, all_is_written] {
             if (auto waited = waiting_.extract(number)) {
-                waited.mapped()(true);
+                waited.mapped().then(all_is_written);
             }
         }});
-    });
+    };
+    recorder->once_written([done] { done(true); }, [done](const base::Refusal&) { done(false); });
 }
 
 void RunReader::stop_waiting() {
-    for (const auto& [number, then] : std::exchange(waiting_, {})) {
+    for (const auto& [number, waiting] : std::exchange(waiting_, {})) {
+        waiting.then(false);
+    }
+}
+
+void RunReader::stop_waiting(const std::string& world) {
+    std::vector<std::function<void(bool)>> stopped;
+    std::erase_if(waiting_, [&](auto& item) {
+        if (item.second.world != world) {
+            return false;
+        }
+        stopped.push_back(std::move(item.second.then));
+        return true;
+    });
+    for (const auto& then : stopped) {
         then(false);
     }
 }

@@ -1,16 +1,12 @@
 #include "server/runtime/simulation_loop.h"
 
 #include "server/base/overloaded.h"
-#include "server/base/within_memory.h"
 #include "server/log/log.h"
-#include "server/protocol/answers.h"
-#include "server/protocol/events.h"
 #include "server/protocol/queries.h"
 
 #include <algorithm>
 #include <memory>
 #include <numeric>
-#include <type_traits>
 #include <utility>
 
 namespace evod::runtime {
@@ -27,23 +23,6 @@ std::uint64_t ticks_in(Clock::duration time, Clock::duration tick, std::int64_t 
     return static_cast<std::uint64_t>(tick.count() > 0 ? std::clamp<std::int64_t>(time / tick, 1, most) : 1);
 }
 
-/// The effect of a command on the run of its world.
-enum class RunEffect { Begins, BeginsAsFork, BeginsAgain, Ends, Continues };
-
-RunEffect effect_of(const simulation::Command& command) {
-    return std::visit(base::Overloaded{[](const simulation::CreateWorld&) { return RunEffect::Begins; },
-                                       [](const simulation::ForkWorld&) { return RunEffect::BeginsAsFork; },
-                                       [](const simulation::ResetWorld&) { return RunEffect::BeginsAgain; },
-                                       [](const simulation::DeleteWorld&) { return RunEffect::Ends; },
-                                       [](const auto&) { return RunEffect::Continues; }},
-                      command);
-}
-
-bool changes_something(const simulation::Command& command) {
-    const auto* set = std::get_if<simulation::SetParameters>(&command);
-    return set == nullptr || !set->dry_run;
-}
-
 } // namespace
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
@@ -57,7 +36,8 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
     , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply}
-    , builds_{mailbox, executor} {
+    , builds_{mailbox, executor}
+    , file_faults_{laboratory_, recorder, replays_, builds_} {
     if (recorder_) {
         laboratory_.set_storage({});
     }
@@ -69,6 +49,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
     poll_storage();
+    poll_run_files();
     poll_mailbox();
     answer_queries();
     poll_demand();
@@ -237,264 +218,6 @@ bool SimulationLoop::is_work_due(Clock::time_point now) const {
            });
 }
 
-void SimulationLoop::apply(CommandMail& mail) {
-    if (waits_for_a_build(mail.command)) {
-        return kept_.push_back(std::move(mail));
-    }
-    // From here on the command names its world explicitly, so that a rerun of the journal finds the same world.
-    std::visit(
-        [this](auto& command) {
-            if constexpr (requires { command.world; }) {
-                if (command.world.empty()) {
-                    if (const auto entry = std::as_const(laboratory_).find("")) {
-                        command.world = (*entry)->name;
-                    } else if (const auto* damaged = laboratory_.find_damaged("")) {
-                        command.world = damaged->name;
-                    }
-                }
-            }
-        },
-        mail.command);
-    const auto before = run_of(mail.command);
-    if (auto refused = refusal_of(mail.command)) {
-        return answer(mail, *refused, before);
-    }
-    if (const auto* fork = std::get_if<simulation::ForkWorld>(&mail.command); fork && fork->at_generation) {
-        return fork_at_generation(mail, before);
-    }
-    std::visit(
-        [&]<class C>(const C& command) {
-            if constexpr (requires { laboratory_.construction(command); }) {
-                construct<C>(mail, before, laboratory_.construction(command));
-            } else {
-                answer(mail, apply(mail.command), before);
-            }
-        },
-        mail.command);
-}
-
-bool SimulationLoop::waits_for_a_build(const simulation::Command& command) const {
-    return std::visit(
-        [this](const auto& c) {
-            bool waits = false;
-            if constexpr (requires { c.world; }) {
-                waits |= builds_.holds(c.world);
-            }
-            if constexpr (requires { c.name; }) {
-                waits |= builds_.holds(c.name);
-            }
-            return waits;
-        },
-        command);
-}
-
-void SimulationLoop::take(const WorldBuilt& built) {
-    builds_.take(built);
-    for (CommandMail& command : std::exchange(kept_, {})) {
-        apply(command); // keeps it again if its world is still not free
-    }
-}
-
-const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Command& command) const {
-    return std::visit(
-        [this](const auto& c) -> const simulation::Entry* {
-            if constexpr (requires { c.world; }) {
-                if (const auto entry = laboratory_.find(c.world)) {
-                    return *entry;
-                }
-            }
-            return nullptr;
-        },
-        command);
-}
-
-std::optional<SimulationLoop::RunBefore> SimulationLoop::run_of(const simulation::Command& command) const {
-    const simulation::Entry* entry = entry_of_command(command);
-    return entry ? std::optional{RunBefore{entry->run_id, entry->world.moment().tick}} : std::nullopt;
-}
-
-std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Command& command) const {
-    if (!recorder_ || !changes_something(command)) {
-        return std::nullopt;
-    }
-    const simulation::Entry* entry = entry_of_command(command);
-    const bool only_a_look =
-        entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // replays are not journaled
-    if (only_a_look) {
-        return std::nullopt;
-    }
-    if (auto refused = recorder_->refusal()) {
-        return refused;
-    }
-    const auto* created = std::get_if<simulation::CreateWorld>(&command);
-    const auto* forked = std::get_if<simulation::ForkWorld>(&command);
-    const std::string* name = created ? &created->name : forked ? &forked->name : nullptr;
-    // The laboratory refuses the name of a damaged world.
-    return name && !laboratory_.find_damaged(*name) ? recorder_->refusal_of_place(*name) : std::nullopt;
-}
-
-base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
-    if (const auto* deleted = std::get_if<simulation::DeleteWorld>(&command);
-        deleted && recorder_ && laboratory_.find_damaged(deleted->world)) {
-        if (auto moved = recorder_->move_aside(deleted->world); !moved) {
-            return moved.error();
-        }
-    }
-    return laboratory_.apply(command);
-}
-
-template <class C>
-void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>& before,
-                               base::Result<simulation::Construction> construction) {
-    if (!construction) {
-        return answer(mail, construction.error(), before);
-    }
-    constexpr bool is_fork = std::is_same_v<C, simulation::ForkWorld>;
-    const C command = std::get<C>(mail.command);
-    WorldBuilds::Order order{.construction = *std::move(construction)};
-    bool at_its_opening = false;
-    if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
-        order.name = command.world;
-    } else {
-        order.name = command.name;
-    }
-    if constexpr (is_fork) {
-        at_its_opening = command.at_generation.has_value();
-        const simulation::World* read = std::exchange(order.construction.reads, nullptr);
-        if (read != nullptr && (*laboratory_.find(command.world))->replay) {
-            // Requests for replays do not wait for builds, so a replay is copied at once.
-            auto copy = base::within_memory([&]() -> base::Result<std::shared_ptr<simulation::World>> {
-                return std::make_shared<simulation::World>(order.construction.construct(executor_));
-            });
-            if (!copy) {
-                return answer(mail, copy.error(), before);
-            }
-            order.construction.construct = [copy = *copy](base::Executor&) { return std::move(*copy); };
-        } else if (read != nullptr) {
-            order.original = command.world;
-        }
-    }
-    order.finish = [name = order.name, run_id = command.run_id, is_recorded = recorder_ != nullptr, before,
-                    at_its_opening](simulation::World world, base::Executor& workers) {
-        if (at_its_opening) {
-            world = world.at_its_opening(workers);
-        }
-        if constexpr (is_fork) {
-            world.become_fork();
-        }
-        BuiltWorld built{std::move(world), {}};
-        if (is_recorded) {
-            built.beginning = is_fork ? run_file::beginning_of_fork(built.world, name, run_id, before->run_id, workers)
-                                      : run_file::beginning_of_run(built.world, name, run_id);
-        }
-        return built;
-    };
-    order.adopt = [this, waiting = std::make_shared<CommandMail>(std::move(mail)), command,
-                   before](base::Result<BuiltWorld> built) {
-        if (!built) {
-            return answer(*waiting, built.error(), before);
-        }
-        const auto applied = base::within_memory([&] { return laboratory_.adopt(command, std::move(built->world)); });
-        answer(*waiting, applied, before, std::move(built->beginning));
-    };
-    builds_.begin(std::move(order));
-}
-
-void SimulationLoop::fork_at_generation(CommandMail& mail, const std::optional<RunBefore>& before) {
-    const auto& command = std::get<simulation::ForkWorld>(mail.command);
-    const simulation::Entry* original = entry_of_command(command);
-    const std::uint64_t generation = *command.at_generation;
-    if (!original || generation == original->world.moment().generation) {
-        return construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
-    }
-    // The seek runs in slices, so that the thread can serve other clients meanwhile.
-    const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    replays_.seek_for_fork(original->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
-        if (arrival) {
-            const auto there = std::make_shared<simulation::World>(std::move(arrival->rerun).take());
-            return construct<simulation::ForkWorld>(
-                *waiting, before,
-                simulation::Construction{.construct = [there](base::Executor&) { return std::move(*there); },
-                                         .genes = simulation::genes_of(there->parameters().active)});
-        }
-        base::Refusal why = arrival.error();
-        for (base::Violation& violation : why.violations) {
-            violation.field = "at_" + violation.field;
-        }
-        answer(*waiting, why, before);
-    });
-}
-
-void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
-                            const std::optional<RunBefore>& before, std::optional<run_file::RunBeginning> beginning) {
-    publish_events();
-    if (applied) {
-        if (const auto track = tracks_.find(applied->world); track != tracks_.end()) {
-            track->second.changed = true;
-        }
-    }
-    CommandDone done = done_of(std::move(mail), applied);
-    const bool deleted_damaged_world = applied && !before && effect_of(done.mail.command) == RunEffect::Ends;
-    if (deleted_damaged_world) {
-        count_damaged_worlds();
-    }
-    if (recorder_ && applied && changes_something(done.mail.command) && !deleted_damaged_world) {
-        record(std::move(done), before, std::move(beginning));
-    } else {
-        outputs_.reply(std::move(done));
-    }
-}
-
-CommandDone SimulationLoop::done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const {
-    CommandDone done{.mail = std::move(mail), .outcome = applied, .frame = {}};
-    done.frame = protocol::frame_of(
-        protocol::answer_of(done.mail.origin.request_id, done.mail.request_name, laboratory_, applied));
-    if (!applied) {
-        return done;
-    }
-    if (const auto entry = laboratory_.find(applied->world); entry && (*entry)->control.leased) {
-        done.lease = (*entry)->control.lease;
-    }
-    if (demand_.events_wanted()) {
-        done.event = protocol::event_of(done.mail.command, *applied, done.mail.origin.client, laboratory_);
-    }
-    return done;
-}
-
-void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& before,
-                            std::optional<run_file::RunBeginning> beginning) {
-    const simulation::Applied applied = *done.outcome;
-    const RunEffect effect = effect_of(done.mail.command);
-    const auto entry = std::as_const(laboratory_).find(applied.world);
-    if (entry && (*entry)->replay) {
-        return outputs_.reply(std::move(done)); // commands to replays are not stored in the journal
-    }
-    recording::CommandRecord record{.tick = applied.tick,
-                                    .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
-                                    .origin = done.mail.origin,
-                                    .answer = done.frame};
-    // After the command was written to the disk, the storage thread passes it on.
-    if (effect == RunEffect::BeginsAsFork) {
-        const simulation::Entry& fork = **entry;
-        record.done = fork_check_.read_back(recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash(),
-                                            std::move(done), outputs_.reply);
-    } else {
-        record.done = [reply = outputs_.reply, done = std::move(done)]() mutable { reply(std::move(done)); };
-    }
-    switch (effect) {
-    case RunEffect::Begins:
-    case RunEffect::BeginsAsFork:
-        return recorder_->begin(*std::move(beginning), std::move(record));
-    case RunEffect::BeginsAgain:
-        return recorder_->begin_after_reset(*std::move(beginning), before->run_id, before->tick, std::move(record));
-    case RunEffect::Ends:
-        return recorder_->end(applied.world, before->run_id, std::move(record));
-    case RunEffect::Continues:
-        recorder_->of(applied.world)->journal(std::move(record));
-        return recorder_->of(applied.world)->follow((*entry)->world); // fitness may have ended a generation
-    }
-}
-
 void SimulationLoop::close() {
     poll_mailbox();
     while (builds_.holds("")) {
@@ -551,6 +274,20 @@ void SimulationLoop::poll_storage() {
     }
     laboratory_.set_storage(now);
     outputs_.storage(now);
+}
+
+void SimulationLoop::poll_run_files() {
+    const FileFaults::Changes changes = file_faults_.poll();
+    if (!changes.damaged.empty()) {
+        count_damaged_worlds();
+        follow_worlds();
+    }
+    for (const simulation::DamagedWorld& world : changes.damaged) {
+        outputs_.damaged(world);
+    }
+    for (const auto& [world, storage] : changes.storage) {
+        outputs_.storage_of_world(world, storage);
+    }
 }
 
 void SimulationLoop::follow_worlds() {

@@ -20,6 +20,7 @@
 #include "server/recording/recorder.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
+#include "server/runtime/file_faults.h"
 #include "server/runtime/fork_check.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
@@ -47,6 +48,10 @@ struct LoopOutputs {
     std::function<void(Reply)> reply = [](Reply) {};
     /// Receives a new state of the disk.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
+    /// Receives a new state of the disk for one world, whose run file was moved or deleted, or is back.
+    std::function<void(const std::string& world, const simulation::Storage&)> storage_of_world = [](auto&&...) {};
+    /// Receives a world that has stopped, because its run file is damaged.
+    std::function<void(const simulation::DamagedWorld&)> damaged = [](const simulation::DamagedWorld&) {};
     /// The metrics of each live world. Must outlive the loop; nullptr: no metrics.
     metrics::Worlds* counted = nullptr;
 };
@@ -146,9 +151,11 @@ class SimulationLoop {
     void announce_moved_replays();
     void poll_demand();
     void poll_storage();
+    /// Stops the worlds whose run files are damaged, and lets those wait whose run files were moved or deleted.
+    void poll_run_files();
     /// Whether the world must wait for the disk or for a build.
     bool has_to_wait(const simulation::Entry& entry) const {
-        return (worlds_wait_ && !entry.replay) || builds_.holds(entry.name);
+        return (!entry.replay && (worlds_wait_ || file_faults_.is_displaced(entry.name))) || builds_.holds(entry.name);
     }
     void follow_worlds();
     /// Passes the names of the damaged worlds to the metrics. Must be called when they have changed.
@@ -179,6 +186,7 @@ class SimulationLoop {
     Replays replays_;
     ForkCheck fork_check_;
     WorldBuilds builds_;
+    FileFaults file_faults_;
     std::vector<CommandMail> kept_; // commands to worlds that builds hold, in order of arrival
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;

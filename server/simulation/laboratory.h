@@ -84,7 +84,7 @@ struct Entry {
     bool wants_tick() const;
 };
 
-/// A world that does not run, because it cannot be restored from its run file. It keeps its name, and counts as a world.
+/// A world that does not run, because it cannot be restored from its run file, or because this file is damaged. It keeps its name, and counts as a world.
 struct DamagedWorld {
     std::string name;
     std::optional<RunId> run_id; // nullopt: the file cannot be read at all
@@ -139,12 +139,17 @@ class Laboratory {
 
     /// Adds a world that was created elsewhere; its name must be unused.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
-    /// Removes a world that was added by adopt().
+    /// Removes a world.
     void dismiss(std::string_view name) {
         std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
     }
     /// Adds a damaged world; its name must be unused.
     void adopt(DamagedWorld world) { damaged_.push_back(std::move(world)); }
+    /// Stops a live world whose run file is damaged: it becomes a damaged world, which keeps its name.
+    void replace_with_damaged(DamagedWorld world) {
+        dismiss(world.name);
+        adopt(std::move(world));
+    }
 
     /// Sets the storage state of all live worlds, including those created later. The simulation loop calls it, so that
     /// clients can read the state.

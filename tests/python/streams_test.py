@@ -1,9 +1,15 @@
 """The streams of a world: generations, snapshots and events, also while another client changes the world."""
+import contextlib
+import pathlib
+import tempfile
+import threading
 import unittest
 
 import evod
+import support
+import waiting
 from evod.core import UNACKNOWLEDGED_MAX
-from evod.v1 import world_pb2
+from evod.v1 import commands_pb2 as c, world_pb2
 
 
 def numbers(run):
@@ -99,6 +105,46 @@ class Generations(unittest.TestCase):
         kinds = [event.WhichOneof("kind") for _, event in zip(range(4), everything)]
         # The first run_control_changed is the speed of the new world, which is that of evod.local().
         self.assertEqual(kinds, ["world_created", "run_control_changed", "run_control_changed", "world_deleted"])
+
+
+class Damage(unittest.TestCase):
+    def test_everything_that_waits_ends_with_the_reason(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        server = support.Server("--data", folder.name)
+        self.addCleanup(server.kill)
+        lab = evod.connect(f"127.0.0.1:{server.port}")
+        self.addCleanup(lab.close)
+        parameters = {"population_size": 12, "generation_s": 2}
+        world = lab.create_world("a", parameters, seed=7, speed="max")
+        other = lab.create_world("b", parameters, seed=7, speed="max")
+        run, snapshots = world.run(), world.snapshots(10)
+        next(run)
+        next(snapshots)
+        ends = []
+
+        def end_of(wait):
+            with contextlib.suppress(StopIteration):
+                try:
+                    while True:
+                        wait()
+                except evod.FailedPrecondition as error:
+                    ends.append(error)
+
+        threads = [threading.Thread(target=end_of, args=(wait,)) for wait in (run.__next__, snapshots.__next__, world.wait)]
+        for thread in threads:
+            thread.start()
+        path = pathlib.Path(folder.name, "a.evod")
+        for file in (path, pathlib.Path(f"{path}-wal"), pathlib.Path(f"{path}-shm")):
+            with open(file, "r+b") as damaged:
+                damaged.write(b"x" * file.stat().st_size)
+        waiting.until(lambda: not any(thread.is_alive() for thread in threads), "the ends")
+        self.assertEqual(len(ends), 3)
+        reason = lab.damaged_worlds()[0].reason
+        for error in ends:
+            self.assertIn("does not run: " + reason, str(error))
+            self.assertEqual(error.reason, c.REASON_WORLD_DAMAGED)
+        self.assertEqual(other.run(2).wait().number, 2)
 
 
 if __name__ == "__main__":

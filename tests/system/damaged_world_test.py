@@ -3,6 +3,7 @@ message classes."""
 import contextlib
 import pathlib
 import sqlite3
+import subprocess
 import unittest
 import urllib.request
 
@@ -134,6 +135,44 @@ class DamagedWorld(past.Case):
         server.end()
         _, client = self.serve()
         self.assertEqual(sorted(self.damaged(client)), ["b"])
+
+    def test_damage_while_it_runs_stops_only_this_world(self):
+        server, client = self.serve("--seed", "1", "--http-port", "0")
+        for name in ("a", "b"):
+            client.call(create_world=c.CreateWorld(name=name, seed=3, parameters=plain.assignments(**past.CREATE)))
+            client.run_to(300, name)
+        evoctl = [EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "a"]
+        waits = [subprocess.Popen([*evoctl, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                 for words in (("run", "--wait"), ("watch",), ("until", "1000000", "--wait"))]
+        for process in waits:
+            self.addCleanup(process.stderr.close)
+            self.addCleanup(process.wait)
+            self.addCleanup(process.kill)
+        listens, views = self.client(server), self.client(server)
+        listens.call(subscribe_events=c.SubscribeEvents())
+        views.call(subscribe_snapshots=c.SubscribeSnapshots(world="a", rate_hz=10))
+        plain.until(lambda: client.world("a").tick > 400, "a runs")
+        path = pathlib.Path(self.folder, "a.evod")
+        for file in (path, pathlib.Path(f"{path}-wal"), pathlib.Path(f"{path}-shm")):
+            with open(file, "r+b") as damaged:
+                damaged.write(b"x" * file.stat().st_size)
+        for process in waits:
+            _, said = waiting.communicate(process)
+            self.assertRegex(said, r"(?s)does not run: .*a\.evod is damaged.*; deleting the world moves the file away")
+            self.assertEqual(process.returncode, 1)
+        for session in listens, views:
+            event = session.next_event("world_damaged")
+            self.assertEqual(event.world, "a")
+            self.assertIn("a.evod is damaged", event.world_damaged.reason)
+        status = client.call(FAILED_PRECONDITION, run=c.Run(world="a")).status
+        self.assertEqual(status.reason, c.REASON_WORLD_DAMAGED)
+        damaged = self.damaged(client)
+        self.assertEqual(list(damaged), ["a"])
+        self.assertEqual(status.message, "the world does not run: " + damaged["a"].reason)
+        client.run_to(600, "b")
+        server.end()
+        server, client = self.serve()
+        self.assertEqual((list(self.damaged(client)), client.world("b").tick), (["a"], 600))
 
 
 if __name__ == "__main__":

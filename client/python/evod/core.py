@@ -21,7 +21,7 @@ from typing import Any, Iterator
 import google.protobuf.message
 
 from evod import framing, snapshot_decoder
-from evod.errors import DamagedData, Error, InvalidArgument, NoConnection, Unauthenticated, refusal
+from evod.errors import DamagedData, Error, InvalidArgument, NoConnection, Unauthenticated, damaged_world, refusal
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
 from evod.version import __version__
@@ -361,6 +361,7 @@ class Core:
             self.request(commands_pb2.Request(unsubscribe=commands_pb2.Unsubscribe(subscription_id=server_id)))
 
     def _take_event(self, event: stream_pb2.Event) -> None:
+        damaged = event.HasField("world_damaged")
         for server_id, known in list(self._of_server_id.items()):
             subscription = known()
             if subscription is None:
@@ -369,6 +370,8 @@ class Core:
                 all_worlds = not subscription.request.subscribe_events.HasField("world")
                 if all_worlds or event.world in ("", subscription.world):
                     subscription.add_event(event)
+            elif damaged and event.world == subscription.world:
+                subscription.refused = damaged_world(event)  # it receives no further snapshots
 
     def _take_snapshot(self, message: stream_pb2.SnapshotFrame) -> None:
         server_id = message.subscription_id

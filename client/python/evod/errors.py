@@ -23,7 +23,7 @@ from __future__ import annotations
 import re
 from typing import ClassVar, Iterable, NamedTuple, TypeVar
 
-from evod.v1 import commands_pb2
+from evod.v1 import commands_pb2, stream_pb2
 
 E = TypeVar("E", bound="Error")
 
@@ -216,6 +216,12 @@ def refusal(status: commands_pb2.Status) -> Error:
     error = _OF_CODE.get(status.code, Error)(message, violations, status.code)
     error.reason = status.reason
     return error
+
+
+def damaged_world(event: stream_pb2.Event) -> Error:
+    """Returns the error for a world that has stopped: the server's answer to every request that names the world."""
+    return refusal(commands_pb2.Status(code=commands_pb2.CODE_FAILED_PRECONDITION, reason=commands_pb2.REASON_WORLD_DAMAGED,
+                                       message="the world does not run: " + event.world_damaged.reason))
 
 
 def copy_of(error: E) -> E:

@@ -28,6 +28,7 @@ from evod.errors import (
     Violation,
     argument_of,
     copy_of,
+    damaged_world,
     refusal,
     wrong_argument,
 )
@@ -497,6 +498,9 @@ class GenerationStream:
         kind = event.WhichOneof("kind")
         if kind == "events_dropped":
             yield from self._catch_up()
+        elif kind == "world_damaged":
+            self.close()
+            raise damaged_world(event)
         elif event.run_id != self.info.run_id:
             if kind in ("world_reset", "world_deleted") and self._began:
                 raise self._close_with_error(kind.removeprefix("world_"))
@@ -527,6 +531,9 @@ class GenerationStream:
             info = yield from world_info(self._world)
         except NotFound:
             raise self._close_with_error("deleted") from None
+        except FailedPrecondition:  # the world is damaged
+            self.close()
+            raise
         if info.run_id != self.info.run_id:
             raise self._close_with_error("reset")
         self._began = True

@@ -113,6 +113,7 @@ void WorldsPanel::process_events(const ViewedWorld& world) {
         case Kind::kWorldCreated:
         case Kind::kWorldReset:
         case Kind::kWorldDeleted:
+        case Kind::kWorldDamaged:
         case Kind::kEventsDropped:
             refresh();
             break;

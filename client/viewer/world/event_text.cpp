@@ -54,6 +54,8 @@ std::string event_text(const evod::v1::Event& event, bool several_islands) {
         return core::to_text(event.world_reset().by()) + " reset the world";
     case evod::v1::Event::kWorldDeleted:
         return core::to_text(event.world_deleted().by()) + " deleted the world " + event.world();
+    case evod::v1::Event::kWorldDamaged:
+        return "The world " + event.world() + " does not run: " + event.world_damaged().reason();
     case evod::v1::Event::kParametersChanged:
         return core::to_text(event.parameters_changed().by()) + " changed " +
                name_list(event.parameters_changed().changed(), name_of_item);

@@ -54,9 +54,10 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     if (!text.empty()) {
         server.notice(std::move(text));
     }
-    if (event.has_world_deleted() && of_this_world) {
+    if ((event.has_world_deleted() || event.has_world_damaged()) && of_this_world) {
         feed.control().forget();
-        show(event.world(), 0); // a world with this name may be created again
+        show(event.world(),
+             0); // a world with this name may be created again; for a damaged one the server sends the reason
     }
 }
 

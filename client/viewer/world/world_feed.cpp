@@ -165,7 +165,7 @@ void WorldFeed::take_events() {
 }
 
 void WorldFeed::apply(const evod::v1::Event& event) {
-    if (event.has_storage_changed()) {
+    if (event.has_storage_changed() && (event.world().empty() || event.world() == world_)) {
         const bool had_problem = !storage_text(storage_).empty();
         storage_ = event.storage_changed().storage();
         if (had_problem && storage_text(storage_).empty()) {

@@ -77,6 +77,7 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
         cases.insert(event_of(command, changed, by, laboratory)->kind_case());
     }
     cases.insert(event_of(simulation::Storage{}).kind_case());
+    cases.insert(event_of(simulation::DamagedWorld{}).kind_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
     // All but the two events that the network itself creates, and the two about fitness (ratings_test.cpp).
     EXPECT_EQ(static_cast<int>(cases.size()) + 4, v1::Event::descriptor()->oneof_decl(0)->field_count());
@@ -94,6 +95,15 @@ TEST(EventMessage, EveryStateOfTheDiskIsConverted) {
         EXPECT_EQ(event.storage_changed().storage().state(), message);
         EXPECT_EQ(event.storage_changed().storage().reason(), "it is full");
     }
+    EXPECT_EQ(event_of(simulation::Storage{}, "w").world(), "w") << "the event is about the file of one world";
+}
+
+TEST(EventMessage, ADamagedWorldIsReportedWithItsReason) {
+    const auto event =
+        event_of(simulation::DamagedWorld{.name = "w", .run_id = simulation::RunId{1, 2}, .reason = "bad"});
+    EXPECT_EQ(event.world(), "w");
+    EXPECT_EQ(event.run_id(), to_text(simulation::RunId{1, 2}));
+    EXPECT_EQ(event.world_damaged().reason(), "bad");
 }
 
 } // namespace

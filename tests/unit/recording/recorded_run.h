@@ -92,18 +92,20 @@ class RecordedRun {
 
     /// Resets the world; the new run has a file of its own.
     void reset(
-        base::Seed seed, const simulation::RunId& run_id, Done done = [] {}) {
+        base::Seed seed, const simulation::RunId& run_id, Done done = [] {}, Refused refused = {}) {
         const simulation::RunId before = entry().run_id;
         const std::uint64_t tick = world().moment().tick;
         v1::Request request;
         request.mutable_reset_world()->set_world("w");
         const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.begin_after_reset(beginning(), before, tick, record_of(request, *applied, std::move(done)));
+        CommandRecord record = record_of(request, *applied, std::move(done));
+        record.refused = std::move(refused);
+        recorder_.begin_after_reset(beginning(), before, tick, std::move(record));
     }
 
     void command(
-        v1::Request request, Done done = [] {}) {
+        v1::Request request, Done done = [] {}, Refused refused = {}) {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
@@ -111,7 +113,9 @@ class RecordedRun {
         }
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
+        CommandRecord record = record_of(request, *applied, std::move(done));
+        record.refused = std::move(refused);
+        recorder_.of("w")->journal(std::move(record));
         recorder_.of("w")->follow(world());
     }
 

@@ -83,9 +83,27 @@ TEST_F(StorageThreadTest, TheOldestWaitingRecordDeterminesTheAge) {
     fail_operation(0, Failure::Full);
 }
 
+/// The message of the fault of the only faulty run; empty: there is none.
+std::string fault_in(StorageThread& thread, RunFault::Kind kind) {
+    const RunFaults faults = thread.disk().faults();
+    return faults.size() == 1 && faults.begin()->second.kind == kind ? faults.begin()->second.why.message : "";
+}
+
+/// Overwrites a run file and its log in place, while the storage thread has them open.
+void overwrite(const std::string& path) {
+    for (const std::string& file : {path, path + "-wal", path + "-shm"}) {
+        std::error_code error;
+        const auto bytes = std::filesystem::file_size(file, error);
+        std::fstream{file, std::ios::in | std::ios::out | std::ios::binary} << std::string(error ? 0 : bytes, 'x');
+    }
+}
+
 TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
     StorageThread thread{{}, 1ms};
     RecordedRun run{data, thread};
+    TemporaryFolder other_folder;
+    DataFolder other_data = *DataFolder::open(other_folder.path());
+    RecordedRun other{other_data, thread};
     std::atomic<int> written = 0;
     double value = 0;
     const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++written; }); };
@@ -97,22 +115,122 @@ TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
         if (another) {
             std::ofstream{path} << "another file";
         }
-        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }, // the name is checked once a second
+        ASSERT_TRUE(wait_until([&] { return !thread.disk().faults().empty(); }, // the name is checked once a second
                                [&] {
                                    command();
                                    std::this_thread::sleep_for(10ms);
                                }));
-        EXPECT_THAT(*thread.disk().trouble(),
+        EXPECT_FALSE(thread.disk().trouble());
+        EXPECT_THAT(fault_in(thread, RunFault::Kind::Displaced),
                     testing::HasSubstr(
                         path + (another ? " is not the file that the server writes" : " has been moved or deleted")));
         const int at_trouble = written;
         command();
-        std::this_thread::sleep_for(20ms);
+        std::promise<void> other_written;
+        other.command(set_parameter("food_health", value), [&] { other_written.set_value(); });
+        other_written.get_future().wait();
         EXPECT_EQ(written, at_trouble) << "done is not called while the file is lost";
         std::filesystem::rename(away, path);
-        ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && !thread.disk().trouble(); }));
+        ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && thread.disk().faults().empty(); }));
     }
     EXPECT_EQ((*RunFile::open_read_only(path))->journal().read()->size(), static_cast<std::size_t>(value));
+}
+
+TEST_F(StorageThreadTest, ADamagedFileStopsOnlyItsRun) {
+    TemporaryFolder other_folder;
+    DataFolder other_data = *DataFolder::open(other_folder.path());
+    StorageThread thread{{}, 1ms};
+    RecordedRun run{data, thread};
+    RecordedRun other{other_data, thread};
+    std::promise<void> first, other_written;
+    run.command(set_parameter("food_health", 1.0), [&] { first.set_value(); });
+    first.get_future().wait();
+    const std::string path = data.file_of("w");
+    overwrite(path);
+    bool late = false;
+    std::promise<base::Refusal> refused;
+    run.advance(200);
+    run.checkpoint();
+    run.command(
+        set_parameter("food_health", 2.0), [&] { late = true; },
+        [&](const base::Refusal& why) { refused.set_value(why); });
+    const base::Refusal why = refused.get_future().get();
+    EXPECT_EQ(why.code, base::RefusalCode::DataLoss);
+    EXPECT_THAT(why.message, testing::HasSubstr(path + " is damaged"));
+    EXPECT_EQ(fault_in(thread, RunFault::Kind::Damaged), why.message);
+    EXPECT_FALSE(thread.disk().trouble());
+    // A later record is refused too, and nothing waits.
+    std::promise<void> refused_again;
+    run.command(
+        set_parameter("food_health", 3.0), [&] { late = true; },
+        [&](const base::Refusal&) { refused_again.set_value(); });
+    refused_again.get_future().wait();
+    EXPECT_FALSE(late);
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    EXPECT_EQ(thread.disk().waiting_bytes(), 0u);
+    other.command(set_parameter("food_health", 2.0), [&] { other_written.set_value(); });
+    other_written.get_future().wait();
+    run.recorder().give_up("w");
+    ASSERT_TRUE(wait_until([&] { return thread.disk().faults().empty(); }));
+    other.recorder().close_all(other.laboratory());
+    EXPECT_TRUE(thread.finish());
+    EXPECT_TRUE(check(**RunFile::open_read_only(other_data.file_of("w"))));
+}
+
+TEST_F(StorageThreadTest, AWorldWithADamagedFileCanBeDeletedAndReset) {
+    for (const bool reset : {false, true}) {
+        const auto written_by = [](auto&& act) {
+            std::promise<void> written;
+            act([&] { written.set_value(); });
+            written.get_future().wait();
+        };
+        folder.clear();
+        StorageThread thread{{}, 1ms};
+        RecordedRun run{data, thread};
+        written_by([&](const Done& done) { run.command(set_parameter("food_health", 1.0), done); });
+        overwrite(data.file_of("w"));
+        run.advance(200);
+        written_by([&](const Done& done) { reset ? run.reset({2}, {3, 4}, done) : run.delete_world(done); });
+        EXPECT_TRUE(std::filesystem::exists(data.ended_file_of("w", {1, 2})));
+        EXPECT_EQ(std::filesystem::exists(data.file_of("w")), reset);
+        if (reset) {
+            EXPECT_TRUE(check(**RunFile::open_read_only(data.file_of("w"))));
+        }
+        ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+        EXPECT_TRUE(thread.disk().faults().empty());
+    }
+}
+
+TEST_F(StorageThreadTest, AResetThatCannotBeStoredKeepsTheOldRun) {
+    StorageThread thread{{}, 1ms};
+    RecordedRun run{data, thread};
+    run.command(set_parameter("food_health", 1.0));
+    run.advance(70);
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    std::ofstream{DataFolder::next_file_of(data.file_of("w"))} << std::string(5000, 'x');
+    std::promise<base::Refusal> refused;
+    run.reset(
+        {2}, {3, 4}, [] {}, [&](const base::Refusal& why) { refused.set_value(why); });
+    EXPECT_EQ(refused.get_future().get().code, base::RefusalCode::DataLoss);
+    EXPECT_FALSE(fault_in(thread, RunFault::Kind::Damaged).empty());
+    run.recorder().give_up("w");
+    ASSERT_TRUE(wait_until([&] { return thread.idle() && thread.disk().faults().empty(); }));
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE(file);
+    EXPECT_EQ((*file)->identity().run_id, (simulation::RunId{1, 2}));
+    EXPECT_FALSE(*(*file)->end_mark()) << "a restart continues this run";
+    EXPECT_EQ((*file)->journal().read()->size(), 1u);
+}
+
+TEST_F(StorageThreadTest, DamageWhileTheServerStopsIsReported) {
+    StorageThread thread{{}, 1ms};
+    RecordedRun run{data, thread};
+    std::promise<void> written;
+    run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
+    written.get_future().wait();
+    overwrite(data.file_of("w"));
+    run.recorder().close_all(run.laboratory());
+    EXPECT_FALSE(thread.finish());
 }
 
 TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {

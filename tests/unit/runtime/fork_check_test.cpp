@@ -33,7 +33,7 @@ class ForkCheckTest : public testing::Test {
                          .outcome = simulation::Applied{.world = "fork", .tick = 70, .parameters = {}},
                          .frame = "forked"};
         ForkCheck check;
-        check.read_back({path, path + "-ended"}, run_id, expected, std::move(done),
+        check.read_back({path, path + "-ended"}, run_id, expected, std::make_shared<CommandDone>(std::move(done)),
                         [&](Reply reply) { answered.set_value(std::get<CommandDone>(std::move(reply))); })();
         const CommandDone answer = answered.get_future().get();
         EXPECT_EQ(answer.frame == "forked", answer.outcome.has_value());

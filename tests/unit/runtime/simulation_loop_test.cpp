@@ -19,6 +19,7 @@
 #include <functional>
 #include <future>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <thread>
@@ -781,9 +782,18 @@ class LoopWithDisk : public Loop {
                     [this](const Reply& reply) {
                         if (const auto* done = std::get_if<ReplayDone>(&reply)) {
                             waiting.extract(done->mail.request_id).mapped()(done->world);
+                        } else if (const auto* command = std::get_if<CommandDone>(&reply)) {
+                            const std::lock_guard lock{mutex};
+                            answered.emplace(command->mail.origin.request_id, command->outcome);
                         }
                     },
-                .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); }},
+                .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); },
+                .storage_of_world =
+                    [this](const std::string& world, const simulation::Storage& storage) {
+                        reported_of_world.emplace_back(world, storage.state);
+                    },
+                .damaged = [this](const simulation::DamagedWorld& world) { damaged.push_back(world); },
+                .counted = &counted},
                {},
                &recorder} {
         thread.disk().when_changed([this] { ++news; });
@@ -839,6 +849,18 @@ class LoopWithDisk : public Loop {
         return look;
     }
 
+    /// The outcome of the last command; nullopt: it is not answered yet.
+    std::optional<base::Result<simulation::Applied>> answer() {
+        const std::lock_guard lock{mutex};
+        const auto found = answered.find(requests);
+        return found == answered.end() ? std::nullopt : std::optional{found->second};
+    }
+    /// Passes until the last command is answered.
+    base::Result<simulation::Applied> answer_of_last() {
+        pass_until([&] { return answer().has_value(); });
+        return *answer();
+    }
+
     void take_away() { std::filesystem::rename(folder.path(), away); }
     void give_back() {
         if (std::filesystem::exists(away)) {
@@ -876,6 +898,10 @@ class LoopWithDisk : public Loop {
     const std::string away = folder.path() + "_away";
     run_file::DataFolder data;
     std::vector<simulation::StorageState> reported;
+    std::vector<std::pair<std::string, simulation::StorageState>> reported_of_world;
+    std::vector<simulation::DamagedWorld> damaged;
+    std::mutex mutex; // the storage thread answers commands
+    std::map<std::uint64_t, base::Result<simulation::Applied>> answered;
     std::atomic<int> news = 0;
     std::uint64_t requests = 0;
     std::map<std::uint64_t, std::function<void(const base::Result<std::string>&)>> waiting; // key: request id
@@ -926,6 +952,100 @@ TEST_F(LoopWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     // A state is reported again after Failing or Behind.
     reported.erase(std::unique(reported.begin(), reported.end()), reported.end());
     EXPECT_EQ(reported, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
+}
+
+TEST_F(LoopWithDisk, ADamagedFileStopsOnlyItsWorld) {
+    const std::string look = look_at_the_past_of_a_run(); // of the world "long"
+    ask_create("w");
+    EXPECT_TRUE(answer_of_last());
+    ask_run("w");
+    EXPECT_TRUE(answer_of_last());
+    pass_until([&] { return thread.idle() || tick("w") > 10; });
+    const std::string path = data.file_of("long");
+    for (const std::string& file : {path, path + "-wal", path + "-shm"}) {
+        const std::string bytes(std::filesystem::file_size(file), 'x');
+        std::fstream{file, std::ios::in | std::ios::out | std::ios::binary} << bytes;
+    }
+    ask_run("long");
+    const auto unrecorded = answer_of_last();
+    ASSERT_FALSE(unrecorded);
+    EXPECT_EQ(unrecorded.error().reason, base::Reason::WorldDamaged);
+    EXPECT_THAT(unrecorded.error().message, testing::HasSubstr(path + " is damaged"));
+    EXPECT_THAT(unrecorded.error().message, testing::HasSubstr("deleting the world moves the file away"));
+    pass_until([&] { return !damaged.empty(); });
+    ASSERT_EQ(damaged.size(), 1u);
+    EXPECT_EQ(unrecorded.error().message, damaged[0].refusal().message);
+    ASSERT_TRUE(kept.laboratory().find_damaged("long"));
+    EXPECT_EQ(counted.damaged(), std::vector<std::string>{"long"});
+    // Later commands are refused in the same words, and the other world runs on.
+    ask_run("long");
+    EXPECT_EQ(answer_of_last().error().message, unrecorded.error().message);
+    const std::uint64_t before = tick("w");
+    pass_until([&] { return tick("w") > before + 10; });
+    ask_run("w");
+    EXPECT_TRUE(answer_of_last());
+    EXPECT_TRUE(reported.empty());
+    EXPECT_EQ(tick(look), 0u) << "the replay stays";
+    ask_create("long");
+    EXPECT_EQ(answer_of_last().error().code, base::RefusalCode::AlreadyExists);
+    v1::Request remove;
+    remove.mutable_delete_world()->set_world("long");
+    ask(std::move(remove));
+    EXPECT_TRUE(answer_of_last());
+    EXPECT_TRUE(std::filesystem::exists(folder.path() + "/long.damaged-1.evod"));
+    ask_create("long");
+    EXPECT_TRUE(answer_of_last());
+}
+
+TEST_F(LoopWithDisk, AMovedFileLetsOnlyItsWorldWait) {
+    for (const char* name : {"w", "moved"}) {
+        ask_create(name);
+        ask_run(name);
+        EXPECT_TRUE(answer_of_last());
+    }
+    const std::string path = data.file_of("moved");
+    std::filesystem::rename(path, path + ".away");
+    pass_until([&] { return !reported_of_world.empty(); });
+    const std::uint64_t stands = tick("moved"), before = tick("w");
+    EXPECT_EQ(entry("moved").storage->state, simulation::StorageState::Stalled);
+    EXPECT_EQ(entry("w").storage->state, simulation::StorageState::KeepsUp);
+    ask_run("moved");
+    EXPECT_EQ(answer_of_last().error().code, base::RefusalCode::Unavailable);
+    ask_run("w");
+    EXPECT_TRUE(answer_of_last());
+    pass_until([&] { return tick("w") > before + 100; });
+    EXPECT_EQ(tick("moved"), stands);
+    std::filesystem::rename(path + ".away", path);
+    pass_until([&] { return tick("moved") > stands; });
+    ask_run("moved");
+    EXPECT_TRUE(answer_of_last());
+    using State = simulation::StorageState;
+    EXPECT_EQ(reported_of_world,
+              (std::vector<std::pair<std::string, State>>{{"moved", State::Stalled}, {"moved", State::KeepsUp}}));
+    EXPECT_TRUE(reported.empty());
+}
+
+TEST_F(LoopWithDisk, AFailedCreationRefusesNothingElse) {
+    ask_create("w");
+    EXPECT_TRUE(answer_of_last());
+    recorder.of("w")->once_written([] {});
+    // The file appears between the check of the name and the creation of the file.
+    std::promise<void> at_work, go_on;
+    recorder.of("w")->once_written([&] {
+        at_work.set_value();
+        go_on.get_future().wait();
+    });
+    at_work.get_future().wait();
+    ask_create("new");
+    kept.pass();
+    std::ofstream{run_file::DataFolder::next_file_of(data.file_of("new"))} << std::string(5000, 'x');
+    go_on.set_value();
+    const auto created = answer_of_last();
+    ASSERT_FALSE(created);
+    EXPECT_EQ(created.error().reason, base::Reason::WorldDamaged);
+    ask_run("w");
+    EXPECT_TRUE(answer_of_last());
+    pass_until([&] { return kept.laboratory().find_damaged("new") != nullptr; });
 }
 
 TEST_F(LoopWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {

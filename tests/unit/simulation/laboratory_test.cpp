@@ -479,5 +479,16 @@ TEST(WorldNames, HaveFewKindsOfCharactersAndALimit) {
     }
 }
 
+TEST(LaboratoryDamage, ALiveWorldBecomesADamagedWorld) {
+    Laboratory laboratory;
+    ASSERT_TRUE(laboratory.apply(CreateWorld{.name = "w", .parameters = {}, .seed = base::Seed{1}, .run_id = {1, 1}}));
+    laboratory.replace_with_damaged({.name = "w", .run_id = RunId{1, 1}, .reason = "the file is bad"});
+    EXPECT_TRUE(laboratory.entries().empty());
+    ASSERT_TRUE(laboratory.find_damaged("w"));
+    EXPECT_EQ(laboratory.find("w").error().message, "the world does not run: the file is bad");
+    EXPECT_TRUE(laboratory.apply(DeleteWorld{"w"}));
+    EXPECT_TRUE(laboratory.damaged().empty());
+}
+
 } // namespace
 } // namespace evod::simulation

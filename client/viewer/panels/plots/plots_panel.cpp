@@ -96,7 +96,7 @@ void PlotsPanel::update(Context& context) {
     worlds_stale_ = worlds_stale_ || context.just_shown;
     for (const evod::v1::Event& event : context.world.feed.events()) {
         worlds_stale_ = worlds_stale_ || event.has_world_created() || event.has_world_deleted() ||
-                        event.has_world_reset() || event.has_events_dropped();
+                        event.has_world_damaged() || event.has_world_reset() || event.has_events_dropped();
     }
     poll_worlds(context);
     if (other_world_) {

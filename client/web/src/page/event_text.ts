@@ -7,7 +7,7 @@ import type { Message } from "../messages";
 /** The commands that cause the events of which users of a world want to hear. */
 export const noticed_events: { [event: string]: string[] } = {
   parameters_changed: ["set_parameters"], change_planned: ["set_parameters"], change_cancelled: ["cancel_change"], change_dropped: [],
-  world_reset: ["reset_world"], world_deleted: ["delete_world"], run_terminated: [],
+  world_reset: ["reset_world"], world_deleted: ["delete_world"], world_damaged: [], run_terminated: [],
 };
 
 function list(names: string[]): string {
@@ -77,6 +77,9 @@ function sentence_of(event: Message): string {
   if (event.world_deleted) {
     return `${actor_text(event.world_deleted.by)} deleted the world ${event.world ?? ""}`;
   }
+  if (event.world_damaged) {
+    return `the world ${event.world ?? ""} does not run: ${event.world_damaged.reason ?? ""}`;
+  }
   if (event.placed) {
     return entities("placed", event.placed);
   }
@@ -87,7 +90,8 @@ function sentence_of(event: Message): string {
     return `${actor_text(event.fitness_set.by)} set the fitness of ${with_separators(event.fitness_set.organism_count ?? 0)} organisms of generation ${with_separators(event.fitness_set.generation ?? 0)}`;
   }
   if (event.storage_changed) {
-    return storage_text(event.storage_changed.storage) || "the server can write its runs again";
+    const of = event.world ? `the world ${event.world}: ` : "";
+    return of + (storage_text(event.storage_changed.storage) || (of ? "its run file can be written again" : "the server can write its runs again"));
   }
   if (event.server_going_away) {
     return "the server is shutting down";

@@ -65,7 +65,7 @@ export class PaneArea {
     const running = world.state === "RUN_STATE_RUNNING";
     set_text(this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.speed, running) : world.name);
     const connected = server.state.phase === "open";
-    const state = !connected ? "not connected" : snapshot || info ? world.at_end ? "end of the replay" : state_word(world.state, server.storage, info?.awaited_fitness !== undefined) : "";
+    const state = !connected ? "not connected" : snapshot || info ? world.at_end ? "end of the replay" : state_word(world.state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined) : "";
     set_text(this.#state, state + (connected && running && info?.slowed ? " slower" : ""));
     set_attribute(this.#state, "data-state", connected && running ? "running" : "stopped");
     const texts = snapshot ? statistics_texts(snapshot) : [];

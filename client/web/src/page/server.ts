@@ -310,6 +310,10 @@ export class Server {
       this.#put(info);
     } else if (event.world_deleted) {
       this.#remove(event.world ?? "");
+    } else if (event.world_damaged) {
+      this.#remove(event.world ?? "");
+      this.damaged = [...this.damaged, { name: event.world, run_id: event.run_id, reason: event.world_damaged.reason }].sort((one, other) => (one.name! < other.name! ? -1 : 1));
+      this.#changes.notify();
     } else if (event.run_terminated) {
       this.#change(event.world, { state: "RUN_STATE_TERMINATED", outcome: event.run_terminated.outcome });
     } else if (event.generation_finished) {
@@ -317,6 +321,8 @@ export class Server {
       this.#change(event.world, { generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined });
     } else if (event.fitness_awaited) {
       this.#change(event.world, { awaited_fitness: event.fitness_awaited });
+    } else if (event.storage_changed && event.world) {
+      this.#change(event.world, { storage: event.storage_changed.storage });
     } else if (event.storage_changed) {
       this.storage = event.storage_changed.storage ?? null;
       this.#changes.notify();

@@ -652,6 +652,8 @@ export class ViewedWorld {
     }
     if (event.generation_finished) {
       this.#append(event.generation_finished.statistics ?? []);
+    } else if (event.world_damaged && this.shown === this.name) {
+      this.#watch(this.name, this.island); // the server refuses it with the reason
     } else if (event.parameters_changed) {
       void this.#read_changes();
     } else if (event.world_reset || event.world_created) {
