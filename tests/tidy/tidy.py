@@ -186,7 +186,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/network", "session_sending"): "unit/network/session_test",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
     ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
-    ("server/recording", "disk_state log_jobs record_queue run_log storage_worker waiting_record"):
+    ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "columns table"): "unit/replay/run_tables_test",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents run_database "
