@@ -82,7 +82,7 @@ Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& has
 base::Refusal with_remedies(base::Refusal why) {
     switch (why.code) {
     case RefusalCode::NotFound:
-        return why; // there is no file about which anything could be done
+        return why; // it is not a fault of this file, so the remedies do not apply
     case RefusalCode::DataLoss:
         why.message += "; check the file with evod verify, save what can be read with evod export, and restore a copy";
         break;

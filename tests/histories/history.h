@@ -24,7 +24,7 @@ class History {
   public:
     explicit History(std::uint64_t seed);
 
-    /// Plays the history. Returns its actions and the first difference as text; nullopt if there is no difference.
+    /// Carries out the actions of the history. Returns its actions and the first difference as text; nullopt if there is no difference.
     std::optional<std::string> play();
     /// The actions so far, one per line.
     const std::string& actions() const { return actions_; }
