@@ -40,7 +40,7 @@ std::string experiment_text(const run_file::RunIdentity& identity) {
     // A fork begins with the parameters of its first generation. They may differ from the values that the schedule has
     // for generation 1, so the schedule is omitted.
     const std::string parameters =
-        to_experiment_text(identity.requested_parameters(), parameters::Written::Everything,
+        to_experiment_text(identity.requested_parameters().values, parameters::Written::Everything,
                            identity.forked_from ? parameters::Schedule{} : identity.schedule);
     return "{\n  \"seed\": " + std::to_string(identity.seed.value) + "," + parameters.substr(1);
 }

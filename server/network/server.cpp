@@ -172,8 +172,8 @@ base::Result<void> Server::open_archive() {
                    wanted.name);
         return {};
     }
-    if (there && !(there->requested_parameters() == wanted.parameters)) {
-        return differs("parameters: " + differences_of(there->requested_parameters(), wanted.parameters));
+    if (there && !(there->requested_parameters().values == wanted.parameters)) {
+        return differs("parameters: " + differences_of(there->requested_parameters().values, wanted.parameters));
     }
     if (there && there->schedule != wanted.schedule) {
         return differs("schedule of parameters");

@@ -232,6 +232,15 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
     return parameters;
 }
 
+base::Result<RequestedParameters> assign(const RequestedParameters& requested, std::span<const Assignment> assignments,
+                                         std::string_view field_prefix) {
+    const base::Result<Parameters> assigned = assign(requested.values, assignments, field_prefix);
+    if (!assigned) {
+        return assigned.error();
+    }
+    return RequestedParameters{*assigned};
+}
+
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text) {
     const char* end = text.data() + text.size();
     const auto refused = [&]() -> base::Result<ParameterValue> {
@@ -417,17 +426,17 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     return violations;
 }
 
-Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached) {
+Parameters taking_effect(const Parameters& active, const RequestedParameters& requested, base::Effect reached) {
     Parameters result = active;
     for (const ParameterDescription& description : parameter_registry()) {
         if (description.effect <= reached) {
-            description.copy(requested, result);
+            description.copy(requested.values, result);
         }
     }
     return result;
 }
 
-ParameterSet after_request(const ParameterSet& set, const Parameters& requested) {
+ParameterSet after_request(const ParameterSet& set, const RequestedParameters& requested) {
     return {.active = taking_effect(set.active, requested, base::Effect::NextTick),
             .requested = requested,
             .revision = set.revision + 1};

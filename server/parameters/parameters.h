@@ -169,19 +169,37 @@ IslandPlan island_plan(const Parameters& parameters);
 
 bool operator==(const Parameters& a, const Parameters& b);
 
-/// The parameters in effect and the requested ones, which may wait for a generation or a reset.
+/// Parameters as requested; some may wait for a generation or a reset. The type prevents their use in the place of
+/// parameters in effect, and the reverse.
+struct RequestedParameters {
+    explicit RequestedParameters(const Parameters& requested) : values{requested} {}
+
+    Parameters values;
+    friend bool operator==(const RequestedParameters&, const RequestedParameters&) = default;
+};
+
+/// The parameters in effect and the requested ones.
 struct ParameterSet {
-    Parameters active;          // in effect now
-    Parameters requested;       // in effect after all changes have taken effect
-    std::uint64_t revision = 1; // increases with every accepted change
+    Parameters active;                           // in effect now
+    RequestedParameters requested{Parameters{}}; // in effect after all changes have taken effect
+    std::uint64_t revision = 1;                  // increases with every accepted change
+
+    /// Returns a set whose requested parameters are all in effect.
+    static ParameterSet all_in_effect(const Parameters& parameters, std::uint64_t revision = 1) {
+        return {parameters, RequestedParameters{parameters}, revision};
+    }
     friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
+/// Like assign() above, for requested parameters.
+base::Result<RequestedParameters> assign(const RequestedParameters& requested, std::span<const Assignment> assignments,
+                                         std::string_view field_prefix = "");
+
 /// Returns `set` after a change to `requested`: values that take effect at once become active, other values are only
 /// requested.
-ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
+ParameterSet after_request(const ParameterSet& set, const RequestedParameters& requested);
 
 /// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.
-Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
+Parameters taking_effect(const Parameters& active, const RequestedParameters& requested, base::Effect reached);
 
 } // namespace evod::parameters

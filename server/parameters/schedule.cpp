@@ -59,11 +59,11 @@ void Schedule::begin_with(const Parameters& parameters) {
     }
 }
 
-Parameters breeding_with(const Parameters& active, const Parameters& requested) {
+Parameters breeding_with(const Parameters& active, const RequestedParameters& requested) {
     Parameters result = active;
     for (const ParameterDescription& description : parameter_registry()) {
         if (description.effect == base::Effect::NextGeneration) {
-            description.copy(requested, result);
+            description.copy(requested.values, result);
         }
     }
     return result;
@@ -79,16 +79,17 @@ base::Refusal refused(std::vector<base::Violation> violations) {
 
 /// The world may never be reset, so the values must be valid while the parameters that wait for a reset keep their old
 /// values.
-std::vector<base::Violation> violations_from_next_generation(const ParameterSet& set, const Parameters& requested,
+std::vector<base::Violation> violations_from_next_generation(const ParameterSet& set,
+                                                             const RequestedParameters& requested,
                                                              std::string_view field_prefix) {
     return validate(taking_effect(set.active, requested, base::Effect::NextGeneration), field_prefix);
 }
 
 } // namespace
 
-base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
-                                    std::string_view field_prefix) {
-    const base::Result<Parameters> requested = assign(set.requested, assignments, field_prefix);
+base::Result<RequestedParameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
+                                             std::string_view field_prefix) {
+    const base::Result<RequestedParameters> requested = assign(set.requested, assignments, field_prefix);
     if (!requested) {
         return requested;
     }
@@ -102,9 +103,9 @@ base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Ass
     return requested;
 }
 
-base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
-                                               std::string_view field_prefix) {
-    const base::Result<Parameters> requested = assign(set.requested, assignments, field_prefix);
+base::Result<RequestedParameters>
+request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments, std::string_view field_prefix) {
+    const base::Result<RequestedParameters> requested = assign(set.requested, assignments, field_prefix);
     if (!requested) {
         return requested;
     }
@@ -121,7 +122,7 @@ base::Result<Parameters> request_at_generation(const ParameterSet& set, std::spa
 }
 
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters) {
-    ParameterSet set{.active = parameters, .requested = parameters, .revision = 1};
+    auto set = ParameterSet::all_in_effect(parameters);
     std::vector<ScheduleFault> faults;
     for (const auto& [generation, assignments] : schedule.changes()) {
         const auto requested = request_at_generation(set, assignments);
@@ -131,7 +132,7 @@ std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters&
             }
             return faults;
         }
-        set.active = set.requested = *requested;
+        set = ParameterSet::all_in_effect(requested->values);
     }
     return faults;
 }

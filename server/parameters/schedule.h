@@ -78,17 +78,18 @@ inline bool can_be_scheduled(const ParameterDescription& description) {
 /// Returns the requested parameters after assignments that are made while a world runs. Refuses them if the result is
 /// not valid, or if the parameters in effect would not be valid together: from the next tick on, while others wait for
 /// the next generation, or from the next generation on, while others wait for a reset.
-base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
-                                    std::string_view field_prefix = "");
+base::Result<RequestedParameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
+                                             std::string_view field_prefix = "");
 /// Like request_of(), for assignments that are made at the beginning of a generation. That generation is bred with the
 /// old values of breeding parameters, but has the new population size.
-base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
-                                               std::string_view field_prefix = "");
+base::Result<RequestedParameters> request_at_generation(const ParameterSet& set,
+                                                        std::span<const Assignment> assignments,
+                                                        std::string_view field_prefix = "");
 
 /// Returns the parameters for breeding the next generation: `active`, with the requested values of the parameters that
 /// take effect at a generation. Parameters that take effect at a tick keep their active values while the generation is
 /// bred.
-Parameters breeding_with(const Parameters& active, const Parameters& requested);
+Parameters breeding_with(const Parameters& active, const RequestedParameters& requested);
 
 struct ScheduleFault {
     std::uint64_t generation;

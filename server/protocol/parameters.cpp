@@ -83,7 +83,7 @@ v1::ParameterDescription to_proto(const parameters::ParameterDescription& descri
 
 v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set) {
     v1::ParameterState to;
-    const auto active = description.get(set.active), requested = description.get(set.requested);
+    const auto active = description.get(set.active), requested = description.get(set.requested.values);
     to.set_name(std::string{description.name});
     *to.mutable_value() = to_proto(active);
     if (requested != active) {

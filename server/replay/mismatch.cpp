@@ -379,8 +379,9 @@ Found compare(const base::StateHash& stored, const base::StateHash& simulated) {
     return compare_part("the state hash", stored, simulated);
 }
 
-Found compare_requested(const parameters::Parameters& stored, const parameters::Parameters& simulated) {
-    return compare_part("requested", stored, simulated);
+Found compare_requested(const parameters::RequestedParameters& stored,
+                        const parameters::RequestedParameters& simulated) {
+    return compare_part("requested", stored.values, simulated.values);
 }
 
 } // namespace evod::replay

@@ -30,7 +30,7 @@ std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatisti
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
 std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
 /// Compares requested parameters.
-std::optional<Mismatch> compare_requested(const parameters::Parameters& stored,
-                                          const parameters::Parameters& simulated);
+std::optional<Mismatch> compare_requested(const parameters::RequestedParameters& stored,
+                                          const parameters::RequestedParameters& simulated);
 
 } // namespace evod::replay

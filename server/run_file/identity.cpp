@@ -66,7 +66,7 @@ template <class To>
 bool read_parameters(const std::string& text, To& to) {
     const auto experiment = parameters::parse_experiment(text);
     if (experiment) {
-        to = experiment->parameters;
+        to = To{experiment->parameters};
     }
     return experiment.has_value();
 }
@@ -87,7 +87,7 @@ const std::vector<std::pair<std::string, Key>>& keys() {
           }}},
         {"parameters",
          {[](const StoredIdentity& identity) {
-              return to_experiment_text(identity.run.requested_parameters(), parameters::Written::Everything);
+              return to_experiment_text(identity.run.requested_parameters().values, parameters::Written::Everything);
           },
           [](const std::string& text, StoredIdentity& identity) {
               return read_parameters(text, identity.run.requested);
@@ -231,7 +231,7 @@ Result<StoredIdentity> read_identity(RunDatabase& database) {
     }
     identity.has_parameters_in_effect = values.contains("parameters_in_effect");
     if (!identity.has_parameters_in_effect) {
-        identity.run.parameters = *identity.run.requested;
+        identity.run.parameters = identity.run.requested->values;
     }
     if (!identity.run.forked_from) {
         identity.run.requested.reset();

@@ -20,7 +20,7 @@ base::Result<parameters::ParameterSet> ParameterSets::read(std::int64_t number) 
     parameters::ParameterSet set;
     set.revision = row.revision;
     set.active = active->parameters;
-    set.requested = requested->parameters;
+    set.requested = parameters::RequestedParameters{requested->parameters};
     read_ = Numbered{number, set};
     return set;
 }
@@ -35,7 +35,7 @@ std::int64_t ParameterSets::number_of(const parameters::ParameterSet& set) {
         1 + (written_ ? written_->number : database_.number("SELECT max(number) FROM parameters"));
     TableWriter<ParametersTable>{database_.database}.write(
         ParametersTable::Row{number, set.revision, to_experiment_text(set.active, Written::Everything),
-                             to_experiment_text(set.requested, Written::Everything)});
+                             to_experiment_text(set.requested.values, Written::Everything)});
     written_ = Numbered{number, set};
     return number;
 }

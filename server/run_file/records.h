@@ -27,7 +27,7 @@ struct RunIdentity {
     std::uint32_t model_version = simulation::model_version;
     std::int64_t began_unix_ms = 0; // wall clock time, only for information
     // Requested when a fork began, but partly waiting for its next generation or a reset. nullopt: `parameters`.
-    std::optional<parameters::Parameters> requested = std::nullopt;
+    std::optional<parameters::RequestedParameters> requested = std::nullopt;
     // A fork begins with a generation of another run.
     std::uint64_t first_generation = 1;
     // Ticks before this run; if the run begins within a generation, it has a checkpoint at this tick.
@@ -38,7 +38,9 @@ struct RunIdentity {
     simulation::FirstPopulation first_population = {}; // given to the run or its origin; nullptr: the seed draws it
     parameters::Schedule schedule = {};                // given to the run or its origin
 
-    const parameters::Parameters& requested_parameters() const { return requested ? *requested : parameters; }
+    parameters::RequestedParameters requested_parameters() const {
+        return requested ? *requested : parameters::RequestedParameters{parameters};
+    }
 };
 
 /// Which client sent a command.

@@ -4,12 +4,14 @@
 
 namespace evod::simulation {
 
-void Changes::add(std::uint64_t generation, std::string by, const parameters::Parameters& before,
-                  const parameters::Parameters& after) {
+void Changes::add(std::uint64_t generation, std::string by, const parameters::RequestedParameters& before,
+                  const parameters::RequestedParameters& after) {
     Change change{.generation = generation, .by = std::move(by), .values = {}};
-    for (const parameters::ParameterDescription* parameter : parameters::parameters_that_differ(before, after)) {
+    for (const parameters::ParameterDescription* parameter :
+         parameters::parameters_that_differ(before.values, after.values)) {
         if (parameter->effect != base::Effect::Reset) {
-            change.values.push_back({std::string{parameter->name}, parameter->get(before), parameter->get(after)});
+            change.values.push_back(
+                {std::string{parameter->name}, parameter->get(before.values), parameter->get(after.values)});
         }
     }
     if (change.values.empty()) {

@@ -32,10 +32,10 @@ class Changes {
     /// The maximum number of changed values that are kept. The oldest changes are dropped first.
     static constexpr std::size_t values_kept = 10'000;
 
-    /// Adds the parameters that differ. Ignores parameters that change only with a reset, because a reset begins
-    /// another run.
-    void add(std::uint64_t generation, std::string by, const parameters::Parameters& before,
-             const parameters::Parameters& after);
+    /// Adds the requested parameters that differ. Ignores parameters that change only with a reset, because a reset
+    /// begins another run.
+    void add(std::uint64_t generation, std::string by, const parameters::RequestedParameters& before,
+             const parameters::RequestedParameters& after);
     void clear() { *this = {}; }
 
     /// The changes, oldest first.

@@ -439,7 +439,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
         }
     }
     const bool at_generation = command.at && command.at->generation;
-    const Result<parameters::Parameters> requested =
+    const Result<parameters::RequestedParameters> requested =
         (at_generation ? parameters::request_at_generation
                        : parameters::request_of)(world.parameters(), command.assignments, "set_parameters.");
     if (!requested) {

@@ -94,7 +94,7 @@ class Follower {
         case Order::TurnOver:
             return world.turn_over(executor_);
         case Order::Request:
-            return world.request_parameters(arguments.next<parameters::Parameters>());
+            return world.request_parameters(parameters::RequestedParameters{arguments.next<parameters::Parameters>()});
         case Order::Plan:
             world.plan(unpack_planned_change(arguments));
             return;

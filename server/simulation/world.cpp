@@ -38,7 +38,7 @@ void World::begin_generation(Make&& make, base::Executor& executor) {
 
 World::World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population,
              parameters::Schedule schedule, Leader* leader)
-    : World{parameters::ParameterSet{parameters, parameters, 1}, seed, std::move(first_population), std::move(schedule),
+    : World{parameters::ParameterSet::all_in_effect(parameters), seed, std::move(first_population), std::move(schedule),
             Sharing{leader, parameters.island_count}} {}
 
 World::World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
@@ -137,13 +137,13 @@ void World::become_fork() {
 }
 
 base::Result<parameters::Parameters> World::beginning() const {
-    return parameters::assign(parameters_.requested, schedule_.at(1));
+    return parameters::assign(parameters_.requested.values, schedule_.at(1));
 }
 
 void World::reset(base::Seed seed, Leader* leader) {
     const parameters::Parameters first = beginning().value();
-    World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_,
-                Sharing{leader, first.island_count}};
+    World fresh{parameters::ParameterSet::all_in_effect(first, parameters_.revision), seed, first_population_,
+                schedule_, Sharing{leader, first.island_count}};
     *this = std::move(fresh);
 }
 
@@ -195,12 +195,12 @@ void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
     }
 }
 
-void World::record_change(const parameters::Parameters& requested, const std::string& by) {
+void World::record_change(const parameters::RequestedParameters& requested, const std::string& by) {
     changes_.add(moment_.generation + (is_after_last_tick() ? 1 : 0), by, parameters_.requested, requested);
 }
 
-void World::request_parameters(const parameters::Parameters& requested, const std::string& by) {
-    sharing_.order(Order::Request, [&](base::Packer& order) { order.add(requested); });
+void World::request_parameters(const parameters::RequestedParameters& requested, const std::string& by) {
+    sharing_.order(Order::Request, [&](base::Packer& order) { order.add(requested.values); });
     record_change(requested, by);
     parameters_ = parameters::after_request(parameters_, requested);
 }
@@ -299,7 +299,7 @@ void World::apply_planned_now() {
 }
 
 void World::apply_planned(std::span<const parameters::Assignment> changes,
-                          const base::Result<parameters::Parameters>& requested, std::uint64_t id,
+                          const base::Result<parameters::RequestedParameters>& requested, std::uint64_t id,
                           const std::string& by) {
     std::vector<std::string> names;
     for (const parameters::Assignment& change : changes) {

@@ -197,7 +197,7 @@ class World {
     /// time that its Effect states.
     ///
     /// by  the client that requested them
-    void request_parameters(const parameters::Parameters& requested, const std::string& by = {});
+    void request_parameters(const parameters::RequestedParameters& requested, const std::string& by = {});
 
     /// Places entities between two ticks, or removes them. check() must have accepted the command (entities.h). Returns
     /// the ids of the entities.
@@ -314,7 +314,7 @@ class World {
     parameters::Parameters parameters_of_next_tick() const;
     void make_islands();
     /// Adds the requested parameters that differ from `requested` to the changes of the run.
-    void record_change(const parameters::Parameters& requested, const std::string& by);
+    void record_change(const parameters::RequestedParameters& requested, const std::string& by);
     /// Applies the changes planned for the generation that is about to be bred.
     void apply_planned_for(std::uint64_t generation);
     /// Applies the changes planned for the tick that has just ended.
@@ -324,7 +324,8 @@ class World {
     ///
     /// id, by  ParametersChanged::planned and ParametersChanged::by.
     void apply_planned(std::span<const parameters::Assignment> changes,
-                       const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
+                       const base::Result<parameters::RequestedParameters>& requested, std::uint64_t id,
+                       const std::string& by);
     /// Begins a generation with the organisms that make() returns. If memory does not suffice for them in one of the
     /// processes that share the world, throws TooLargeToShare in all of them.
     template <class Make>

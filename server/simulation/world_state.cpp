@@ -287,7 +287,8 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         return wrong("moment");
     }
     // Parameters that take effect at a generation must still have the values from the beginning of this generation.
-    if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
+    if (!(parameters::taking_effect(parameters_.active, parameters::RequestedParameters{set.active},
+                                    base::Effect::NextTick) == set.active) ||
         !parameters::validate(set.active).empty() ||
         !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
              .empty()) {

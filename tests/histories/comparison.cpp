@@ -97,7 +97,10 @@ Found compare_moment(const Entry& world, const Entry& twin) {
                             number(expected.awaits_fitness()));
     });
     then([&] { return compare_parameters("active", got.parameters().active, expected.parameters().active); });
-    then([&] { return compare_parameters("requested", got.parameters().requested, expected.parameters().requested); });
+    then([&] {
+        return compare_parameters("requested", got.parameters().requested.values,
+                                  expected.parameters().requested.values);
+    });
     then([&] {
         return compare_text("the revision", number(got.parameters().revision), number(expected.parameters().revision));
     });

@@ -24,7 +24,7 @@ double generation_ticks(const World& world) {
     const auto ticks = [](const parameters::Parameters& p) {
         return parameters::has_bodies(p) ? std::ceil(p.generation_s / p.tick_s) : 1;
     };
-    return std::max(ticks(world.parameters().active), ticks(world.parameters().requested));
+    return std::max(ticks(world.parameters().active), ticks(world.parameters().requested.values));
 }
 
 } // namespace

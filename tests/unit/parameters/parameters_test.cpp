@@ -27,7 +27,7 @@ bool accepted(std::string_view name, ParameterValue value) {
 }
 
 /// The violations of a refused set as "field: got X, allowed Y".
-std::vector<std::string> violations(const base::Result<Parameters>& result) {
+std::vector<std::string> violations(const auto& result) {
     std::vector<std::string> texts;
     if (!result) {
         for (const base::Violation& violation : result.error().violations) {
@@ -343,7 +343,7 @@ TEST(CrossFieldRules, MutateGroupHasGenes) {
 }
 
 TEST(CrossFieldRules, MutateGroupMustHaveGenesBeforeAReset) {
-    const ParameterSet running{.active = {}, .requested = {}, .revision = 1};
+    const ParameterSet running;
     const std::vector<Assignment> both{{"free_genes", std::uint32_t{10}}, {"mutate_group", std::string{"free"}}};
     EXPECT_TRUE(assign({}, both).has_value()) << "of a new world";
     EXPECT_THAT(

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace evod::parameters {
@@ -68,10 +69,10 @@ TEST(Schedule, OnlyParametersOfARunningWorldCanBeScheduled) {
 }
 
 TEST(Request, MustBeValidWithoutAReset) {
-    ParameterSet set{.active = {}, .requested = {}, .revision = 1};
+    ParameterSet set;
     set.active.island_count = 40; // remains until a reset
-    set.active.population_size = set.requested.population_size = 90'000;
-    set.active.scale_with_population = set.requested.scale_with_population = true;
+    set.active.population_size = set.requested.values.population_size = 90'000;
+    set.active.scale_with_population = set.requested.values.scale_with_population = true;
     const std::vector<Assignment> larger{{"population_size", 200'000u}}; // 8 million organisms on 40 islands
     const auto refused = request_of(set, larger, "p.");
     ASSERT_FALSE(refused);
@@ -80,9 +81,9 @@ TEST(Request, MustBeValidWithoutAReset) {
 }
 
 TEST(Request, MustBeValidFromTheNextTickOn) {
-    ParameterSet set{.active = {}, .requested = {}, .revision = 1};
-    set.active.selection = set.requested.selection = evolution::SelectionMethod::Tournament;
-    set.active.tournament_replacement = set.requested.tournament_replacement = false;
+    ParameterSet set;
+    set.active.selection = set.requested.values.selection = evolution::SelectionMethod::Tournament;
+    set.active.tournament_replacement = set.requested.values.tournament_replacement = false;
     // The population grows with the next generation only, the tournament at once.
     const std::vector<Assignment> larger{{"population_size", 200u}, {"tournament_size", 150u}};
     const auto refused = request_of(set, larger, "p.");
@@ -93,7 +94,7 @@ TEST(Request, MustBeValidFromTheNextTickOn) {
 }
 
 TEST(Request, AtAGenerationMustBeValidForItsBreeding) {
-    const ParameterSet set{.active = {}, .requested = {}, .revision = 1};
+    const ParameterSet set;
     const std::vector<Assignment> assignments{{"population_size", 2u},
                                               {"selection", std::string{"tournament"}},
                                               {"tournament_replacement", false},
@@ -101,11 +102,16 @@ TEST(Request, AtAGenerationMustBeValidForItsBreeding) {
     EXPECT_TRUE(request_of(set, assignments));
     EXPECT_TRUE(request_at_generation(set, assignments)) << "the present selection is roulette";
     ParameterSet tournament = set;
-    tournament.active.selection = tournament.requested.selection = evolution::SelectionMethod::Tournament;
-    tournament.active.tournament_replacement = tournament.requested.tournament_replacement = false;
+    tournament.active.selection = tournament.requested.values.selection = evolution::SelectionMethod::Tournament;
+    tournament.active.tournament_replacement = tournament.requested.values.tournament_replacement = false;
     const auto refused = request_at_generation(tournament, assignments);
     ASSERT_FALSE(refused) << "a tournament of 3 needs a population of 3";
     EXPECT_THAT(refused.error().violations[0].allowed, HasSubstr("is bred with the previous values"));
+}
+
+TEST(RequestedParameters, AreNotConvertedImplicitly) {
+    EXPECT_FALSE((std::is_convertible_v<Parameters, RequestedParameters>));
+    EXPECT_FALSE((std::is_convertible_v<RequestedParameters, Parameters>));
 }
 
 TEST(BreedingWith, TakesOnlyTheValuesOfTheGeneration) {
@@ -113,7 +119,7 @@ TEST(BreedingWith, TakesOnlyTheValuesOfTheGeneration) {
     requested.population_size = 80;
     requested.mutation_chance = 0.9;
     requested.island_count = 3;
-    const Parameters breeding = breeding_with({}, requested);
+    const Parameters breeding = breeding_with({}, RequestedParameters{requested});
     EXPECT_THAT(parameters_that_differ({}, breeding), ElementsAre(find_parameter("population_size")));
 }
 

@@ -33,7 +33,7 @@ TEST(ParameterMessage, EveryParameterSurvivesARoundTrip) {
 
 TEST(ParameterMessage, ASetHasCurrentAndPendingValues) {
     parameters::ParameterSet set;
-    set.requested.population_size = 60;
+    set.requested.values.population_size = 60;
     set.revision = 9;
     const auto message = to_proto(set);
     EXPECT_EQ(message.revision(), 9);

@@ -419,7 +419,7 @@ TEST_F(VerifyTest, AChangedBeginningIsReported) {
              {[](auto& begun) { begun.opening.moment.simulated_s += 1; }, "the simulated seconds"},
              {[](auto& begun) { begun.opening.parameters.active.food_count = 3; },
               "the parameter food_count, in effect"},
-             {[](auto& begun) { begun.opening.parameters.requested.food_count = 3; },
+             {[](auto& begun) { begun.opening.parameters.requested.values.food_count = 3; },
               "the parameter food_count, requested"},
              {[](auto& begun) { ++begun.opening.parameters.revision; }, "the revision of the parameters"},
              {[](auto& begun) { ++begun.opening.progress.generations; }, "completed generations"},

@@ -5,13 +5,15 @@
 namespace evod::simulation {
 namespace {
 
+using parameters::RequestedParameters;
+
 TEST(Changes, ListTheParametersThatDiffer) {
     parameters::Parameters before, after;
     after.mutation_chance = 0.2;
     after.food_count = 7;
     Changes changes;
-    changes.add(20, "alice", before, after);
-    changes.add(21, "", after, after);
+    changes.add(20, "alice", RequestedParameters{before}, RequestedParameters{after});
+    changes.add(21, "", RequestedParameters{after}, RequestedParameters{after});
     ASSERT_EQ(changes.all().size(), 1u) << "nothing differs in the second change";
     EXPECT_EQ(changes.all()[0], (Change{.generation = 20,
                                         .by = "alice",
@@ -25,7 +27,7 @@ TEST(Changes, OmitParametersThatWaitForAReset) {
     parameters::Parameters before, after;
     after.island_count = 4;
     Changes changes;
-    changes.add(1, "alice", before, after);
+    changes.add(1, "alice", RequestedParameters{before}, RequestedParameters{after});
     EXPECT_TRUE(changes.all().empty());
 }
 
@@ -35,7 +37,7 @@ TEST(Changes, DropTheOldestAboveTheLimit) {
     after.food_count = 7;
     Changes changes;
     for (std::uint64_t generation = 1; generation <= Changes::values_kept; ++generation) {
-        changes.add(generation, "alice", before, after);
+        changes.add(generation, "alice", RequestedParameters{before}, RequestedParameters{after});
     }
     EXPECT_EQ(changes.all().size(), Changes::values_kept / 2) << "two values each";
     EXPECT_EQ(changes.all().back().generation, Changes::values_kept);

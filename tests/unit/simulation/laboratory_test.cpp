@@ -305,7 +305,7 @@ TEST_F(OneWorld, ResetUsesTheFirstPopulationWhileItIsValid) {
 }
 
 TEST_F(OneWorld, RefusedParametersChangeNothing) {
-    const parameters::Parameters before = entry().world.parameters().requested;
+    const auto before = entry().world.parameters().requested;
     EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);
     SetParameters stale = set({{"food_health", 30.0}});
     stale.expected_revision = 5;
@@ -320,10 +320,10 @@ TEST_F(OneWorld, ADryRunReturnsTheResultAndChangesNothing) {
     dry.expected_revision = 1;
     const auto answer = laboratory.apply(dry);
     ASSERT_TRUE(answer.has_value());
-    EXPECT_EQ(answer->parameters->requested.population_size, 20u);
+    EXPECT_EQ(answer->parameters->requested.values.population_size, 20u);
     EXPECT_EQ(answer->parameters->active.population_size, 10u);
     EXPECT_EQ(answer->parameters->active.food_health, 30);
-    EXPECT_EQ(entry().world.parameters().requested.food_health, 25);
+    EXPECT_EQ(entry().world.parameters().requested.values.food_health, 25);
     EXPECT_EQ(entry().world.parameters().revision, 1u);
 }
 
@@ -429,7 +429,7 @@ TEST(Laboratory, SurvivesAcceptedParametersAtAnyTick) {
                 }
                 parameters::ParameterValue value;
                 if (const auto* real = std::get_if<parameters::RealParameter>(&description.kind)) {
-                    const double now = real->get(entry.world.parameters().requested);
+                    const double now = real->get(entry.world.parameters().requested.values);
                     const double any = random.uniform(real->range.min, real->range.max);
                     value = random.chance(0.1)
                                 ? any

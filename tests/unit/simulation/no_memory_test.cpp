@@ -68,7 +68,7 @@ TEST_F(NoMemory, ChangesNothingForANewWorld) {
 
 TEST_F(NoMemory, ChangesNothingForAReset) {
     const std::uint64_t revision = world().parameters().revision;
-    const parameters::Parameters requested = world().parameters().requested;
+    const parameters::Parameters requested = world().parameters().requested.values;
     expect_nothing_changes_until_done(ResetWorld{"w", base::Seed{9}, {3, 4}});
     EXPECT_EQ(world().hash(), (World{requested, {9}}.hash()));
     EXPECT_EQ(world().moment().tick, 0u);

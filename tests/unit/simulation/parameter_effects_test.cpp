@@ -49,10 +49,11 @@ TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
         World world = small_world();
         world.advance_tick(executor);
-        const parameters::Assignment assignment = parameters::other_value(description, world.parameters().requested);
+        const parameters::Assignment assignment =
+            parameters::other_value(description, world.parameters().requested.values);
         const auto holds = [&] { return description.get(world.parameters().active) == assignment.value; };
         world.request_parameters(*parameters::assign(world.parameters().requested, std::vector{assignment}));
-        EXPECT_EQ(description.get(world.parameters().requested), assignment.value);
+        EXPECT_EQ(description.get(world.parameters().requested.values), assignment.value);
         EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
         if (world.outcome() != evolution::Outcome::Running) {
             continue;
@@ -67,15 +68,15 @@ TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
         }
         world.reset(base::Seed{1});
         EXPECT_TRUE(holds()) << description.name;
-        EXPECT_TRUE(world.parameters().active == world.parameters().requested);
+        EXPECT_TRUE(world.parameters().active == world.parameters().requested.values);
     }
 }
 
 TEST(ParameterSet, CountsItsRevisions) {
     World world = small_world();
     EXPECT_EQ(world.parameters().revision, 1u);
-    world.request_parameters(*parameters::assign({}, parameters::one("food_health", 30.0)));
-    world.request_parameters(*parameters::assign({}, parameters::one("food_health", 31.0)));
+    world.request_parameters(*parameters::assign(world.parameters().requested, parameters::one("food_health", 30.0)));
+    world.request_parameters(*parameters::assign(world.parameters().requested, parameters::one("food_health", 31.0)));
     EXPECT_EQ(world.parameters().revision, 3u);
 }
 

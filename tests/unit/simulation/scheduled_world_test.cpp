@@ -179,7 +179,7 @@ TEST_F(ScheduleTest, AResetRestartsTheSchedule) {
     set(world, "food_health", 30.0);
     world.reset(base::Seed{5});
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.3);
-    EXPECT_EQ(world.parameters().requested.mutation_chance, 0.3);
+    EXPECT_EQ(world.parameters().requested.values.mutation_chance, 0.3);
     EXPECT_EQ(world.parameters().active.food_health, 30) << "unscheduled parameters keep their requested values";
     EXPECT_EQ(world.hash(), first.hash());
     advance_to(world, 2, 1);

@@ -189,7 +189,7 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
         {"moment", [](WorldState& s) { s.moment.simulated_s = std::nan(""); }},
         {"moment", [](WorldState& s) { s.moment.tick = s.moment.generation_tick = 100'000; }},
         {"parameters", [](WorldState& s) { s.parameters.active.damping = 0.5; }},
-        {"parameters", [](WorldState& s) { s.parameters.requested.body_size_min = 300; }},
+        {"parameters", [](WorldState& s) { s.parameters.requested.values.body_size_min = 300; }},
         {"islands", [](WorldState& s) { s.islands.clear(); }},
         {"end of the generation", [](WorldState& s) { s.ended.resize(1); }},
         {"number of organisms", [](WorldState& s) { s.islands[0].fate.lived_ticks.pop_back(); }},
