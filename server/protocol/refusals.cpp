@@ -1,5 +1,7 @@
 #include "server/protocol/refusals.h"
 
+#include "server/protocol/public_text.h"
+
 #include <algorithm>
 
 namespace evod::protocol {
@@ -34,7 +36,7 @@ v1::Status to_proto(const base::Refusal& refusal) {
     v1::Status status;
     status.set_code(static_cast<v1::Code>(refusal.code));
     status.set_reason(static_cast<v1::Reason>(reason_of(refusal)));
-    status.set_message(quotable(refusal.message, 2000));
+    status.set_message(quotable(public_text(refusal.message), 2000));
     for (const base::Violation& violation : refusal.violations) {
         if (static_cast<std::size_t>(status.violations_size()) == violations_listed_max) {
             status.mutable_message()->append(" (" + std::to_string(refusal.violations.size()) +
