@@ -7,6 +7,7 @@
 #include "client/ctl/text.h"
 #include "proto/codec/framing.h"
 #include "proto/command_line/command.h"
+#include "proto/files/input_file.h"
 
 #include <unistd.h>
 
@@ -37,14 +38,9 @@ struct CreateOptions {
 
 /// Adds the text of an experiment file to a request. The server parses the text.
 void add_experiment(const std::string& path, v1::CreateWorld& command) {
-    std::ifstream file = open_file("experiment", path);
-    command.set_experiment_json(std::string{std::istreambuf_iterator<char>{file}, {}});
+    command.set_experiment_json(text_in(path, "an experiment file", files::experiment_bytes_max));
     if (command.experiment_json().empty()) {
         throw Stop{ExitCode::Usage, "the experiment file " + path + " is empty"};
-    }
-    constexpr std::size_t bytes_max = 1 << 20;
-    if (command.experiment_json().size() > bytes_max) {
-        throw Stop{ExitCode::Usage, "the experiment file " + path + " has more than 1 MiB"};
     }
 }
 
