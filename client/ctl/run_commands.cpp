@@ -189,7 +189,7 @@ class Progress {
             last_ = "generation " + std::to_string(finished.statistics(0).generation()) + ": best " + fixed(best, 1) +
                     ", mean " + fixed(mean, 1);
             if (!live_) {
-                std::cerr << last_ << std::endl;
+                std::cerr << visible(last_) << std::endl;
             } else if (!goal_) {
                 print_live(last_);
             }
@@ -199,7 +199,7 @@ class Progress {
     void show(const v1::WorldInfo& world) {
         const std::uint64_t awaited = world.awaited_fitness().generation(); // 0: none
         if (awaited != 0 && awaited == awaited_ && std::exchange(awaited_reported_, awaited) != awaited) {
-            std::cerr << (live_ && shown_ ? "\n" : "") << world.name() << " waits for fitness from a client: "
+            std::cerr << (live_ && shown_ ? "\n" : "") << visible(world.name()) << " waits for fitness from a client: "
                       << core::to_text(world.awaited_fitness(), world.island_count()) << " in generation " << awaited
                       << std::endl;
             shown_ = false;
@@ -216,8 +216,8 @@ class Progress {
     void show(const v1::Storage& storage) {
         const std::string trouble = storage_problem(storage);
         if (trouble != trouble_) {
-            std::cerr << (live_ && shown_ ? "\n" : "") << (trouble.empty() ? "run files can be written again" : trouble)
-                      << '\n'
+            std::cerr << (live_ && shown_ ? "\n" : "")
+                      << (trouble.empty() ? "run files can be written again" : visible(trouble)) << '\n'
                       << std::flush;
             shown_ = false;
         }
@@ -226,7 +226,7 @@ class Progress {
 
   private:
     void print_live(const std::string& line) {
-        std::cerr << "\r\033[K" << clip_lines(line, terminal_size().columns - 1) << std::flush;
+        std::cerr << "\r\033[K" << clip_lines(visible(line), terminal_size().columns - 1) << std::flush;
         shown_ = true;
     }
 
@@ -306,7 +306,7 @@ Durations durations_of(Caller& caller, const std::string& world) {
 /// Prints how long the world will need; returns its goal.
 std::optional<Goal> announce(Caller& caller, const v1::WorldInfo& world, std::optional<std::uint64_t> generations) {
     const Durations durations = durations_of(caller, world.name());
-    std::cerr << plan_text(world, durations, generations) << '\n';
+    std::cerr << visible(plan_text(world, durations, generations)) << '\n';
     if (!generations) {
         return std::nullopt;
     }
