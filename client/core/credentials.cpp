@@ -1,13 +1,13 @@
 #include "client/core/credentials.h"
 
 #include "proto/command_line/command.h"
+#include "proto/files/input_file.h"
 
 #include <sys/stat.h>
 
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
+#include <sstream>
+#include <utility>
 
 namespace evod::core {
 
@@ -42,15 +42,18 @@ Result<void> apply(const Credentials& credentials, Options& options) {
     const auto refused = [&](const std::string& why) {
         return Error{.kind = Error::Kind::Usage, .what = "--token-file: " + path + ": " + why};
     };
-    struct stat about {};
-    std::ifstream file{path};
-    if (!file || ::stat(path.c_str(), &about) != 0) {
-        return refused(std::strerror(errno));
+    const auto file = files::InputFile::open(path, "a token file");
+    if (!file) {
+        return refused(file.error().why);
     }
-    if ((about.st_mode & 077) != 0) {
+    if ((file->about().st_mode & 077) != 0) {
         return refused("other users can read the file: run chmod 600 on it");
     }
-    file >> options.token;
+    auto text = file->read(files::token_bytes_max);
+    if (!text) {
+        return refused(text.error().why);
+    }
+    std::istringstream{*std::move(text)} >> options.token;
     if (options.token.empty()) {
         return refused("the file contains no token");
     }

@@ -1,5 +1,7 @@
 #include "client/core/protocol_state.h"
 
+#include "client/core/number_check.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -158,6 +160,8 @@ void ProtocolState::take_frame(const codec::Frame& frame, TimePoint now) {
     if (frame.channel == codec::Channel::Control) {
         if (auto message = codec::parse_body<evod::v1::ServerMessage>(frame.body); !message) {
             end_session({.reason = server + " sent damaged data: " + message.error().what}, now);
+        } else if (const std::string field = field_without_number(*message); !field.empty()) {
+            end_session({.reason = server + " sent damaged data: " + field + " is not a number that is allowed"}, now);
         } else if (status_.state != State::Connected) {
             take_first_message(*message, now);
         } else {

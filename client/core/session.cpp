@@ -1,5 +1,7 @@
 #include "client/core/session.h"
 
+#include "proto/files/input_file.h"
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ssl/error.hpp>
 #include <boost/asio/ssl/host_name_verification.hpp>
@@ -217,27 +219,40 @@ void Session::handle_addresses(const error_code& error, const Addresses& address
 std::string Session::load_tls_files() {
     const Options::Tls& files = *options_.tls;
     error_code error;
+    std::string unreadable;
     const auto unusable = [&](const std::string& file, const char* also = "") {
-        return file + " cannot be used for TLS: " + error.message() + also;
+        return file + " cannot be used for TLS: " + (unreadable.empty() ? error.message() + also : unreadable);
+    };
+    // Reads a file and passes its contents to `use`. Returns false after an error.
+    const auto load = [&](const std::string& file, const auto& use) {
+        const auto text = evod::files::read_input(file, "a PEM file", evod::files::pem_bytes_max);
+        if (!text) {
+            unreadable = text.error().why;
+            return false;
+        }
+        use(asio::buffer(*text));
+        return !error;
     };
     if (files.ca.empty()) {
         tls_context_->set_default_verify_paths(error);
-    } else {
-        tls_context_->load_verify_file(files.ca, error);
-    }
-    if (error) {
-        return unusable(files.ca.empty() ? "--tls: the certificates of this system" : "--ca: " + files.ca);
+        if (error) {
+            return unusable("--tls: the certificates of this system");
+        }
+    } else if (!load(files.ca, [&](const auto& pem) { tls_context_->add_certificate_authority(pem, error); })) {
+        return unusable("--ca: " + files.ca);
+    } else if (sk_X509_OBJECT_num(X509_STORE_get0_objects(SSL_CTX_get_cert_store(tls_context_->native_handle()))) ==
+               0) {
+        unreadable = "it contains no certificate";
+        return unusable("--ca: " + files.ca);
     }
     if (files.certificate.empty()) {
         return {};
     }
-    tls_context_->use_certificate_chain_file(files.certificate, error);
-    if (error) {
+    if (!load(files.certificate, [&](const auto& pem) { tls_context_->use_certificate_chain(pem, error); })) {
         return unusable("--cert: " + files.certificate);
     }
-    tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, asio::ssl::context::pem,
-                                       error);
-    if (error) {
+    if (!load(files.key.empty() ? files.certificate : files.key,
+              [&](const auto& pem) { tls_context_->use_private_key(pem, asio::ssl::context::pem, error); })) {
         return files.key.empty() ? unusable("--cert: " + files.certificate,
                                             ": if it does not contain the key, give the key with --key")
                                  : unusable("--key: " + files.key);

@@ -1,11 +1,11 @@
 // evoctl export: writes a table of a world's run file as CSV or JSON lines.
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
+#include "proto/files/unfinished_file.h"
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -82,14 +82,14 @@ void export_run(const Common& common, const ExportOptions& options) {
     Caller caller{common};
     v1::ExportPart part = caller.call(std::move(request), part_timeout).export_part();
     // The file is opened when the first part arrives, so that an existing file stays unchanged if the server refuses.
-    std::ofstream file;
+    std::optional<files::UnfinishedFile> file;
     if (!options.output.empty()) {
-        file.open(options.output, std::ios::binary);
-        if (!file) {
+        file.emplace(options.output);
+        if (!file->stream()) {
             throw Stop{ExitCode::Usage, "--output: cannot write " + options.output + ": " + std::strerror(errno)};
         }
     }
-    std::ostream& out = options.output.empty() ? std::cout : file;
+    std::ostream& out = file ? file->stream() : std::cout;
     if (part.generations_left_out() > 0) {
         std::cerr << "evoctl: " << part.generations_left_out()
                   << " generations are missing: they were purged, and the server cannot simulate them again because "
@@ -100,7 +100,7 @@ void export_run(const Common& common, const ExportOptions& options) {
         next.mutable_continue_export()->set_export_id(part.export_id());
         part = caller.call(std::move(next), part_timeout).export_part();
     }
-    if (!out.flush()) {
+    if (!(file ? file->finish() : static_cast<bool>(out.flush()))) {
         throw Stop{ExitCode::Refused, options.output.empty()
                                           ? "standard output cannot be written"
                                           : "--output: cannot write " + options.output + ", the disk may be full"};

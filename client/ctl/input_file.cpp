@@ -1,31 +1,24 @@
 #include "client/ctl/input_file.h"
 
-#include "client/ctl/caller.h"
+#include "client/ctl/stop.h"
 #include "proto/codec/population_csv.h"
+#include "proto/files/input_file.h"
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
+#include <sstream>
 #include <utility>
 
 namespace evod::ctl {
 
-std::ifstream open_file(const std::string& what, const std::string& path) {
-    std::error_code error;
-    std::ifstream file;
-    if (std::filesystem::is_directory(path, error)) {
-        errno = EISDIR; // a stream can open a folder, but throws when it reads from it
-    } else {
-        file.open(path, std::ios::binary);
+std::string text_in(const std::string& path, std::string_view kind, std::size_t bytes_max) {
+    auto text = files::read_input(path, kind, bytes_max);
+    if (!text) {
+        throw Stop{ExitCode::Usage, path + ": " + text.error().why};
     }
-    if (!file.is_open()) {
-        throw Stop{ExitCode::Usage, "the " + what + " file " + path + " cannot be read: " + std::strerror(errno)};
-    }
-    return file;
+    return *std::move(text);
 }
 
 codec::Population population_in(const std::string& path) {
-    std::ifstream file = open_file("population", path);
+    std::istringstream file{text_in(path, "a population file", organisms_bytes_max)};
     auto population = codec::read_population(file);
     if (!population) {
         throw Stop{ExitCode::Usage, "the population file " + path + " is invalid: " + population.error().what};

@@ -5,16 +5,17 @@
 
 #include "proto/codec/population_csv.h"
 
-#include <fstream>
 #include <string>
-#include <vector>
 
 namespace evod::ctl {
 
-/// Opens a file for reading; throws Stop if this fails.
+/// The largest file with values of organisms. A request, which is smaller, contains them as numbers.
+constexpr std::size_t organisms_bytes_max = 64 << 20;
+
+/// Returns the contents of a regular file. Throws Stop if it is a pipe or a device, too large, or cannot be read.
 ///
-/// what  kind of the file, for the error message: "experiment".
-std::ifstream open_file(const std::string& what, const std::string& path);
+/// kind  what the file should contain, for the error message: "an experiment file".
+std::string text_in(const std::string& path, std::string_view kind, std::size_t bytes_max);
 
 /// Reads a population file; throws Stop if it is not one.
 codec::Population population_in(const std::string& path);

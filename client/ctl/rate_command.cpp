@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct RateOptions {
 
 /// Reads a file with one number per line.
 std::vector<double> numbers_in(const std::string& path) {
-    std::ifstream file = open_file("fitness", path);
+    std::istringstream file{text_in(path, "a file of fitness values", organisms_bytes_max)};
     std::vector<double> numbers;
     for (std::string line; std::getline(file, line);) {
         line.erase(std::find_if_not(line.rbegin(), line.rend(), [](char c) { return c == '\r' || c == ' '; }).base(),

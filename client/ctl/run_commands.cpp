@@ -7,6 +7,7 @@
 #include "client/ctl/text.h"
 #include "proto/codec/framing.h"
 #include "proto/command_line/command.h"
+#include "proto/files/input_file.h"
 
 #include <unistd.h>
 
@@ -37,14 +38,9 @@ struct CreateOptions {
 
 /// Adds the text of an experiment file to a request. The server parses the text.
 void add_experiment(const std::string& path, v1::CreateWorld& command) {
-    std::ifstream file = open_file("experiment", path);
-    command.set_experiment_json(std::string{std::istreambuf_iterator<char>{file}, {}});
+    command.set_experiment_json(text_in(path, "an experiment file", files::experiment_bytes_max));
     if (command.experiment_json().empty()) {
         throw Stop{ExitCode::Usage, "the experiment file " + path + " is empty"};
-    }
-    constexpr std::size_t bytes_max = 1 << 20;
-    if (command.experiment_json().size() > bytes_max) {
-        throw Stop{ExitCode::Usage, "the experiment file " + path + " has more than 1 MiB"};
     }
 }
 
@@ -193,7 +189,7 @@ class Progress {
             last_ = "generation " + std::to_string(finished.statistics(0).generation()) + ": best " + fixed(best, 1) +
                     ", mean " + fixed(mean, 1);
             if (!live_) {
-                std::cerr << last_ << std::endl;
+                std::cerr << visible(last_) << std::endl;
             } else if (!goal_) {
                 print_live(last_);
             }
@@ -203,7 +199,7 @@ class Progress {
     void show(const v1::WorldInfo& world) {
         const std::uint64_t awaited = world.awaited_fitness().generation(); // 0: none
         if (awaited != 0 && awaited == awaited_ && std::exchange(awaited_reported_, awaited) != awaited) {
-            std::cerr << (live_ && shown_ ? "\n" : "") << world.name() << " waits for fitness from a client: "
+            std::cerr << (live_ && shown_ ? "\n" : "") << visible(world.name()) << " waits for fitness from a client: "
                       << core::to_text(world.awaited_fitness(), world.island_count()) << " in generation " << awaited
                       << std::endl;
             shown_ = false;
@@ -220,8 +216,8 @@ class Progress {
     void show(const v1::Storage& storage) {
         const std::string trouble = storage_problem(storage);
         if (trouble != trouble_) {
-            std::cerr << (live_ && shown_ ? "\n" : "") << (trouble.empty() ? "run files can be written again" : trouble)
-                      << '\n'
+            std::cerr << (live_ && shown_ ? "\n" : "")
+                      << (trouble.empty() ? "run files can be written again" : visible(trouble)) << '\n'
                       << std::flush;
             shown_ = false;
         }
@@ -230,7 +226,7 @@ class Progress {
 
   private:
     void print_live(const std::string& line) {
-        std::cerr << "\r\033[K" << clip_lines(line, terminal_size().columns - 1) << std::flush;
+        std::cerr << "\r\033[K" << clip_lines(visible(line), terminal_size().columns - 1) << std::flush;
         shown_ = true;
     }
 
@@ -310,7 +306,7 @@ Durations durations_of(Caller& caller, const std::string& world) {
 /// Prints how long the world will need; returns its goal.
 std::optional<Goal> announce(Caller& caller, const v1::WorldInfo& world, std::optional<std::uint64_t> generations) {
     const Durations durations = durations_of(caller, world.name());
-    std::cerr << plan_text(world, durations, generations) << '\n';
+    std::cerr << visible(plan_text(world, durations, generations)) << '\n';
     if (!generations) {
         return std::nullopt;
     }

@@ -51,7 +51,7 @@ void ConnectionReporter::report(const core::Connection& connection, Drawing& dra
     const bool lost = status.state != core::State::Connected;
     if (lost && !lost_) {
         drawing.leave();
-        std::cerr << status.reason << "; reconnecting\n";
+        std::cerr << visible(status.reason) << "; reconnecting\n";
     }
     lost_ = lost;
 }

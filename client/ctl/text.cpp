@@ -1,5 +1,7 @@
 #include "client/ctl/text.h"
 
+#include "proto/text/printable.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -132,14 +134,9 @@ std::string visible(std::string utf8) {
             i += color - 1;
             continue;
         }
-        const auto byte = static_cast<unsigned char>(utf8[i]);
-        const bool second_of_control = // second byte of a control character from U+0080 to U+009F
-            i > 0 && static_cast<unsigned char>(utf8[i - 1]) == 0xc2 && byte >= 0x80 && byte < 0xa0;
-        if ((byte < 0x20 && byte != '\n') || byte == 0x7f) {
-            utf8[i] = '?';
-        } else if (second_of_control) {
-            utf8.replace(i - 1, 2, "?");
-            --i;
+        const std::size_t bytes = text::unsafe_character_bytes(std::string_view{utf8}.substr(i));
+        if (bytes > 0 && utf8[i] != '\n') {
+            utf8.replace(i, bytes, "?");
         }
     }
     return utf8;

@@ -120,7 +120,7 @@ class WatchDisplay {
     void print_storage(const v1::Storage& storage) {
         const std::string trouble = storage_problem(storage);
         if (!redraw_ && trouble != trouble_) {
-            std::cerr << (trouble.empty() ? "run files can be written again" : trouble) << '\n';
+            std::cerr << (trouble.empty() ? "run files can be written again" : visible(trouble)) << '\n';
         }
         trouble_ = trouble;
     }
@@ -139,7 +139,7 @@ class WatchDisplay {
             if (common_.json) {
                 std::cout << to_json(event.generation_finished(), false) << std::flush;
             } else if (!redraw_) {
-                std::cout << text_of(lines_.back()) << std::endl;
+                std::cout << visible(text_of(lines_.back())) << std::endl;
             }
             ++seen_;
             if (generations_ && seen_ >= *generations_) {
@@ -165,7 +165,7 @@ class WatchDisplay {
         }
         if (!why.empty()) {
             drawing_.leave();
-            std::cerr << why << '\n';
+            std::cerr << visible(why) << '\n';
         }
         ended_ = true;
     }
@@ -366,7 +366,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         throw Stop{ExitCode::Refused, core::to_text(answer->status())};
     }
     if (const std::string trouble = storage_problem(caller.storage()); !trouble.empty()) {
-        std::cerr << trouble << '\n'; // the problem began before this command
+        std::cerr << visible(trouble) << '\n'; // the problem began before this command
     }
     ConnectionReporter reporter;
     Drawing none;

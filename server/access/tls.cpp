@@ -19,9 +19,6 @@ using base::Result;
 
 namespace {
 
-// Maximum size of a PEM file. All certificate authorities of a typical system take about 200 KiB.
-constexpr std::size_t pem_bytes_max = 4 << 20;
-
 Refusal refusal(std::string message) {
     return {.code = RefusalCode::FailedPrecondition, .message = std::move(message), .violations = {}};
 }
@@ -48,7 +45,7 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
     // Reads a file and passes its contents to `use`.
     const auto load = [](const char* option, const std::string& file, const auto& use) -> Result<void> {
-        const auto text = files::read_file(file, "a PEM file", pem_bytes_max);
+        const auto text = files::read_file(file, "a PEM file", files::pem_bytes_max);
         if (!text) {
             return refusal(std::string{option} + ": " + text.error().message);
         }

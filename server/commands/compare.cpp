@@ -1,5 +1,6 @@
 // `evod compare`: runs several worlds, or a world and its controls, with the same seeds, and tests the differences.
 #include "proto/command_line/command.h"
+#include "proto/files/unfinished_file.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/comparison_report.h"
@@ -83,9 +84,9 @@ std::optional<std::vector<std::vector<Course>>> run(const ComparisonPlan& plan, 
 
 /// Writes a file. If that fails, prints an error and returns false.
 bool write_file(const std::string& option, const std::string& path, const auto& write) {
-    std::ofstream file{path, std::ios::binary};
-    write(file);
-    if (file.flush()) {
+    files::UnfinishedFile file{path};
+    write(file.stream());
+    if (file.finish()) {
         return true;
     }
     fail(option + ": cannot write " + path + ": the disk may be full");

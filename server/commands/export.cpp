@@ -1,6 +1,7 @@
 #include "server/commands/export.h"
 
 #include "proto/command_line/command.h"
+#include "proto/files/unfinished_file.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/experiments/bundle.h"
@@ -12,9 +13,9 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
+#include <optional>
 
 namespace evod::commands {
 namespace {
@@ -132,19 +133,19 @@ Result<void> export_to(const ExportOptions& options) {
     if (!*wanted) {
         return experiments::write_bundle(run, options.bundle);
     }
-    std::ofstream output;
+    std::optional<files::UnfinishedFile> output;
     if (!options.output.empty()) {
-        output.open(options.output, std::ios::binary);
-        if (!output) {
+        output.emplace(options.output);
+        if (!output->stream()) {
             return cannot_write("--output: cannot write " + options.output + ": " + std::strerror(errno));
         }
     }
     std::ios::sync_with_stdio(false);
-    std::ostream& out = options.output.empty() ? std::cout : output;
+    std::ostream& out = output ? output->stream() : std::cout;
     if (Result<void> written = replay::write_table(run, **wanted, out); !written) {
         return with_option_names(written.error());
     }
-    if (!out.flush()) {
+    if (!(output ? output->finish() : static_cast<bool>(out.flush()))) {
         return cannot_write(options.output.empty()
                                 ? "cannot write to standard output: the disk may be full"
                                 : "--output: cannot write " + options.output + ": the disk may be full");

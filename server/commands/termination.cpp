@@ -12,6 +12,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -49,6 +50,10 @@ const char* missing_resource(std::exception_ptr thrown) {
         }
         return "out of memory or threads";
     } catch (const std::exception& error) {
+        // oneTBB throws std::runtime_error, without a code, if it cannot start a thread.
+        if (std::string_view{error.what()}.starts_with("pthread_create has failed")) {
+            return "out of memory or threads";
+        }
         abort_with(error);
     } catch (...) {
         std::abort();

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -189,20 +191,59 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     return write_checksums(folder);
 }
 
+/// Deletes the folder of a bundle that an ended program left unfinished. Refused if it contains other files.
+Result<void> remove_unfinished(const fs::path& part, const std::string& run_file) {
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(part, error))) {
+        return {};
+    }
+    const std::set<std::string> names{run_file,          run_file + "-journal", run_file + "-wal", run_file + "-shm",
+                                      "experiment.json", "population.csv",      "generations.csv", "organisms.csv",
+                                      "lineage.csv",     "events.csv",          "REPEAT.md",       "SHA256SUMS"};
+    bool other = !fs::is_directory(fs::symlink_status(part, error));
+    for (fs::directory_iterator file{part, error}, end; !other && !error && file != end; file.increment(error)) {
+        other = !names.contains(file->path().filename().string()) || !file->is_regular_file(error);
+    }
+    if (!other && !error) {
+        fs::remove_all(part, error);
+    }
+    if (other || error) {
+        return refusal(RefusalCode::AlreadyExists,
+                       "--bundle: " + part.string() +
+                           " exists, and is not an unfinished bundle of this run: move it away");
+    }
+    return {};
+}
+
 } // namespace
 
 Result<void> write_bundle(const replay::RunSource& run, const std::string& folder) {
     std::error_code error;
-    if (!fs::create_directory(folder, error)) {
-        return error ? refusal(RefusalCode::Unavailable,
-                               "--bundle: cannot create the folder " + folder + ": " + error.message())
-                     : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " exists already");
+    if (fs::exists(fs::symlink_status(folder, error))) {
+        return refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " exists already");
     }
-    Result<void> filled = fill(run, folder);
-    if (!filled) {
-        fs::remove_all(folder, error);
+    const fs::path whole = fs::path{folder}.has_filename() ? fs::path{folder} : fs::path{folder}.parent_path();
+    const fs::path part = whole.string() + ".part";
+    const auto cannot_create = [&] {
+        return refusal(RefusalCode::Unavailable,
+                       "--bundle: cannot create the folder " + folder + ": " + error.message());
+    };
+    if (auto removed = remove_unfinished(part, run.file.identity().name + ".evod"); !removed) {
+        return removed;
     }
-    return filled;
+    if (!fs::create_directory(part, error)) {
+        return cannot_create();
+    }
+    Result<void> filled = fill(run, part);
+    if (filled) {
+        fs::rename(part, whole, error);
+    }
+    if (!filled || error) {
+        std::error_code ignored;
+        fs::remove_all(part, ignored);
+        return filled ? cannot_create() : filled;
+    }
+    return {};
 }
 
 } // namespace evod::experiments

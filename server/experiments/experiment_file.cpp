@@ -7,14 +7,8 @@
 #include <filesystem>
 
 namespace evod::experiments {
-namespace {
-
-constexpr std::size_t file_bytes_max = 1 << 20;
-
-} // namespace
-
 base::Result<std::string> load_text(const std::string& path, const std::string& kind) {
-    return files::read_file(path, kind, file_bytes_max);
+    return files::read_file(path, kind, files::experiment_bytes_max);
 }
 
 base::Result<parameters::Experiment> load_experiment(const std::string& path) {

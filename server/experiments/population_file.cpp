@@ -12,18 +12,12 @@ namespace evod::experiments {
 
 using base::RefusalCode;
 
-namespace {
-
-constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take about 70 MB
-
-} // namespace
-
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
                                                           const parameters::Parameters& parameters) {
     if (path.empty()) {
         return simulation::FirstPopulation{};
     }
-    auto text = files::read_file(path, "a population file", population_bytes_max);
+    auto text = files::read_file(path, "a population file", files::population_bytes_max);
     if (!text) {
         return text.error();
     }

@@ -8,6 +8,7 @@
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
+#include "server/protocol/public_text.h"
 #include "server/protocol/worlds.h"
 #include "server/runtime/worker_pool.h"
 
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <utility>
 
@@ -59,7 +61,10 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     }
     server->tls_ = *std::move(tls);
     server->host_.tls = server->tls_.get();
+    protocol::hide_folder(server->options_.data_folder);
+    protocol::hide_folder(server->options_.token_folder);
     if (server->options_.replay) {
+        protocol::hide_folder(std::filesystem::path{server->options_.replay->path}.parent_path().string());
         auto replay = runtime::FileReplay::open(server->options_.replay->path, server->options_.replay->generation,
                                                 *server->executor_);
         if (!replay) {

@@ -1,5 +1,8 @@
 #include "server/protocol/refusals.h"
 
+#include "proto/text/printable.h"
+#include "server/protocol/public_text.h"
+
 #include <algorithm>
 
 namespace evod::protocol {
@@ -34,7 +37,7 @@ v1::Status to_proto(const base::Refusal& refusal) {
     v1::Status status;
     status.set_code(static_cast<v1::Code>(refusal.code));
     status.set_reason(static_cast<v1::Reason>(reason_of(refusal)));
-    status.set_message(quotable(refusal.message, 2000));
+    status.set_message(quotable(public_text(refusal.message), 2000));
     for (const base::Violation& violation : refusal.violations) {
         if (static_cast<std::size_t>(status.violations_size()) == violations_listed_max) {
             status.mutable_message()->append(" (" + std::to_string(refusal.violations.size()) +
@@ -57,29 +60,6 @@ v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal) {
     return response;
 }
 
-namespace {
-
-/// If the first character of `text` controls a terminal, ends a line or changes the direction of text, returns its
-/// length in bytes; otherwise 0.
-std::size_t unsafe_character_bytes(std::string_view text) {
-    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
-    const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
-    if (byte(0) < 0x20 || byte(0) == 0x7f) {
-        return 1;
-    }
-    if ((byte(0) == 0xc2 && is(byte(1), 0x80, 0x9f)) || (byte(0) == 0xd8 && byte(1) == 0x9c)) { // U+0080 to 9F, U+061C
-        return 2;
-    }
-    const bool e280 = byte(0) == 0xe2 && byte(1) == 0x80, e281 = byte(0) == 0xe2 && byte(1) == 0x81;
-    if ((e280 && (is(byte(2), 0x8e, 0x8f) || is(byte(2), 0xa8, 0xae))) || // U+200E, U+200F, U+2028 to 202E
-        (e281 && is(byte(2), 0xa6, 0xa9))) {                              // U+2066 to 2069
-        return 3;
-    }
-    return 0;
-}
-
-} // namespace
-
 std::string quotable(std::string_view text, std::size_t bytes_max) {
     const bool cut = text.size() > bytes_max;
     if (cut) {
@@ -90,10 +70,10 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
         text = text.substr(0, end);
     }
     std::string quoted;
-    while (!text.empty()) {
-        const std::size_t steering = unsafe_character_bytes(text);
-        quoted += steering > 0 ? '?' : text[0];
-        text.remove_prefix(std::max<std::size_t>(steering, 1));
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t steering = evod::text::unsafe_character_bytes(rest);
+        quoted += steering > 0 ? '?' : rest[0];
+        rest.remove_prefix(std::max<std::size_t>(steering, 1));
     }
     return cut ? quoted + "…" : quoted;
 }

@@ -1,6 +1,7 @@
 #include "server/protocol/worlds.h"
 
 #include "server/base/assert.h"
+#include "server/protocol/public_text.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
 
@@ -62,7 +63,7 @@ v1::Speed to_proto(const simulation::Speed& speed) {
 
 v1::Storage to_proto(const simulation::Storage& storage) {
     v1::Storage to;
-    to.set_reason(storage.reason);
+    to.set_reason(quotable(public_text(storage.reason), 2000));
     switch (storage.state) {
     case simulation::StorageState::KeepsUp:
         to.set_state(v1::STORAGE_STATE_KEEPS_UP);
@@ -136,7 +137,7 @@ v1::DamagedWorld to_proto(const simulation::DamagedWorld& world) {
     if (world.run_id) {
         to.set_run_id(to_text(*world.run_id));
     }
-    to.set_reason(quotable(world.reason, 2000));
+    to.set_reason(quotable(public_text(world.reason), 2000));
     return to;
 }
 

@@ -40,6 +40,12 @@ class Access(unittest.TestCase):
         file.chmod(0o644)
         with self.assertRaisesRegex(evod.Error, "other users can read the file: run chmod 600 on it"):
             evod.connect(address, token_file=str(file))
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe, 0o600)
+        for path, kind in (str(pipe), "a pipe"), (str(self.folder), "a folder"), ("/dev/zero", "a device"):
+            for what in ({"token_file": path}, {"ca": path}, {"tls": True, "cert": path}):
+                with self.assertRaisesRegex(evod.Error, f"this is {kind}"):
+                    evod.connect(address, **what)
         os.environ["EVOD_TOKEN"] = viewer
         self.addCleanup(os.environ.pop, "EVOD_TOKEN")
         evod.connect(address).close()

@@ -38,6 +38,14 @@ class Errors(unittest.TestCase):
         unknown = errors.refusal(c.Status(code=99, message="no"))
         self.assertEqual((type(unknown), unknown.code_name), (errors.Error, "code 99"))
 
+    def test_texts_of_the_server_control_no_terminal(self):
+        hostile = "a\x1b[2J\x9b31m\u202e\u2028b\n"
+        status = c.Status(code=c.CODE_ABORTED, message=hostile, violations=[
+            world_pb2.Violation(field=hostile, allowed=hostile, got=hostile)])
+        error = errors.refusal(status)
+        for text in (error.message, *error.violations[0]):
+            self.assertEqual(text, "a?[2J?31m??b?")
+
     def test_errors_are_pickled_whole(self):
         status = c.Status(code=c.CODE_ABORTED, message="m", reason=c.REASON_REVISION_CHANGED,
                           violations=[world_pb2.Violation(field="set_parameters.x", allowed="a", got="g")])

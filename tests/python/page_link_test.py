@@ -21,6 +21,13 @@ class Form(unittest.TestCase):
                                           ({"page_host": "192.0.2.1"}, Endpoint("lab"), False, "http://192.0.2.1:7745/")):
             self.assertEqual(page_link.page_of(session_pb2.Welcome(page_port=7745, **fields), server, tls), page)
 
+    def test_names_of_the_server_cannot_leave_the_url(self):
+        for host in "\x1b]8;;x\x07", "a/b", "a@b", "\u202elab":
+            with self.assertRaises(evod.DamagedData):
+                page_link.page_of(session_pb2.Welcome(page_port=7745, page_host=host), Endpoint("lab"), False)
+        with self.assertRaises(evod.DamagedData):
+            page_link.link_of("http://x/", world_pb2.WorldInfo(name="\x1b[2J", generation=3), None, None, None, None, live=False)
+
     def test_a_replay_is_a_moment_of_its_original(self):
         info = world_pb2.WorldInfo(name="a.replay", generation=3, generation_tick=40)
         info.replay.replay_of = "a"

@@ -6,6 +6,7 @@ import os
 import pathlib
 import pty
 import re
+import shutil
 import signal
 import socket
 import ssl
@@ -150,6 +151,39 @@ class Roles(Access):
                              PERMISSION_DENIED)
         after = viewer.world()
         self.assertEqual(after.SerializeToString(), before.SerializeToString())
+
+    def test_a_viewer_reads_no_path_of_the_server(self):
+        folder = os.path.join(self.folder, "my data")
+        os.mkdir(folder)
+        start = lambda: self.server("--data", folder, "--http-port", "0")
+        token = token_command("add", "v", "--role", "viewer", data=folder).strip()
+        admin = token_command("add", "a", "--role", "admin", data=folder).strip()
+        server = start()
+        self.recorded(self.come(server, token=admin))
+        server.end()
+        for copy in ("damaged", "missing"):
+            shutil.copy(f"{folder}/w.evod", f"{folder}/{copy}.evod")
+        with open(f"{folder}/damaged.evod", "r+b") as file:
+            file.truncate(5000)
+        server = start()
+        viewer, admin = self.come(server, token=token), self.come(server, token=admin)
+        os.rename(f"{folder}/missing.evod", f"{folder}/moved.evod")
+        texts = [str(viewer.call(list_worlds=c.ListWorlds())), str(viewer.call(get_metrics=c.GetMetrics()))]
+        self.assertIn("damaged.evod", texts[0])
+        tables = [c.RUN_TABLE_POPULATION, c.RUN_TABLE_ORGANISMS]
+        requests = [dict(export_run=c.ExportRun(world="w", table=tables[0], format=c.TEXT_FORMAT_CSV, generation=99))]
+        for world in ("damaged", "missing"):
+            requests += [dict(export_run=c.ExportRun(world=world, table=table, format=c.TEXT_FORMAT_CSV)) for table in tables]
+            requests += [dict(get_breeding=c.GetBreeding(world=world)), dict(open_replay=c.OpenReplay(world=world))]
+        for request in requests:
+            texts.append(str(viewer.response(viewer.ask(**request))))
+        self.assertIn("w.evod has no such generation", texts[2])
+        self.assertRegex("".join(texts[3:]), r"missing\S*\.evod")
+        texts.append(str(admin.response(admin.ask(fork_world=c.ForkWorld(world="missing", name="f", at_generation=1)))))
+        for text in texts:
+            self.assertNotIn(self.folder, text)
+            self.assertNotIn("my data", text)
+        self.assertIn(folder, server.output())  # the log names the files with their paths
 
     def test_only_admins_may_send_long_frames(self):
         tokens = {role: self.token(name, role) for name, role in (("ada", ADMIN), ("bob", CONTROLLER), ("eve", VIEWER))}
@@ -505,7 +539,7 @@ class Tls(Access):
         self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_CA": certificates}))
         for words, options in ((f"not trusted: .*{strangers} has not signed it", ["--ca", strangers]),
                                ("not trusted: .*give the server's evod.crt with --ca", ["--tls"]),
-                               ("^evoctl: --ca: /nowhere cannot be used for TLS: No such file", ["--ca", "/nowhere"]),
+                               ("^evoctl: --ca: /nowhere cannot be used for TLS: cannot be read: No such file", ["--ca", "/nowhere"]),
                                (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__]),
                                ("^evoctl: --cert: .*give the key with --key", ["--ca", certificates, "--cert", certificates])):
             self.assertRegex(self.evoctl(*options, "worlds", server=server, status=3), words)

@@ -111,12 +111,12 @@ class DamagedWorld(past.Case):
         _, client = self.serve()
         self.assertEqual([world.name for world in client.call(list_worlds=c.ListWorlds()).worlds.worlds], ["default"])
 
-    def test_verify_gives_the_reason_in_the_same_words(self):
+    def test_verify_gives_the_reason_and_the_path(self):
         self.recorded("a")
         _, client = self.serve()
         reason = self.damaged(client)["a"].reason
         done = waiting.run([EVOD, "verify", str(self.path)], capture_output=True, text=True)
-        self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", f"evod: {reason}\n"))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", f"evod: {self.folder}/{reason}\n"))
 
     def test_a_replaced_copy_runs_again(self):
         self.recorded("a", "b")

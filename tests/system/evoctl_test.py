@@ -307,9 +307,19 @@ class Commands(WithServer):
     def test_unreadable_files_and_full_output_are_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             for option, what in ("--experiment", "experiment"), ("--population", "population"):
-                for path, why in (folder, "Is a directory"), (folder + "/none", "No such file or directory"):
-                    self.assertIn(f"the {what} file {path} cannot be read: {why}",
-                                  self.evoctl("create", "x", option, path, status=2))
+                for path, why in (folder, "this is a folder"), (folder + "/none", "cannot be read: No such file or directory"):
+                    self.assertIn(f"{path}: {why}", self.evoctl("create", "x", option, path, status=2))
+            pipe, large = folder + "/pipe", folder + "/large"
+            os.mkfifo(pipe, 0o600)
+            with open(large, "wb") as file:
+                file.truncate(1 << 33)  # takes no space
+            for path, why in (pipe, "this is a pipe"), ("/dev/zero", "this is a device"), (large, "too large for "):
+                for words in (["create", "x", "--experiment", path], ["create", "x", "--population", path], ["rate", path],
+                              ["place", "organism", "30,40", "--from", path], ["--token-file", path, "status"],
+                              ["--ca", path, "status"], ["--tls", "--cert", path, "status"]):
+                    if (words[0], why) != ("--token-file", "too large for "):  # other users can read it
+                        status = 3 if "status" in words and words[0] != "--token-file" else 2
+                        self.assertIn(why, self.evoctl(*words, status=status), words)
         self.assertIn("--key: mine.key requires the certificate of this key: give --cert",
                       self.evoctl("--key", "mine.key", "status", status=2))
         with open("/dev/full", "w") as full:

@@ -95,7 +95,7 @@ class Placing(access.Access):
         self.assertIn("food[0]: got " + number, self.evoctl("remove", "food", number, server=server, status=2))
         self.assertIn("X,Y", self.evoctl("place", "food", "30", server=server, status=2))
         self.assertIn("--from FILE or --copy ID", self.evoctl("place", "organism", "30,40", server=server, status=2))
-        self.assertIn("cannot be read: Is a directory",
+        self.assertIn(": this is a folder, not a population file",
                       self.evoctl("place", "organism", "30,40", "--from", self.folder, server=server, status=2))
         self.assertIn("items[0].x_px: got -1, allowed 4 to ",
                       self.evoctl("place", "food", "--", "-1,40", server=server, status=2))

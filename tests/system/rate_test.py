@@ -46,7 +46,7 @@ class Rating(access.Access):
         self.assertIn("waits for fitness", self.evoctl("status", server=server))
         self.assertIn("1 of 2 islands rated", self.evoctl("rate", numbers, "--generation", "1", server=server))
         for wrong, got in ((self.file("word.txt", "1\nx\n"), "line 2: got x"), (self.file("five.txt", "1\n" * 5), "got 5"),
-                           (self.file("none.txt", ""), "got none"), (self.folder, "cannot be read"),
+                           (self.file("none.txt", ""), "got none"), (self.folder, "this is a folder"), ("/dev/zero", "this is a device"),
                            (self.file("large.txt", "1e101\n"), "allowed -1e100 to 1e100")):
             self.assertIn(got, self.evoctl("rate", wrong, "--island", "1", server=server, status=2))
         self.assertIn("--generation: got 2, allowed 1", self.evoctl("rate", numbers, "--island", "1", "--generation", "2",

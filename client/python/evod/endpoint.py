@@ -5,6 +5,7 @@ import dataclasses
 import os
 import ssl
 
+from evod import input_file
 from evod.errors import Error, FileNotFound, InvalidArgument
 
 DEFAULT_PORT = 7744
@@ -72,11 +73,11 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
     if token_file is None:
         return os.environ.get("EVOD_TOKEN", "")
     try:
-        with open(token_file, encoding="utf-8") as file:
-            if os.fstat(file.fileno()).st_mode & 0o077:
-                why = "other users can read the file: run chmod 600 on it"
-                raise InvalidArgument(f"token_file: {os.fspath(token_file)}: {why}")
-            words = file.read(4096).split()
+        data, about = input_file.read_input(token_file, "a token file", input_file.TOKEN_BYTES_MAX)
+        if about.st_mode & 0o077:
+            why = "other users can read the file: run chmod 600 on it"
+            raise InvalidArgument(f"token_file: {os.fspath(token_file)}: {why}")
+        words = data.decode().split()
     except (OSError, UnicodeDecodeError) as error:
         why = str(error.strerror) if isinstance(error, OSError) else "the file is not text"
         raise _unusable(error, f"token_file: {os.fspath(token_file)}: {why}") from None
@@ -100,12 +101,16 @@ def tls_context(
     if not tls and ca is None and cert is None:
         return None
     try:
+        if ca is not None:
+            input_file.read_input(ca, "a PEM file", input_file.PEM_BYTES_MAX)
         context = ssl.create_default_context(cafile=ca)
     except (OSError, ssl.SSLError) as error:
         raise _unusable(error, f"{ca} cannot be used for TLS: {error.strerror or error}") from None
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     if cert is not None:
         try:
+            for file in (cert,) if key is None else (cert, key):
+                input_file.read_input(file, "a PEM file", input_file.PEM_BYTES_MAX)
             context.load_cert_chain(cert, key)
         except (OSError, ssl.SSLError) as error:
             raise _unusable(error, f"{cert} cannot be used for TLS: {error.strerror or error}") from None

@@ -21,6 +21,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import ClassVar, Iterable, NamedTuple, TypeVar
 
 from evod.v1 import commands_pb2, stream_pb2
@@ -209,10 +210,18 @@ def _with_arguments(text: str) -> str:
     return _PATH.sub(lambda path: argument_of(path[0]), text)
 
 
+def printable(text: str) -> str:
+    """Returns the text of a peer with '?' for characters that control a terminal or change the direction of text."""
+    return "".join("?" if unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs") else character for character in text)
+
+
 def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
-    violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
-    message = _with_arguments(status.message)
+    violations = (
+        Violation(argument_of(printable(v.field)), _with_arguments(printable(v.allowed)), printable(v.got))
+        for v in status.violations
+    )
+    message = _with_arguments(printable(status.message))
     error = _OF_CODE.get(status.code, Error)(message, violations, status.code)
     error.reason = status.reason
     return error

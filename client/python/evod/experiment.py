@@ -7,6 +7,7 @@ from typing import Any, Mapping, Union
 
 import numpy
 
+from evod import input_file
 from evod.errors import FileNotFound, InvalidArgument, wrong_argument
 
 Experiment = Union[str, "os.PathLike[str]", Mapping[str, object], None]
@@ -33,8 +34,7 @@ def values_of(experiment: Experiment) -> dict[str, object]:
         return dict(experiment or {})
     path = file_of(experiment)
     try:
-        with open(path, encoding="utf-8") as file:
-            values = json.load(file)
+        values = json.loads(input_file.read_input(path, "an experiment file", input_file.EXPERIMENT_BYTES_MAX)[0])
     except (OSError, ValueError) as error:
         raise InvalidArgument(f"experiment: {path}: {getattr(error, 'strerror', None) or error}") from None
     if not isinstance(values, dict):

@@ -4,7 +4,7 @@ from __future__ import annotations
 import re
 
 from evod.endpoint import Endpoint
-from evod.errors import FailedPrecondition, InvalidArgument
+from evod.errors import DamagedData, FailedPrecondition, InvalidArgument
 from evod.v1 import session_pb2, world_pb2
 
 
@@ -19,7 +19,10 @@ def page_of(welcome: session_pb2.Welcome, server: Endpoint, tls: bool) -> str:
     if welcome.page_port == 0:
         why = "start it with --web and, for other machines, --http-bind; or give the address of the page"
         raise FailedPrecondition(f"the server at {server} has no page that this machine can reach: {why}")
-    return f"{'https' if tls else 'http'}://{Endpoint(welcome.page_host or server.host, welcome.page_port)}/"
+    host = welcome.page_host or server.host
+    if not re.fullmatch(r"[0-9A-Za-z._:%-]+", host):
+        raise DamagedData("the server reports a host of its page that a URL cannot contain")
+    return f"{'https' if tls else 'http'}://{Endpoint(host, welcome.page_port)}/"
 
 
 def link_of(
@@ -33,6 +36,9 @@ def link_of(
     """
     if not re.fullmatch(r"https?://[!$-;=?-Z_a-z~\[\]%]+", page):
         raise InvalidArgument(f"page: got '{page}', allowed a URL without #, such as https://evod.example.org/")
+    world = info.replay.replay_of or info.name
+    if not re.fullmatch(r"[!$-;=?-Z_a-z~\[\]%]+", world):
+        raise DamagedData("the server reports a name of the world that a URL cannot contain")
     if live and generation is not None:
         raise InvalidArgument("generation and live are both given: use one of them")
     if tick is not None and generation is None:
@@ -41,7 +47,7 @@ def link_of(
         generation, tick = info.generation, info.generation_tick
     elif not 1 <= generation <= info.generation:
         raise InvalidArgument(f"generation: got {generation}, allowed 1 to {info.generation}")
-    fields = [("world", info.replay.replay_of or info.name)]
+    fields = [("world", world)]
     if not live:
         fields += [("generation", str(generation)), ("tick", str(tick or 0))]
     if island is not None or organism is not None:

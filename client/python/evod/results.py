@@ -293,6 +293,7 @@ class Brain(_Result):
 
     Its weights are the genes of the group ``brain``: for each hidden neuron the weights of its inputs, then its bias; then for
     each output the weights of the hidden neurons, then its bias. A neuron is tanh of the sum of its weighted inputs.
+    The inputs are computed from the current items; if food or poison reappears at the start of the next tick, they may differ.
     """
 
     input_names: tuple[str, ...]

@@ -1,10 +1,11 @@
 #include "client/viewer/drawing/png.h"
 
+#include "proto/files/unfinished_file.h"
+
 #include <png.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
@@ -42,16 +43,11 @@ std::string png_of(const sf::Image& image) {
 }
 
 void write_file(const std::string& path, const std::string& bytes) {
-    const auto fail = [&] { throw std::runtime_error{"could not write " + path + ": " + std::strerror(errno)}; };
-    FILE* file = std::fopen(path.c_str(), "wb");
-    if (file == nullptr) {
-        fail();
-    }
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    const int error = errno;
-    if (std::fclose(file) != 0 || !written) { // fclose() writes the rest of the buffer, so it can fail too
-        errno = written ? errno : error;
-        fail();
+    errno = 0;
+    files::UnfinishedFile file{path};
+    file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!file.finish()) {
+        throw std::runtime_error{"could not write " + path + ": " + std::strerror(errno)};
     }
 }
 

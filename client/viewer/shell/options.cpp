@@ -4,6 +4,7 @@
 #include "client/viewer/drawing/gui.h"
 #include "proto/command_line/completion.h"
 #include "proto/command_line/number.h"
+#include "proto/files/input_file.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +12,6 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 namespace evod::viewer {
@@ -76,18 +75,12 @@ core::Result<Script> read_script(const std::string& path) {
     const auto wrong = [&](const std::string& why) {
         return core::Error{.kind = core::Error::Kind::Usage, .what = "--script: " + path + ":" + why};
     };
-    std::error_code ignored;
-    std::ifstream file;
-    if (std::filesystem::is_directory(path, ignored)) {
-        errno = EISDIR; // without this check, a stream opens a folder and throws on reading
-    } else {
-        file.open(path);
+    constexpr std::size_t script_bytes_max = 1 << 20;
+    const auto text = files::read_input(path, "a script", script_bytes_max);
+    if (!text) {
+        return wrong(" " + text.error().why);
     }
-    if (!file.is_open()) {
-        return wrong(std::string{" "} + std::strerror(errno));
-    }
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    auto script = Script::parse(text);
+    auto script = Script::parse(*text);
     if (!script) {
         return wrong(script.error().what);
     }

@@ -1,5 +1,7 @@
 #include "client/viewer/shell/recent_servers.h"
 
+#include "proto/files/input_file.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +21,7 @@ namespace {
 
 constexpr std::size_t line_bytes_max = 300; // enough for a name of 255 bytes and a port
 constexpr std::size_t lines_max = 100;
+constexpr std::size_t file_bytes_max = (lines_max + 1) * (line_bytes_max + 1);
 
 } // namespace
 
@@ -32,7 +36,12 @@ void RecentServers::read() {
     if (!std::filesystem::exists(file_, error)) {
         return;
     }
-    std::ifstream in{file_};
+    const auto text = files::read_input(file_.string(), "a list of servers", file_bytes_max);
+    if (!text) {
+        problem_ = file_.string() + ": " + text.error().why + "; earlier servers are not listed";
+        return;
+    }
+    std::istringstream in{*text};
     std::vector<std::string> read;
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -44,10 +53,6 @@ void RecentServers::read() {
             return;
         }
         read.push_back(core::to_text(*address));
-    }
-    if (!in.eof()) {
-        problem_ = file_.string() + ": cannot be read; earlier servers are not listed";
-        return;
     }
     read.resize(std::min(read.size(), kept_max));
     addresses_ = std::move(read);

@@ -4,13 +4,16 @@
 #include "client/viewer/world/new_world.h"
 #include "client/viewer/world/user_folder.h"
 #include "proto/codec/population_csv.h"
+#include "proto/files/input_file.h"
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -24,20 +27,13 @@ constexpr std::chrono::seconds interval{1};
 
 /// Reads the population in a file of the freezer, or sets its problem.
 void read_file(const fs::path& path, Frozen& frozen) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) { // reading a pipe would block
-        frozen.problem = "Not a regular file";
+    auto text = files::read_input(path.string(), "a population file", Freezer::file_bytes_max);
+    if (!text) {
+        frozen.problem = text.error().why;
+        frozen.problem.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(frozen.problem.front())));
         return;
     }
-    if (fs::file_size(path, error) > Freezer::file_bytes_max) {
-        frozen.problem = "More than 16 MiB";
-        return;
-    }
-    std::ifstream in{path, std::ios::binary};
-    if (!in.is_open()) {
-        frozen.problem = std::string{"Cannot be read: "} + std::strerror(errno);
-        return;
-    }
+    std::istringstream in{*std::move(text)};
     auto population = codec::read_population(in);
     if (population) {
         frozen.population = *std::move(population);

@@ -36,6 +36,11 @@ TEST(TerminationDeathTest, ExhaustedThreadsAreReported) {
     }
 }
 
+TEST(TerminationDeathTest, AThreadThatOneTbbCannotStartIsReported) {
+    EXPECT_EXIT(call_uncaught([] { throw std::runtime_error{"pthread_create has failed: Resource unavailable"}; }),
+                testing::ExitedWithCode(exit_out_of_memory), "evod: out of memory or threads\n");
+}
+
 TEST(TerminationDeathTest, AnyOtherExceptionAborts) {
     EXPECT_EXIT(call_uncaught([] { throw std::runtime_error{"a bug"}; }), testing::KilledBySignal(SIGABRT),
                 "evod: a bug\n");

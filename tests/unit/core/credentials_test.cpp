@@ -57,7 +57,7 @@ TEST_F(CredentialsTest, ATokenFileMustBePrivateAndHoldAToken) {
     write_token(" \n");
     EXPECT_THAT(refusal(), HasSubstr("the file contains no token"));
     credentials.token_file = folder + "/none";
-    EXPECT_THAT(refusal(), HasSubstr("/none: No such file"));
+    EXPECT_THAT(refusal(), HasSubstr("/none: cannot be read: No such file"));
 }
 
 TEST_F(CredentialsTest, AnyFileOfTlsAsksForTls) {

@@ -343,6 +343,17 @@ TEST_F(Reconnecting, FollowsDamagedFrames) {
     }
 }
 
+TEST_F(Reconnecting, FollowsNumbersThatNoProgramCanUse) {
+    start();
+    welcome();
+    v1::ServerMessage message;
+    message.mutable_response()->mutable_description()->add_parameters()->set_max(
+        std::numeric_limits<double>::quiet_NaN());
+    receive(codec::encode_frame(codec::Channel::Control, message));
+    EXPECT_THAT(output.status.reason, HasSubstr("sent damaged data: evod.v1.ParameterDescription.max"));
+    EXPECT_EQ(output.status.state, State::Lost);
+}
+
 TEST_F(Reconnecting, UsesTheAnswersBeforeTheDamage) {
     start();
     welcome();

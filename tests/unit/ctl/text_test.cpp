@@ -35,6 +35,7 @@ TEST(Visible, RemovesControlCharacters) {
     EXPECT_EQ(visible("\xc2\x9b"
                       "31m \xc2\xa0 \xc3\x9b µ 🦠"),
               "?31m \xc2\xa0 \xc3\x9b µ 🦠");
+    EXPECT_EQ(visible("a\xe2\x80\xaf\xe2\x80\xae z"), "a\xe2\x80\xaf? z") << "U+202E reverses the text after it";
     EXPECT_EQ(visible("\xc2"), "\xc2");
 }
 

@@ -116,5 +116,21 @@ TEST_F(BundleTest, IsRefusedIfTheFolderExistsOrHasNoParent) {
     EXPECT_THAT(nowhere.error().message, HasSubstr("--bundle: cannot create"));
 }
 
+TEST_F(BundleTest, ReplacesWhatAnEndedProgramLeftUnfinished) {
+    record(0);
+    const std::string part = folder.path() + "/bundle.part";
+    fs::create_directory(part);
+    std::ofstream{part + "/events.csv"} << "half";
+    std::ofstream{part + "/note"} << "of the user";
+    const auto other = write("bundle");
+    ASSERT_FALSE(other);
+    EXPECT_THAT(other.error().message, HasSubstr("bundle.part exists, and is not an unfinished bundle"));
+    EXPECT_TRUE(fs::exists(part + "/note"));
+    fs::remove(part + "/note");
+    ASSERT_TRUE(write("bundle"));
+    EXPECT_TRUE(names().contains("SHA256SUMS"));
+    EXPECT_FALSE(fs::exists(part));
+}
+
 } // namespace
 } // namespace evod::experiments

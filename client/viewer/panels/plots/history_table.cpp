@@ -1,7 +1,8 @@
 #include "client/viewer/panels/plots/history_table.h"
 
+#include "proto/files/input_file.h"
+
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -247,12 +248,12 @@ std::string HistoryTable::to_csv() const {
 }
 
 core::Result<HistoryTable> load_history(const std::string& path) {
-    std::ifstream file{path, std::ios::binary};
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    if (!file) {
-        return core::Error{core::Error::Kind::Usage, "could not read " + path + ": " + std::strerror(errno)};
+    constexpr std::size_t history_bytes_max = 1 << 28;
+    const auto text = files::read_input(path, "a table of statistics", history_bytes_max);
+    if (!text) {
+        return core::Error{core::Error::Kind::Usage, path + ": " + text.error().why};
     }
-    auto read = core::read_history_csv(text);
+    auto read = core::read_history_csv(*text);
     if (!read) {
         return core::Error{read.error().kind, path + ": " + read.error().what};
     }

@@ -71,8 +71,8 @@ TEST_F(FreezerTest, ListsDamagedFilesWithTheirReason) {
     ASSERT_EQ(mkfifo((freezer.folder() / "pipe.csv").c_str(), 0600), 0);
     EXPECT_THAT(names(), ElementsAre("cut", "folder", "pipe"));
     EXPECT_THAT(freezer.find("cut")->problem, HasSubstr("line 2: got \"0,0,1,2,3\", allowed"));
-    EXPECT_EQ(freezer.find("folder")->problem, "Not a regular file");
-    EXPECT_EQ(freezer.find("pipe")->problem, "Not a regular file");
+    EXPECT_EQ(freezer.find("folder")->problem, "This is a folder, not a population file");
+    EXPECT_EQ(freezer.find("pipe")->problem, "This is a pipe, not a population file");
     EXPECT_EQ(freezer.find("cut")->organism_count(), 0u);
 }
 

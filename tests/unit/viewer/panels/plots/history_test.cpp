@@ -278,7 +278,7 @@ TEST(HistoryTable, IsReadBackFromAFile) {
     std::ofstream{path} << "a,b\n";
     EXPECT_THAT(load_history(path).error().what, HasSubstr(path + ": line 1"));
     std::filesystem::remove(path);
-    EXPECT_EQ(load_history(path).error().what, "could not read " + path + ": No such file or directory");
+    EXPECT_EQ(load_history(path).error().what, path + ": cannot be read: No such file or directory");
 }
 
 } // namespace

@@ -1,0 +1,34 @@
+// Printable: which characters of a text from a peer must not reach a terminal or a log. Standard library only, because
+// every folder may include this one.
+//
+// Threads      any; no state.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace evod::text {
+
+/// If the first character of `utf8` controls a terminal, ends a line or changes the direction of text, returns its
+/// length in bytes; otherwise 0.
+inline std::size_t unsafe_character_bytes(std::string_view utf8) {
+    const auto byte = [&](std::size_t at) { return at < utf8.size() ? static_cast<unsigned char>(utf8[at]) : 0; };
+    const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
+    if (utf8.empty()) {
+        return 0;
+    }
+    if (byte(0) < 0x20 || byte(0) == 0x7f) {
+        return 1;
+    }
+    if ((byte(0) == 0xc2 && is(byte(1), 0x80, 0x9f)) || (byte(0) == 0xd8 && byte(1) == 0x9c)) { // U+0080 to 9F, U+061C
+        return 2;
+    }
+    const bool e280 = byte(0) == 0xe2 && byte(1) == 0x80, e281 = byte(0) == 0xe2 && byte(1) == 0x81;
+    if ((e280 && (is(byte(2), 0x8e, 0x8f) || is(byte(2), 0xa8, 0xae))) || // U+200E, U+200F, U+2028 to 202E
+        (e281 && is(byte(2), 0xa6, 0xa9))) {                              // U+2066 to 2069
+        return 3;
+    }
+    return 0;
+}
+
+} // namespace evod::text

@@ -1,0 +1,44 @@
+#include "client/core/number_check.h"
+
+#include "evod/v1/session.pb.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace evod::core {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+
+TEST(NumberCheck, FindsNanAtAnyDepth) {
+    v1::ServerMessage message;
+    EXPECT_EQ(field_without_number(message), "");
+    auto& statistics = *message.mutable_response()->mutable_statistics();
+    statistics.add_last()->set_fitness_best(1);
+    EXPECT_EQ(field_without_number(message), "");
+    statistics.add_last()->add_genes()->set_mean(nan);
+    EXPECT_EQ(field_without_number(message), "evod.v1.GeneStatistics.mean");
+    v1::ServerMessage floats;
+    floats.mutable_response()->mutable_organism()->mutable_brain()->add_inputs(std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(field_without_number(floats), "evod.v1.Brain.inputs");
+}
+
+TEST(NumberCheck, LimitsOfParametersAreFinite) {
+    for (const double limit : {nan, infinite, -infinite, std::numeric_limits<double>::max()}) {
+        v1::ParameterDescription parameter;
+        parameter.set_min(0);
+        EXPECT_EQ(field_without_number(parameter), "");
+        parameter.set_max(limit);
+        EXPECT_EQ(field_without_number(parameter), "evod.v1.ParameterDescription.max");
+    }
+}
+
+TEST(NumberCheck, InfinityIsANumberElsewhere) {
+    v1::LiveStatistics statistics;
+    statistics.set_health_mean(infinite);
+    EXPECT_EQ(field_without_number(statistics), "");
+}
+
+} // namespace
+} // namespace evod::core
