@@ -303,7 +303,7 @@ Result<Applied> fork_at_opening(Laboratory& laboratory, const ForkWorld& command
     if (!origin) {
         return origin.error();
     }
-    return laboratory.fork(command, (*origin)->world.at_its_opening(executor));
+    return laboratory.adopt(command, (*origin)->world.at_its_opening(executor));
 }
 
 class SharedLaboratory : public testing::TestWithParam<std::uint32_t> {};

@@ -88,7 +88,7 @@ class Extreme {
     }
 
     void request() {
-        const parameters::Assignment assignment = extreme_assignment(world_.parameters().requested, draws_);
+        const parameters::Assignment assignment = extreme_assignment(world_.parameters().requested.values, draws_);
         if (const auto requested = parameters::request_of(world_.parameters(), {&assignment, 1})) {
             note(" set " + assignment.name + "=" + parameters::to_text(assignment.value));
             world_.request_parameters(*requested);

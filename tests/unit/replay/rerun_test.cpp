@@ -216,8 +216,8 @@ TEST_F(RerunTest, AnImpossibleBeginningIsReported) {
              // Each set is valid, but after the next tick the organisms of this generation would not have room.
              {"parameters",
               [](GenerationBegun& begun) {
-                  begun.opening.parameters.requested.body_size_max = 1'000;
-                  begun.opening.parameters.requested.population_size = 5;
+                  begun.opening.parameters.requested.values.body_size_max = 1'000;
+                  begun.opening.parameters.requested.values.population_size = 5;
               }},
          }) {
         begin_again();
