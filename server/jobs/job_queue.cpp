@@ -3,16 +3,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <system_error>
 #include <utility>
 
 namespace evod::jobs {
 
 JobQueue::JobQueue(Options options) : options_{std::move(options)} {
     threads_.reserve(options_.threads_max);
-    if (options_.start_now) {
-        const std::lock_guard lock{mutex_};
-        start_thread();
-    }
+    const std::lock_guard lock{mutex_};
+    start_thread();
 }
 
 JobQueue::~JobQueue() {
@@ -35,7 +34,10 @@ std::stop_source JobQueue::add(Job job) {
         const std::lock_guard lock{mutex_};
         waiting_.push_back({std::move(job), stop});
         if (waiting_.size() > idle_threads_ && threads_.size() < options_.threads_max) {
-            start_thread();
+            try {
+                start_thread();
+            } catch (const std::system_error&) { // the system has no further thread: the job waits for one of the queue
+            }
         }
     }
     changed_.notify_one();
@@ -43,8 +45,8 @@ std::stop_source JobQueue::add(Job job) {
 }
 
 void JobQueue::start_thread() {
-    ++idle_threads_;
     threads_.emplace_back([this] { work(); });
+    ++idle_threads_;
 }
 
 void JobQueue::work() {

@@ -3,7 +3,8 @@
 // Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
 // Owner        the object whose jobs it runs. A job owns its data and delivers its result itself.
-// Threads      the queue starts a thread when a job is added and no thread is idle. Any thread may call add().
+// Threads      the constructor starts the first thread. The queue starts another one when a job is added and no thread is
+//              idle. If the system refuses it, the job waits for a thread that exists. Any thread may call add().
 // Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 
@@ -31,8 +32,8 @@ class JobQueue {
         // Niceness of the threads. With 10, a job gets about a tenth of a processor beside a busy thread of the
         // simulation.
         int niceness = 0;
-        bool start_now = false; // start the first thread in the constructor, so that handle() is valid
     };
+    /// Throws std::system_error if no thread can be started.
     explicit JobQueue(Options options);
     /// Requests all jobs to stop, waits for the running jobs and drops the waiting ones.
     ~JobQueue();
@@ -44,7 +45,7 @@ class JobQueue {
     /// returns  a handle that cancels the job. A job that is cancelled while it waits still runs, with `stop`
     ///          requested.
     std::stop_source add(Job job);
-    /// The first thread, for reading its CPU time. Only valid with Options::start_now.
+    /// The first thread, for reading its CPU time.
     pthread_t handle() { return threads_.front().native_handle(); }
 
   private:

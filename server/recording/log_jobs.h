@@ -35,7 +35,7 @@ class LogJobs {
 
     RecordQueue& queue_;
     std::size_t running_count_ = 0;
-    jobs::JobQueue jobs_{{.name = "packing", .niceness = 10, .start_now = true}}; // its jobs use the members above
+    jobs::JobQueue jobs_{{.name = "packing", .niceness = 10}}; // its jobs use the members above
 };
 
 } // namespace evod::recording

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <pthread.h>
+
 #include <atomic>
 #include <future>
 #include <optional>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -92,6 +95,43 @@ TEST(JobQueue, ItsEndStopsRunningJobsAndDropsWaitingOnes) {
     }
     EXPECT_TRUE(stopped);
     EXPECT_FALSE(other_ran);
+}
+
+/// As long as it exists, no thread can be started: the stacks of new threads do not fit into memory.
+class NoFurtherThreads {
+  public:
+    NoFurtherThreads() {
+        pthread_getattr_default_np(&before_);
+        pthread_attr_t huge;
+        pthread_attr_init(&huge);
+        pthread_attr_setstacksize(&huge, std::size_t{1} << 50);
+        pthread_setattr_default_np(&huge);
+        pthread_attr_destroy(&huge);
+    }
+    ~NoFurtherThreads() {
+        pthread_setattr_default_np(&before_);
+        pthread_attr_destroy(&before_);
+    }
+
+  private:
+    pthread_attr_t before_;
+};
+
+TEST(JobQueue, AJobWithoutItsOwnThreadWaits) {
+    JobQueue queue{{.name = "test", .threads_max = 2}};
+    std::promise<void> may_end;
+    std::promise<std::thread::id> first, second;
+    {
+        const NoFurtherThreads none;
+        EXPECT_THROW(JobQueue{{.name = "test"}}, std::system_error);
+        queue.add([&](const std::stop_token&) {
+            may_end.get_future().wait();
+            first.set_value(std::this_thread::get_id());
+        });
+        queue.add([&](const std::stop_token&) { second.set_value(std::this_thread::get_id()); });
+    }
+    may_end.set_value();
+    EXPECT_EQ(first.get_future().get(), second.get_future().get());
 }
 
 } // namespace

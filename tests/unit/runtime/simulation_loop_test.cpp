@@ -921,7 +921,7 @@ TEST_F(LoopWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     });
     pass_until([&] { return !look.empty(); });
     make_crowd();
-    pass_until([&] { return thread.idle(); });
+    pass_until([&] { return kept.laboratory().find("crowd") && thread.idle(); });
     take_away();
     send(simulation::Run{"crowd", {}});
     pass_until([&] { return state() == simulation::StorageState::Stalled; });
