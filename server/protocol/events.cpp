@@ -175,7 +175,7 @@ v1::Event event_of(const simulation::DamagedWorld& damaged) {
     if (damaged.run_id) {
         message.set_run_id(to_text(*damaged.run_id));
     }
-    message.mutable_world_damaged()->set_reason(damaged.reason);
+    *message.mutable_world_damaged()->mutable_reason() = to_proto(damaged).reason();
     return message;
 }
 

@@ -150,6 +150,9 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     constexpr bool is_fork = std::is_same_v<C, simulation::ForkWorld>;
     const C command = std::get<C>(mail.command);
     WorldBuilds::Order order{.construction = *std::move(construction)};
+    if (mail.session == 0) {
+        order.construction.genes = 0; // the first world of a server: every client must find it
+    }
     bool at_its_opening = false;
     if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
         order.name = command.world;

@@ -261,8 +261,8 @@ TEST_F(ArchiveTest, ATakenNameLeavesNoPartOfANewWorld) {
         auto data = DataFolder::open(folder.path());
         StorageThread thread{{}, std::chrono::hours{1}};
         const RecordedRun run{*data, thread};
-        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }));
-        EXPECT_THAT(*thread.disk().trouble(), HasSubstr(path + " exists already"));
+        ASSERT_TRUE(wait_until([&] { return !thread.disk().faults().empty(); }));
+        EXPECT_THAT(thread.disk().faults().begin()->second.why.message, HasSubstr(path + " exists already"));
     }
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
 }

@@ -133,7 +133,7 @@ class LoopWithBuilds : public testing::Test {
         return command;
     }
     void send(simulation::Command command) {
-        mailbox.push(CommandMail{std::move(command), {}, "request " + std::to_string(++sent)});
+        mailbox.push(CommandMail{std::move(command), {}, "request " + std::to_string(++sent), session});
     }
     /// One pass after a length of time in which `small` takes a tick.
     void pass() {
@@ -160,6 +160,8 @@ class LoopWithBuilds : public testing::Test {
         ASSERT_TRUE(wait_until([&] { return find("large") && tick("large") == at_tick; }, [this] { pass(); }));
     }
 
+    static constexpr std::uint64_t server_itself = 0;
+    std::uint64_t session = 1; // the sender of the commands
     std::mutex mutex;
     std::vector<std::string> answered; // the requests, in the order of their answers; with the message if refused
     int sent = 0;
@@ -206,6 +208,13 @@ TEST_F(LoopWithBuilds, ALargeWorldIsCreatedWhileOthersAdvance) {
     EXPECT_THAT(answers(),
                 testing::UnorderedElementsAre("request 1", "request 2", "request 3", "request 4",
                                               "request 5: a world with that name already exists", "request 6"));
+}
+
+TEST_F(LoopWithBuilds, TheFirstWorldOfAServerIsThereAtOnce) {
+    session = server_itself;
+    send(create("large", 2'000));
+    pass();
+    EXPECT_TRUE(find("large")) << "queries that arrive after the command must find it";
 }
 
 TEST_F(LoopWithBuilds, ALargeWorldIsForkedAsItWasWhenTheCommandArrived) {
