@@ -215,7 +215,7 @@ void WatchedServer::follow(const simulation::Command& command, const simulation:
         require(origin.has_value());
         simulation::Entry& twin = catch_up(**origin);
         if (fork != nullptr && fork->at_generation) {
-            require(twins_.fork(*fork, twin.world.at_its_opening(executor_)).has_value());
+            require(twins_.adopt(*fork, twin.world.at_its_opening(executor_)).has_value());
             return;
         }
     }
