@@ -16,7 +16,7 @@ struct Mismatch {
 };
 
 // Each function returns the first difference; nullopt if there is none. Numbers are compared exactly, but −0 equals 0,
-// because SQLite stores −0 as 0.
+// because SQLite stores −0 as 0. Selection accounts may differ in their last digits.
 
 std::optional<Mismatch> compare(const simulation::Opening& stored, const simulation::Opening& simulated);
 // Both vectors have one entry per island.

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace evod::replay {
 namespace {
@@ -159,13 +158,15 @@ TEST_F(SelectionAccountTest, MissingOrChangedAccountsAreNamed) {
     EXPECT_THAT(complaint(), HasSubstr("the selection accounts of generation 3"));
 }
 
-TEST_F(SelectionAccountTest, AChangedAccountIsReported) {
+TEST_F(SelectionAccountTest, AChangedAccountIsReportedButItsLastDigits) {
     record(1);
     const auto file = RunFile::open_read_only(path());
     auto begun = *(*file)->generations().beginning_of(5);
     const auto simulated = begun->born;
     EXPECT_FALSE(compare(begun->born, simulated));
-    (*begun->born[1].account)[2].transmission += 1e-13;
+    (*begun->born[1].account)[2].transmission += 1e-12;
+    EXPECT_FALSE(compare(begun->born, simulated)) << "the last digits, as an earlier build may have stored them";
+    (*begun->born[1].account)[2].transmission += 1e-6;
     const auto found = compare(begun->born, simulated);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->part, "the selection account: body_size_transmission on island 1");
@@ -174,7 +175,7 @@ TEST_F(SelectionAccountTest, AChangedAccountIsReported) {
 
     const auto ended = *(*file)->generations().statistics_of(5);
     auto other = ended;
-    (*other[0].account)[0].change = std::nextafter((*other[0].account)[0].change, 1e9);
+    (*other[0].account)[0].change *= 1 + 1e-6;
     const auto in_statistics = compare(other, ended);
     ASSERT_TRUE(in_statistics);
     EXPECT_EQ(in_statistics->part, "the statistics: normal_speed_change on island 0");
