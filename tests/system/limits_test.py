@@ -255,22 +255,23 @@ class Sessions(Case):
 
 class Requests(Case):
     @contextlib.contextmanager
-    def busy(self, admin, name, organisms=100_000):
-        """Occupies the simulation with creating a large world."""
-        asked = admin.ask(create_world=c.CreateWorld(name=name, seed=1, parameters=plain.assignments(
-            population_size=organisms, scale_with_population=True, reference_population=50)))
+    def busy(self, admin, tick, organisms=100_000):
+        """Occupies the simulation with one tick of a large world."""
+        if tick == 1:
+            admin.call(create_world=c.CreateWorld(name="large", seed=1, parameters=plain.assignments(
+                population_size=organisms, scale_with_population=True, reference_population=50)))
+        asked = admin.ask(run_until_tick=c.RunUntilTick(world="large", tick=tick))
         yield
         self.assertEqual(admin.response(asked).status.code, OK)
-        admin.call(delete_world=c.DeleteWorld(world=name))
 
     def test_in_flight(self):
         server = self.serve()
         client, other = self.come(server), self.come(server)
         limit = client.welcome.limits.requests_in_flight_max
-        rounds = iter(range(1000))
+        ticks = iter(range(1, 1000))
 
         def codes(count):
-            with self.busy(other, f"large{next(rounds)}"):
+            with self.busy(other, next(ticks)):
                 client.socket.sendall(b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
                                                for i in range(count)))
                 return [client.response(i + 1).status.code for i in range(count)]
@@ -291,19 +292,19 @@ class Requests(Case):
         admin = self.come(server)
         limits = admin.welcome.limits
         clients = [self.come(server) for _ in range(limits.mailbox_commands_max // limits.requests_in_flight_max + 1)]
-        rounds = iter(range(1000))
+        ticks = iter(range(1, 1000))
 
         def crowd():
-            round = next(rounds)
-            bursts = [b"".join(frame(request(request_id=i + 1, client_key=f"{round} {number}", pause=c.Pause()))
+            tick = next(ticks)
+            bursts = [b"".join(frame(request(request_id=i + 1, client_key=f"{tick} {number}", pause=c.Pause()))
                                for i in range(limits.requests_in_flight_max)) for number in range(len(clients))]
-            with self.busy(admin, f"large{round}", 500_000):
+            with self.busy(admin, tick, 500_000):
                 for client, burst in zip(clients, bursts):
                     client.socket.sendall(burst)
                 codes = [client.response(i + 1).status.code for client in clients
                          for i in range(limits.requests_in_flight_max)]
             self.assertLessEqual(set(codes), {OK, EXHAUSTED})
-            # the large world may still be in the mailbox
+            # the command to the large world may still be in the mailbox
             self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)
             return EXHAUSTED in codes
         with self.meets(admin, "mailbox_commands_max"):
