@@ -46,11 +46,11 @@ Result<std::string> RegularFile::read(std::size_t bytes_max) const {
 }
 
 Result<std::string> read_file(const std::string& path, std::string_view kind, std::size_t bytes_max) {
-    const auto file = RegularFile::open(path, kind);
-    if (!file) {
-        return file.error();
+    auto text = read_input(path, kind, bytes_max);
+    if (!text) {
+        return refused(path, text.error());
     }
-    return file->read(bytes_max);
+    return *std::move(text);
 }
 
 } // namespace evod::files

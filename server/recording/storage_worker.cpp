@@ -431,7 +431,7 @@ bool StorageWorker::log_lost_records(const RunLog& run) const {
     if (bytes == 0) {
         return false;
     }
-    const std::string world = std::filesystem::path{run.path}.stem().string();
+    const std::string world = run_file::world_of(run.path);
     const std::string lost = fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
                                          "and the last tick",
                                          bytes, generations, commands);

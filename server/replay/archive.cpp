@@ -209,8 +209,7 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
 }
 
 void Archive::add_damaged(const std::string& path, const Refusal& why) {
-    simulation::DamagedWorld world{
-        .name = run_file::world_of(path), .run_id = {}, .reason = with_remedies(why).message};
+    simulation::DamagedWorld world = damaged_world(run_file::world_of(path), {}, why);
     if (const auto file = run_file::RunFile::open_checked(path)) {
         world.run_id = (*file)->identity().run_id;
     }

@@ -99,4 +99,9 @@ base::Refusal with_remedies(base::Refusal why) {
     return why;
 }
 
+simulation::DamagedWorld damaged_world(std::string name, const std::optional<simulation::RunId>& run_id,
+                                       const base::Refusal& why) {
+    return {.name = std::move(name), .run_id = run_id, .reason = with_remedies(why).message};
+}
+
 } // namespace evod::replay

@@ -33,5 +33,10 @@ base::Result<void> check_beginning(run_file::RunFile& file, const base::StateHas
 /// Extends the reason why a world cannot be restored from its file by what can be done about it. Clients, the log and
 /// `evod verify` show this sentence.
 base::Refusal with_remedies(base::Refusal why);
+/// Returns the damaged world that a world becomes if its run file cannot be restored or written for this reason.
+///
+/// run_id  nullopt: unknown.
+simulation::DamagedWorld damaged_world(std::string name, const std::optional<simulation::RunId>& run_id,
+                                       const base::Refusal& why);
 
 } // namespace evod::replay

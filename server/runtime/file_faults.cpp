@@ -5,11 +5,6 @@
 
 namespace evod::runtime {
 
-simulation::DamagedWorld damaged_world(const std::string& name, const std::optional<simulation::RunId>& run_id,
-                                       const base::Refusal& why) {
-    return {.name = name, .run_id = run_id, .reason = replay::with_remedies(why).message};
-}
-
 std::optional<base::Refusal> FileFaults::refusal_of(const std::string& world) const {
     const auto found = displaced_.find(world);
     if (found == displaced_.end()) {
@@ -27,16 +22,16 @@ FileFaults::Changes FileFaults::poll() {
     }
     std::map<std::string, base::Refusal> displaced;
     for (const auto& [name, fault] : recorder_->faults()) {
-        if (builds_.holds(name)) {
-            continue; // the build thread may be reading the world
-        }
         if (fault.kind == recording::RunFault::Kind::Displaced) {
             displaced.emplace(name, fault.why);
             replays_.stop_waiting(name);
             continue;
         }
+        if (builds_.holds(name)) {
+            continue; // the build thread may be reading the world
+        }
         const auto entry = std::as_const(laboratory_).find(name);
-        const auto damaged = damaged_world(name, (*entry)->run_id, fault.why);
+        const auto damaged = replay::damaged_world(name, (*entry)->run_id, fault.why);
         log::error({.world = name}, "world \"{}\" does not run any more: {}", name, damaged.reason);
         recorder_->give_up(name);
         laboratory_.replace_with_damaged(damaged);

@@ -21,10 +21,6 @@
 
 namespace evod::runtime {
 
-/// Returns the damaged world that a world becomes if its run file cannot be written for this reason.
-simulation::DamagedWorld damaged_world(const std::string& name, const std::optional<simulation::RunId>& run_id,
-                                       const base::Refusal& why);
-
 class FileFaults {
   public:
     /// All arguments must outlive this object. recorder: nullptr if the server stores no runs.
@@ -36,8 +32,8 @@ class FileFaults {
         std::vector<simulation::DamagedWorld> damaged; // the laboratory contains them now as damaged worlds
         std::vector<std::pair<std::string, simulation::Storage>> storage; // by name of the world
     };
-    /// Reads the faults and applies them to the laboratory, unless a build holds the world. Must be called after
-    /// Laboratory::set_storage().
+    /// Reads the faults and applies them to the laboratory. A world that a build holds does not become damaged yet. Must
+    /// be called after Laboratory::set_storage().
     Changes poll();
 
     bool is_displaced(const std::string& world) const { return displaced_.contains(world); }

@@ -5,6 +5,7 @@
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
+#include "server/replay/recovery.h"
 
 #include <memory>
 #include <type_traits>
@@ -151,7 +152,7 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     const C command = std::get<C>(mail.command);
     WorldBuilds::Order order{.construction = *std::move(construction)};
     if (mail.session == 0) {
-        order.construction.genes = 0; // the first world of a server: every client must find it
+        order.at_once = true; // the first world of a server: every client must find it
     }
     bool at_its_opening = false;
     if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
@@ -161,8 +162,7 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     }
     if constexpr (is_fork) {
         at_its_opening = command.at_generation.has_value();
-        const simulation::World* read = std::exchange(order.construction.reads, nullptr);
-        if (read != nullptr && (*laboratory_.find(command.world))->replay) {
+        if (order.construction.reads_world && (*laboratory_.find(command.world))->replay) {
             // Requests for replays do not wait for builds, so a replay is copied at once.
             auto copy = base::within_memory([&]() -> base::Result<std::shared_ptr<simulation::World>> {
                 return std::make_shared<simulation::World>(order.construction.construct(executor_));
@@ -171,7 +171,7 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
                 return answer(mail, copy.error(), before);
             }
             order.construction.construct = [copy = *copy](base::Executor&) { return std::move(*copy); };
-        } else if (read != nullptr) {
+        } else if (order.construction.reads_world) {
             order.original = command.world;
         }
     }
@@ -278,7 +278,7 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     const auto waiting = std::make_shared<CommandDone>(std::move(done));
     record.refused = [reply = outputs_.reply, waiting](const base::Refusal& why) {
         const std::string world = waiting->outcome->world;
-        reply(refused(std::move(*waiting), damaged_world(world, {}, why).refusal()));
+        reply(refused(std::move(*waiting), replay::damaged_world(world, {}, why).refusal()));
     };
     if (effect == RunEffect::BeginsAsFork) {
         const simulation::Entry& fork = **entry;

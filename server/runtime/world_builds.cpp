@@ -18,7 +18,7 @@ base::Result<BuiltWorld> WorldBuilds::build(const Order& order, base::Executor& 
 }
 
 void WorldBuilds::begin(Order order) {
-    if (order.construction.is_shared || order.construction.genes <= genes_built_at_once_max) {
+    if (order.at_once || order.construction.is_shared || order.construction.genes <= genes_built_at_once_max) {
         return order.adopt(build(order, executor_, [] {}));
     }
     const std::uint64_t number = ++last_number_;

@@ -30,6 +30,7 @@ class WorldBuilds {
     struct Order {
         std::string name = {};                 // of the world that will be adopted
         std::string original = {};             // the world that `construct` reads; empty if it reads none
+        bool at_once = false;                  // on the simulation thread, also if the world is large
         simulation::Construction construction; // `construct` may throw std::bad_alloc
         /// Completes the world. It must not read any other world; may throw std::bad_alloc.
         std::function<BuiltWorld(simulation::World, base::Executor&)> finish = {};

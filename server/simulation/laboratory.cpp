@@ -374,7 +374,7 @@ Result<Construction> Laboratory::construction(const ResetWorld& command) const {
     return Construction{.construct = [&world, seed = command.seed.value_or(world.seed()),
                                       leader = leader_](base::Executor&) { return world.restarted(seed, leader); },
                         .genes = genes_of(*beginning),
-                        .reads = &world,
+                        .reads_world = true,
                         .is_shared = leader_ != nullptr};
 }
 
@@ -568,7 +568,7 @@ Result<Construction> Laboratory::construction(const ForkWorld& command) const {
     return Construction{
         .construct = [&world, leader = leader_](base::Executor& executor) { return world.copy(executor, leader); },
         .genes = genes_of(world.parameters().active),
-        .reads = &world,
+        .reads_world = true,
         .is_shared = world.is_shared() || leader_ != nullptr};
 }
 

@@ -84,7 +84,8 @@ struct Entry {
     bool wants_tick() const;
 };
 
-/// A world that does not run, because it cannot be restored from its run file, or because this file is damaged. It keeps its name, and counts as a world.
+/// A world that does not run, because it cannot be restored from its run file, or because this file is damaged. It keeps
+/// its name, and counts as a world.
 struct DamagedWorld {
     std::string name;
     std::optional<RunId> run_id; // nullopt: the file cannot be read at all
@@ -100,9 +101,9 @@ std::uint64_t genes_of(const parameters::Parameters& p);
 /// The construction of the world of a CreateWorld, ResetWorld or ForkWorld.
 struct Construction {
     std::function<World(base::Executor&)> construct; // throws std::bad_alloc if memory does not suffice
-    std::uint64_t genes = 0;      // number of genes of all its organisms; the time it takes grows with this number
-    const World* reads = nullptr; // must not change until `construct` returns
-    bool is_shared = false;       // other processes take part, so `construct` must run on the thread of the laboratory
+    std::uint64_t genes = 0;  // number of genes of all its organisms; the time it takes grows with this number
+    bool reads_world = false; // it reads the world of the command, which must not change until `construct` returns
+    bool is_shared = false;   // other processes take part, so `construct` must run on the thread of the laboratory
 };
 
 /// The result of a command.

@@ -155,7 +155,7 @@ class World {
     base::Result<parameters::Parameters> beginning() const;
     /// Returns the world with which the run restarts after a reset: with the parameters of beginning(), the same
     /// schedule and, if one was given, the same first population. That population must be valid for these parameters.
-    /// Throws std::bad_alloc if memory does not suffice for the new world beside this one.
+    /// Throws std::bad_alloc if memory does not suffice for both worlds.
     ///
     /// leader  as for a new world.
     World restarted(base::Seed seed, Leader* leader = nullptr) const;

@@ -24,7 +24,8 @@ class History {
   public:
     explicit History(std::uint64_t seed);
 
-    /// Carries out the actions of the history. Returns its actions and the first difference as text; nullopt if there is no difference.
+    /// Performs the actions of the history. Returns them and the first difference as text; nullopt if there is no
+    /// difference.
     std::optional<std::string> play();
     /// The actions so far, one per line.
     const std::string& actions() const { return actions_; }
