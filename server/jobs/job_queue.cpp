@@ -1,7 +1,6 @@
 #include "server/jobs/job_queue.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
+#include "server/jobs/this_thread.h"
 
 #include <system_error>
 #include <utility>
@@ -50,12 +49,7 @@ void JobQueue::start_thread() {
 }
 
 void JobQueue::work() {
-    pthread_setname_np(pthread_self(), options_.name.c_str());
-    if (options_.niceness != 0) {
-        // On Linux each thread has its own niceness. If the call fails, the thread keeps the niceness of the
-        // process, which is harmless.
-        (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), options_.niceness);
-    }
+    set_up_thread(options_.name, options_.niceness);
     std::unique_lock lock{mutex_};
     while (true) {
         changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });

@@ -27,11 +27,9 @@ class JobQueue {
     using Job = std::function<void(const std::stop_token& stop)>;
 
     struct Options {
-        std::string name; // name of the threads in `top -H`; at most 15 characters
+        std::string name; // of the threads (this_thread.h)
         std::size_t threads_max = 1;
-        // Niceness of the threads. With 10, a job gets about a tenth of a processor beside a busy thread of the
-        // simulation.
-        int niceness = 0;
+        int niceness = 0; // of the threads
     };
     /// Throws std::system_error if no thread can be started.
     explicit JobQueue(Options options);

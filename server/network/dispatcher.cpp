@@ -61,10 +61,12 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
     return to;
 }
 
-/// Converts a request of the kind REQUEST_KIND_REPLAY into mail for the simulation thread.
-runtime::ReplayMail replay_mail(const v1::Request& request, std::uint64_t session) {
+/// Converts a request of the kind REQUEST_KIND_REPLAY into mail for the simulation threads.
+runtime::ReplayMail replay_mail(const v1::Request& request, const Session& session) {
+    const std::string& user = session.visitor().name;
     runtime::ReplayMail mail{.request = {},
-                             .session = session,
+                             .session = session.number(),
+                             .user = user.empty() ? session.address_prefix() : user,
                              .request_id = request.request_id(),
                              .request_name = protocol::name_of(request)};
     const std::string world = protocol::lookup_name(protocol::world_of(request));
@@ -132,10 +134,10 @@ base::Refusal shutting_down_refusal() {
 
 } // namespace
 
-Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
+Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
                        const Sessions& sessions, Streams& streams, LimitCounters& limit_counters,
                        std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
-    : mailbox_{mailbox}
+    : simulations_{simulations}
     , sessions_{sessions}
     , streams_{streams}
     , limit_counters_{limit_counters}
@@ -311,7 +313,17 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = by;
     }
-    return mailbox_.try_push(runtime::CommandMail{.command = std::move(command),
+    const std::string world = std::visit(
+        [](const auto& c) {
+            if constexpr (requires { c.name; }) {
+                return std::string{}; // it creates a live world
+            } else {
+                return c.world;
+            }
+        },
+        command);
+    runtime::Mailbox& mailbox = simulations_.mailbox_of(world);
+    return mailbox.try_push(runtime::CommandMail{.command = std::move(command),
                                                   .origin = {.client = std::move(by),
                                                              .client_key = request.client_key(),
                                                              .request_id = request.request_id(),
@@ -323,7 +335,9 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
 void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
     for (runtime::Delivery& delivery : deliveries) {
         if (auto* reply = std::get_if<runtime::Reply>(&delivery)) {
-            std::visit([this](auto& done) { on_done(std::move(done)); }, *reply);
+            if (auto answer = simulations_.pass_on(std::move(*reply))) {
+                std::visit([this](auto& done) { on_done(std::move(done)); }, *answer);
+            }
         } else {
             // Destroys the call and its captured data before the next delivery.
             std::exchange(std::get<runtime::Call>(delivery), nullptr)();
@@ -388,8 +402,8 @@ SessionPtr Dispatcher::find(std::uint64_t session) const {
     return found == sessions_.end() ? nullptr : found->second;
 }
 
-bool Dispatcher::ask(Session& session, std::uint64_t request_id, runtime::Mail mail) {
-    if (mailbox_.try_push(std::move(mail))) {
+bool Dispatcher::ask(Session& session, std::uint64_t request_id, std::string_view world, runtime::Mail mail) {
+    if (simulations_.mailbox_of(world).try_push(std::move(mail))) {
         return true;
     }
     session.answer(protocol::refusing(request_id, busy()));
@@ -399,7 +413,8 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, runtime::Mail m
 void Dispatcher::ask(Session& session, v1::Request request) {
     const auto asked = std::make_shared<const v1::Request>(std::move(request));
     const bool users_only = session.visitor().role < access::Role::Controller;
-    if (ask(session, asked->request_id(), runtime::QueryMail{session.number(), asked, users_only})) {
+    if (ask(session, asked->request_id(), protocol::world_of(*asked),
+            runtime::QueryMail{session.number(), asked, users_only})) {
         session.query_under_way = true;
         session.expect(static_cast<std::ptrdiff_t>(protocol::row_bytes_max(*asked)));
     }
@@ -559,7 +574,19 @@ void Dispatcher::replay(Session& session, const v1::Request& request) {
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
-    ask(session, id, replay_mail(request, session.number()));
+    runtime::ReplayMail mail = replay_mail(request, session);
+    if (const auto* open = std::get_if<runtime::OpenReplay>(&mail.request)) {
+        const std::string world = open->world;
+        ask(session, id, world, runtime::FindRun{world, session.number(), std::move(mail)});
+        return;
+    }
+    const std::string world = protocol::lookup_name(protocol::world_of(request));
+    if (request.has_seek() && simulation::is_replay_name(world)) {
+        const std::string original{simulation::original_of(world)};
+        ask(session, id, original, runtime::FindRun{original, session.number(), std::move(mail)});
+        return;
+    }
+    ask(session, id, world, std::move(mail));
 }
 
 void Dispatcher::on_done(runtime::ReplayDone done) {
@@ -601,7 +628,8 @@ void Dispatcher::export_text(Session& session, v1::Request request) {
 
 void Dispatcher::find_run(Session& session, v1::Request request) {
     const auto asked = std::make_shared<const v1::Request>(std::move(request));
-    ask(session, asked->request_id(), runtime::FindRun{session.number(), asked});
+    const std::string world = protocol::lookup_name(protocol::world_of(*asked));
+    ask(session, asked->request_id(), world, runtime::FindRun{world, session.number(), asked});
 }
 
 void Dispatcher::on_done(runtime::RunFound done) {
@@ -609,7 +637,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
     if (!session) {
         return;
     }
-    const v1::Request& request = *done.mail.request;
+    const v1::Request& request = *std::get<std::shared_ptr<const v1::Request>>(done.mail.purpose);
     const std::uint64_t id = request.request_id();
     if (!done.run) {
         session->answer(protocol::refusing(id, protocol::with_paths(done.run.error(), protocol::name_of(request))));
@@ -623,7 +651,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
 void Dispatcher::forget(const Session& session) {
     exports_.forget(session);
     breeding_queries_.forget(session);
-    mailbox_.push(runtime::SessionEnded{session.number()});
+    simulations_.forget(session.number());
 }
 
 } // namespace evod::network

@@ -14,8 +14,8 @@
 #include "server/network/session.h"
 #include "server/network/streams.h"
 #include "server/protocol/queries.h"
-#include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
+#include "server/runtime/simulations.h"
 
 namespace evod::network {
 
@@ -25,7 +25,7 @@ class Dispatcher {
     ///
     /// shut_down  shuts the server down.
     /// metrics    returns the current metrics.
-    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox, const Sessions& sessions,
+    Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox, const Sessions& sessions,
                Streams& streams, LimitCounters& limit_counters, std::function<void()> shut_down,
                std::function<v1::Metrics()> metrics);
 
@@ -94,15 +94,16 @@ class Dispatcher {
 
     /// Returns the refusal for a full mailbox.
     base::Refusal busy();
-    /// Puts mail into the mailbox. If the mailbox is full, refuses the request and returns false.
-    bool ask(Session& session, std::uint64_t request_id, runtime::Mail mail);
+    /// Puts mail into the mailbox of the thread that has this world. If the mailbox is full, refuses the request and
+    /// returns false.
+    bool ask(Session& session, std::uint64_t request_id, std::string_view world, runtime::Mail mail);
     /// Sends a query to the simulation thread. The session's further requests are held back until it is answered.
     void ask(Session& session, v1::Request request);
     void find_run(Session& session, v1::Request request);
     /// The session with this number; nullptr if it has ended.
     SessionPtr find(std::uint64_t session) const;
 
-    runtime::Mailbox& mailbox_;
+    runtime::Simulations& simulations_;
     const Sessions& sessions_;
     Streams& streams_;
     LimitCounters& limit_counters_;

@@ -9,7 +9,7 @@
 #include "server/runtime/export_job.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
-#include "server/runtime/replays.h"
+#include "server/runtime/replay_loop.h"
 #include "server/simulation/world.h"
 #include "server/simulation/world_name.h"
 
@@ -74,7 +74,7 @@ constexpr LimitRow table[] = {
     {Limit::Placed, "placed_max", simulation::placed_max,
      "food items, poison items and organisms, counted separately, that are placed on an island in one generation",
      "the server refuses the request with `RESOURCE_EXHAUSTED`"},
-    {Limit::Replays, "replays_max", runtime::Replays::replays_max,
+    {Limit::Replays, "replays_max", runtime::ReplayLoop::replays_max,
      "replays of a session; all sessions together may have 64",
      "the server refuses the request with `RESOURCE_EXHAUSTED`"},
     {Limit::Lease, "lease_s", seconds(lease_time),

@@ -114,10 +114,11 @@ Server::Server(ServerOptions options)
     : options_{std::move(options)}
     , send_memory_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { evict_sessions(); }); }}
     , executor_{runtime::make_executor(options_.threads)}
+    , simulations_{options_.replay.has_value()}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
-    , streams_{sessions_, demand_, mailbox_}
+    , streams_{sessions_, simulations_}
     , dispatcher_{context_,
-                  mailbox_,
+                  simulations_,
                   outbox_,
                   sessions_,
                   streams_,
@@ -300,9 +301,10 @@ bool Server::run() {
         worlds.share(*options_.leader, *executor_);
     }
     begin_first_world();
-    simulation_ = std::make_unique<runtime::SimulationThread>(
-        mailbox_, demand_, *executor_, clock_,
-        runtime::LoopOutputs{
+    simulations_.start({
+        .executor = *executor_,
+        .clock = clock_,
+        .outputs = {
             .events = streams_.outlet(outbox_),
             .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
             .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); },
@@ -325,7 +327,10 @@ bool Server::run() {
                 },
             .counted = &worlds_counted_,
         },
-        std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
+        .laboratory = std::move(worlds),
+        .recorder = archive_ ? &archive_->recorder() : nullptr,
+        .file = std::exchange(replay_, std::nullopt),
+    });
 
     wait_for_signal();
     start_housekeeping();
@@ -543,7 +548,7 @@ void Server::begin_shutdown() {
     streams_.announce_end();
     // A separate thread stops the simulation, so that the network thread can send pending answers in the meantime.
     stopping_ = std::thread{[this, work = asio::make_work_guard(context_)] {
-        simulation_->stop();
+        simulations_.stop();
         const bool all_written = !archive_ || archive_->close();
         asio::post(context_, [this, all_written] {
             all_written_ = all_written;

@@ -10,7 +10,7 @@
 #include "server/network/listener.h"
 #include "server/replay/archive.h"
 #include "server/runtime/processes.h"
-#include "server/runtime/simulation_thread.h"
+#include "server/runtime/simulations.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -137,11 +137,10 @@ class Server {
     std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored
     std::optional<runtime::FileReplay> replay_; // empty after it was moved to the simulation thread
     runtime::SteadyClock clock_;
-    runtime::Mailbox mailbox_;
-    runtime::StreamDemand demand_;
+    runtime::Simulations simulations_;
     runtime::Outbox outbox_;
     metrics::Worlds worlds_counted_;
-    Heartbeat heartbeat_{mailbox_, outbox_};
+    Heartbeat heartbeat_{simulations_.mailbox_of(""), outbox_};
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
@@ -153,7 +152,6 @@ class Server {
     Streams streams_;
     bool sends_snapshots_ = false; // a call of send_snapshots() is posted
     Dispatcher dispatcher_;
-    std::unique_ptr<runtime::SimulationThread> simulation_; // is destroyed before the members that it uses
     bool going_away_ = false, all_written_ = true;
     std::thread stopping_; // stops the simulation and closes the archive
 };

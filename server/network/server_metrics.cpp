@@ -161,7 +161,7 @@ v1::Metrics Server::metrics() {
     add_counter(all, "evod_exchange_seconds_total",
                 "Time for which the simulation has waited for the other processes and for what they send")
         .add(processes != nullptr ? processes->exchange_s() : 0);
-    add_queues(all, mailbox_.fill(), outbox_.fill());
+    add_queues(all, simulations_.fill(), outbox_.fill());
     add_sessions(all, sessions_, options_.session_bounds.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
@@ -188,8 +188,8 @@ v1::Metrics Server::metrics() {
         }
     };
     add_thread("network", pthread_self());
-    if (simulation_ && !going_away_) {
-        add_thread("simulation", simulation_->handle());
+    if (!going_away_) {
+        simulations_.for_each_thread(add_thread);
     }
     if (archive_ && archive_->thread() != nullptr) {
         add_thread("storage", archive_->thread()->handle());

@@ -50,9 +50,9 @@ void Streams::forget_world(const std::string& world) {
 }
 
 void Streams::update_demand() {
-    demand_.want_events(std::ranges::any_of(sessions_, [](const auto& item) { return !item.second->events.empty(); }));
-    demand_.set(snapshots_.demand());
-    mailbox_.wake();
+    simulations_.set_demand(snapshots_.demand(), std::ranges::any_of(sessions_, [](const auto& item) {
+                                return !item.second->events.empty();
+                            }));
 }
 
 void Streams::deliver(runtime::Outbox::Taken taken) {
@@ -99,7 +99,7 @@ void Streams::publish(v1::Event event) {
 std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)>
 Streams::outlet(runtime::Outbox& outbox) {
     return [this, &outbox](const simulation::Laboratory& laboratory, const std::vector<simulation::Event>& events) {
-        if (!demand_.events_wanted()) {
+        if (!simulations_.events_wanted()) {
             return;
         }
         for (const simulation::Event& event : events) {

@@ -5,9 +5,8 @@
 #pragma once
 
 #include "server/network/session.h"
-#include "server/runtime/demand.h"
-#include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
+#include "server/runtime/simulations.h"
 #include "server/streaming/snapshot_streams.h"
 
 #include <cstdint>
@@ -24,8 +23,8 @@ using Sessions = std::map<std::uint64_t, SessionPtr>;
 class Streams {
   public:
     /// All arguments must outlive this object.
-    Streams(const Sessions& sessions, runtime::StreamDemand& demand, runtime::Mailbox& mailbox)
-        : sessions_{sessions}, demand_{demand}, mailbox_{mailbox} {}
+    Streams(const Sessions& sessions, runtime::Simulations& simulations)
+        : sessions_{sessions}, simulations_{simulations} {}
 
     /// Returns the id of the new subscription.
     std::uint32_t subscribe(Session& session, streaming::SnapshotSubscription subscription);
@@ -61,8 +60,7 @@ class Streams {
     void update_demand();
 
     const Sessions& sessions_;
-    runtime::StreamDemand& demand_;
-    runtime::Mailbox& mailbox_;
+    runtime::Simulations& simulations_;
     streaming::SnapshotStreams snapshots_;
 };
 

@@ -24,7 +24,6 @@ FileFaults::Changes FileFaults::poll() {
     for (const auto& [name, fault] : recorder_->faults()) {
         if (fault.kind == recording::RunFault::Kind::Displaced) {
             displaced.emplace(name, fault.why);
-            replays_.stop_waiting(name);
             continue;
         }
         if (builds_.holds(name)) {
@@ -43,7 +42,7 @@ FileFaults::Changes FileFaults::poll() {
     }
     for (const auto& entry : laboratory_.entries()) {
         const auto found = displaced_.find(entry->name);
-        if (entry->replay || (found == displaced_.end() && !before.contains(entry->name))) {
+        if (found == displaced_.end() && !before.contains(entry->name)) {
             continue;
         }
         const simulation::Storage now =

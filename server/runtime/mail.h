@@ -12,7 +12,6 @@
 #include "server/simulation/commands.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,14 +38,16 @@ struct QueryMail {
     bool users_only = false; // the answer must not contain the programs and addresses of other clients
 };
 
-/// A request to find the stored run of the world that the request names. The reply waits until everything recorded so
-/// far is on the disk, or until writing fails.
-struct FindRun {
-    std::uint64_t session = 0; // number of the sender's session
-    std::shared_ptr<const v1::Request> request;
+/// The stored run of a world.
+struct FoundRun {
+    std::string world; // whose run it is; of a replay: the original world
+    replay::StoredRun run;
+    std::uint64_t generation = 0; // generation of the world when the request was handled
+    // The file reaches this moment once everything that was recorded is on the disk; zeros if that is not known.
+    replay::RecordedUntil until = {};
 };
 
-// Requests for replays (replays.h).
+// Requests for replays (replay_loop.h).
 
 /// A request to open a replay of the run of the world `world`.
 struct OpenReplay {
@@ -64,18 +65,36 @@ struct CloseReplay {
 struct ReplayMail {
     std::variant<OpenReplay, Seek, CloseReplay> request;
     std::uint64_t session = 0; // number of the sender's session, >= 1
+    std::string user = {};     // whose account pays for the time of the replay and its seeks
     std::uint64_t request_id = 0;
-    std::string request_name = {}; // name of the field in the request: "open_replay"
+    std::string request_name = {};        // name of the field in the request: "open_replay"
+    std::optional<FoundRun> run = {};     // OpenReplay: the run to show. Seek: the present run of the original world
+};
+
+/// A request to find the stored run of a world. The reply waits until everything recorded so far is on the disk, or
+/// until writing fails.
+struct FindRun {
+    std::string world;
+    std::uint64_t session = 0; // number of the sender's session
+    // What the run is for: a request of the session, a request for a replay, or a fork at an earlier generation.
+    std::variant<std::shared_ptr<const v1::Request>, ReplayMail, CommandMail> purpose;
+};
+
+/// A request of the thread of the live worlds to the thread of the replays: the world to fork.
+struct BringWorld {
+    CommandMail fork;
+    std::optional<FoundRun> run; // where to find its generation; nullopt: the original is a replay
+};
+/// The answer.
+struct WorldBrought {
+    CommandMail fork;
+    simulation::RunId run_id;                                    // of the original
+    std::shared_ptr<base::Result<simulation::World>> world;      // moved out by the reader
 };
 
 /// A session has ended. Its query is dropped, its replays are closed and its seeks are cancelled.
 struct SessionEnded {
     std::uint64_t session = 0;
-};
-
-/// A short function that another part of the server runs on the simulation thread, such as the end of a background job.
-struct CallMail {
-    std::function<void()> call;
 };
 
 /// A world that was constructed for a command, before it is added to the laboratory.
@@ -89,6 +108,18 @@ struct WorldBuilt {
     std::shared_ptr<base::Result<BuiltWorld>> world; // nullptr: it has only read the original world so far
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail, WorldBuilt>;
+// The results of jobs that read run files for replays.
+
+struct SeekRead {
+    std::uint64_t seek = 0; // number of the seek
+    std::shared_ptr<base::Result<replay::SeekStart>> start;
+};
+struct RecordsRead {
+    std::string replay;
+    std::shared_ptr<const base::Result<replay::NewRecords>> records;
+};
+
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, WorldBrought, SessionEnded, WorldBuilt,
+                          SeekRead, RecordsRead>;
 
 } // namespace evod::runtime

@@ -76,117 +76,98 @@ base::Result<FileReplay> FileReplay::open(const std::string& path, std::optional
     return FileReplay{*name, *std::move(run), {std::move(seek->from), std::move(seek->there)}};
 }
 
-void Seeks::begin(const std::string& world, Request request) {
-    const std::uint64_t number = ++last_number_;
-    seeks_.emplace(number, Begun{.request = std::move(request)});
-    reader_.once_written(world, [this, number](bool all_is_written) { read(number, all_is_written); });
+bool Seeks::Purpose::opens_replay() const {
+    const auto* mail = std::get_if<ReplayMail>(&request);
+    return mail != nullptr && std::holds_alternative<OpenReplay>(mail->request);
 }
 
-void Seeks::read(std::uint64_t number, bool all_is_written) {
-    const auto found = seeks_.find(number);
-    if (found == seeks_.end()) {
-        return; // it was cancelled
+std::uint64_t Seeks::Purpose::session() const {
+    const auto* mail = std::get_if<ReplayMail>(&request);
+    return mail != nullptr ? mail->session : 0;
+}
+
+std::string Seeks::Purpose::user() const {
+    const auto* mail = std::get_if<ReplayMail>(&request);
+    return mail != nullptr ? mail->user : run_file::user_of(std::get<BringWorld>(request).fork.origin);
+}
+
+void Seeks::begin(Request request) {
+    std::string user = request.purpose.user();
+    const auto seek =
+        seeks_.emplace(++last_number_, Running{.request = std::move(request), .user = std::move(user)}).first;
+    if (seeks_.size() > seeks_max) {
+        return end(seek, refusal(RefusalCode::ResourceExhausted, "too many seeks are in progress: try again later",
+                                 base::Reason::ReplaysMax));
     }
-    if (std::ranges::count_if(seeks_, [](const auto& item) { return item.second.started; }) >=
-        static_cast<std::ptrdiff_t>(seeks_max)) {
-        return refuse(number, refusal(RefusalCode::ResourceExhausted, "too many seeks are in progress: try again later",
-                                      base::Reason::ReplaysMax));
-    }
-    found->second.started = true;
-    const Request& request = found->second.request;
-    replay::RecordedUntil known = request.shown;
-    if (all_is_written) {
-        known.generation = std::max(known.generation, request.known.generation);
-        known.tick = std::max(known.tick, request.known.tick);
-    }
-    reader_.read([this, number, run = request.run, to = request.to, known]() -> std::function<void()> {
+    const Request& begun = seek->second.request;
+    jobs_.add([&mailbox = mailbox_, number = seek->first, run = begun.run, to = begun.to,
+               until = begun.until](const std::stop_token&) {
         base::InlineExecutor executor;
-        const auto start = std::make_shared<base::Result<replay::SeekStart>>(
-            base::within_memory([&] { return run.start_seek(to, known, executor); }));
-        return [this, number, start] { this->run(number, std::move(*start)); };
+        mailbox.push(SeekRead{number, std::make_shared<base::Result<replay::SeekStart>>(base::within_memory(
+                                          [&] { return run.start_seek(to, until, executor); }))});
     });
 }
 
-void Seeks::run(std::uint64_t number, base::Result<replay::SeekStart> start) {
-    const auto found = seeks_.find(number);
-    if (found == seeks_.end()) {
+void Seeks::take(const SeekRead& mail) {
+    const auto seek = seeks_.find(mail.seek);
+    if (seek == seeks_.end()) {
         return; // it was cancelled
     }
-    if (!start) {
-        return refuse(number, start.error());
+    if (!*mail.start) {
+        return end(seek, mail.start->error());
     }
-    if (const std::string& moved = found->second.request.moves; !moved.empty()) {
-        cancel([&](const Begun& other) { return other.running && other.request.moves == moved; },
+    if (const std::string& moved = seek->second.request.purpose.replay; !moved.empty()) {
+        cancel([&](const Running& other) { return other.at && other.request.purpose.replay == moved; },
                refusal(RefusalCode::FailedPrecondition,
                        "superseded by a later seek: seek again if this moment is still wanted",
                        base::Reason::SeekSuperseded));
     }
-    found->second.running = *std::move(start);
+    seek->second.at = *std::move(*mail.start);
 }
 
-std::vector<Seeks::Begun> Seeks::take(const std::function<bool(const Begun&)>& is_wanted) {
-    std::vector<Begun> taken;
-    std::erase_if(seeks_, [&](auto& item) {
-        if (!is_wanted(item.second)) {
-            return false;
+void Seeks::end(std::map<std::uint64_t, Running>::iterator seek, base::Result<SeekResult> result) {
+    ended_.push_back({std::move(seek->second.request), std::move(result)});
+    seeks_.erase(seek);
+}
+
+void Seeks::cancel(const std::function<bool(const Running&)>& is_wanted, const base::Refusal& why) {
+    for (auto seek = seeks_.begin(); seek != seeks_.end();) {
+        const auto next = std::next(seek);
+        if (is_wanted(seek->second)) {
+            end(seek, why);
         }
-        taken.push_back(std::move(item.second));
-        return true;
-    });
-    return taken;
-}
-
-void Seeks::refuse(std::uint64_t number, const base::Refusal& why) {
-    seeks_.extract(number).mapped().request.done(why);
-}
-
-void Seeks::cancel(const std::function<bool(const Begun&)>& is_wanted, const base::Refusal& why) {
-    for (const Begun& seek : take(is_wanted)) {
-        seek.request.done(why);
+        seek = next;
     }
 }
 
 void Seeks::cancel_of_session(std::uint64_t session) {
-    cancel([&](const Begun& seek) { return seek.request.session == session; },
+    cancel([&](const Running& seek) { return seek.request.purpose.session() == session; },
            refusal(RefusalCode::NotFound, "the session that sent the request has ended"));
 }
 
 void Seeks::cancel_of_replay(const std::string& replay) {
-    cancel([&](const Begun& seek) { return seek.request.moves == replay; },
+    cancel([&](const Running& seek) { return seek.request.purpose.replay == replay; },
            refusal(RefusalCode::NotFound, "the replay has been closed: open it again", base::Reason::WorldNotFound));
 }
 
 std::size_t Seeks::opening_count(std::optional<std::uint64_t> session) const {
     return static_cast<std::size_t>(std::ranges::count_if(seeks_, [&](const auto& item) {
-        const Request& request = item.second.request;
-        return request.opens && (!session || request.session == *session);
+        const Purpose& purpose = item.second.request.purpose;
+        return purpose.opens_replay() && (!session || purpose.session() == *session);
     }));
 }
 
 bool Seeks::under_way() const {
-    return std::ranges::any_of(seeks_, [](const auto& item) { return item.second.running.has_value(); });
+    return std::ranges::any_of(seeks_, [](const auto& item) { return item.second.at.has_value(); });
 }
 
-void Seeks::advance(const std::function<bool()>& stop) {
-    for (bool first = true; under_way();) {
-        for (auto& [number, seek] : seeks_) {
-            if (!seek.running) {
-                continue;
-            }
-            if (!std::exchange(first, false) && stop()) {
-                return;
-            }
-            if (advance_tick(*seek.running, executor_)) {
-                seek.result = result_of(*std::exchange(seek.running, std::nullopt));
-            }
+void Seeks::advance(std::uint64_t number, const std::function<bool()>& stop) {
+    const auto seek = seeks_.find(number);
+    do {
+        if (advance_tick(*seek->second.at, executor_)) {
+            return end(seek, result_of(*std::move(seek->second.at)));
         }
-    }
-}
-
-void Seeks::finish() {
-    for (Begun& seek : take([](const Begun& begun) { return begun.result.has_value(); })) {
-        seek.request.done(*std::move(seek.result));
-    }
+    } while (!stop());
 }
 
 } // namespace evod::runtime

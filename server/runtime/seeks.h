@@ -1,20 +1,22 @@
-// Seeks: simulate stored runs up to a moment, from the last stored state before that moment. They do so in short
-// slices, so that other worlds continue meanwhile.
+// Seeks: simulate stored runs up to a moment, from the last stored state before that moment. The loop of the replays
+// decides when each of them advances.
 //
-//   begin → wait until everything recorded is on the disk → read the file → simulate up to the moment → finish
+//   begin → read the file → simulate up to the moment → take_ended
 //
-// Owner        Replays, on the simulation thread.
-// Full         above seeks_max seeks, a new one is refused. Seeks that wait for the disk are not counted.
-// Determinism  a seek reproduces a run bit for bit. It does not change live worlds.
+// Owner        the loop of the replays, on its thread. A job queue reads the files.
+// Full         above seeks_max seeks, a new one is refused.
+// Determinism  a seek reproduces a run bit for bit.
 #pragma once
 
-#include "server/replay/stored_run.h"
-#include "server/runtime/run_reader.h"
+#include "server/jobs/job_queue.h"
+#include "server/runtime/mailbox.h"
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace evod::runtime {
@@ -40,22 +42,41 @@ class Seeks {
   public:
     static constexpr std::size_t seeks_max = 64;
 
+    /// What a seek is for: to open a replay, to move one, or to bring a world for a fork.
+    struct Purpose {
+        std::variant<ReplayMail, BringWorld> request;
+        std::string replay = {}; // the replay that the seek moves; empty: the seek moves none
+
+        bool opens_replay() const;
+        std::uint64_t session() const; // 0: the seek does not end with a session
+        std::string user() const;      // whose account pays for its time
+    };
     struct Request {
-        std::uint64_t session = 0; // number of the session; 0: the server
-        std::string moves = {};    // the replay that the seek moves; empty: the seek opens a replay, or is for a fork
-        bool opens = false;        // the seek opens a replay
+        Purpose purpose;
         replay::StoredRun run;
         std::optional<replay::WantedMoment> to; // nullopt: the first moment of the run
-        replay::RecordedUntil known;            // reached by the file if everything that was recorded is written
-        replay::RecordedUntil shown = {};       // reached by the file in any case
-        std::function<void(base::Result<SeekResult>)> done;
+        replay::RecordedUntil until;            // the file reaches this moment
+    };
+    /// A seek that has reached its moment, or failed, or was cancelled.
+    struct Ended {
+        Request request;
+        base::Result<SeekResult> result;
+    };
+    /// A seek that simulates.
+    struct Running {
+        Request request;
+        std::string user = {};
+        std::optional<replay::SeekStart> at = {}; // empty while the file is being read
+        std::uint64_t turn = 0;              // when it last had a slice; the loop sets it
     };
 
-    /// All arguments must outlive this object.
-    Seeks(RunReader& reader, base::Executor& executor) : reader_{reader}, executor_{executor} {}
+    /// All arguments must outlive this object. mailbox: of the loop, which gets the results of jobs.
+    Seeks(Mailbox& mailbox, jobs::JobQueue& jobs, base::Executor& executor)
+        : mailbox_{mailbox}, jobs_{jobs}, executor_{executor} {}
 
-    /// Begins a seek once all records of the world are on the disk.
-    void begin(const std::string& world, Request request);
+    void begin(Request request);
+    /// Handles the result of a job: the seek begins to simulate.
+    void take(const SeekRead& mail);
     /// Ends all seeks of a session.
     void cancel_of_session(std::uint64_t session);
     /// Ends all seeks that move a replay, because the replay is closed.
@@ -65,32 +86,23 @@ class Seeks {
     ///
     /// session  counts only the seeks of this session; nullopt: all seeks.
     std::size_t opening_count(std::optional<std::uint64_t> session = {}) const;
-    /// Whether a seek is simulating ticks now.
+    /// All seeks, by number. Those whose file is being read cannot advance.
+    std::map<std::uint64_t, Running>& all() { return seeks_; }
     bool under_way() const;
-    /// Advances all seeks in turn by one tick each, until `stop` returns true or all have reached their moments.
-    void advance(const std::function<bool()>& stop);
-    /// Calls `done` of each seek that advance() has ended. May create worlds.
-    void finish();
+    /// Advances a seek until `stop` returns true or it has ended, at least by one tick.
+    void advance(std::uint64_t seek, const std::function<bool()>& stop);
+    /// Returns and removes the seeks that have ended, in the order in which they ended.
+    std::vector<Ended> take_ended() { return std::exchange(ended_, {}); }
 
   private:
-    struct Begun {
-        Request request;
-        bool started = false;                                // its file is being read, or was read
-        std::optional<replay::SeekStart> running = {};       // set while it simulates
-        std::optional<base::Result<SeekResult>> result = {}; // set when it has ended, until finish()
-    };
+    void end(std::map<std::uint64_t, Running>::iterator seek, base::Result<SeekResult> result);
+    void cancel(const std::function<bool(const Running&)>& is_wanted, const base::Refusal& why);
 
-    void read(std::uint64_t number, bool all_is_written);
-    void run(std::uint64_t number, base::Result<replay::SeekStart> start);
-    /// Ends a seek with this refusal.
-    void refuse(std::uint64_t number, const base::Refusal& why);
-    /// Removes and returns the seeks for which `is_wanted` returns true.
-    std::vector<Begun> take(const std::function<bool(const Begun&)>& is_wanted);
-    void cancel(const std::function<bool(const Begun&)>& is_wanted, const base::Refusal& why);
-
-    RunReader& reader_;
+    Mailbox& mailbox_;
+    jobs::JobQueue& jobs_;
     base::Executor& executor_;
-    std::map<std::uint64_t, Begun> seeks_; // key: number of the seek
+    std::map<std::uint64_t, Running> seeks_; // key: number of the seek
+    std::vector<Ended> ended_;
     std::uint64_t last_number_ = 0;
 };
 

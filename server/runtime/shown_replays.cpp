@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace evod::runtime {
 
@@ -11,11 +12,11 @@ simulation::Entry& ShownReplays::entry_of(const std::string& name) {
     return **laboratory_.find(name);
 }
 
-void ShownReplays::show(const std::string& name, const replay::StoredRun& run, std::uint64_t owner, SeekResult result) {
+void ShownReplays::show(const std::string& name, const replay::StoredRun& run, Owner owner, SeekResult result) {
     simulation::RunControl control;
     control.endless = control.paused = true;
     const replay::ComingChanges& changes = result.rerun.changes();
-    replays_.emplace(name, Shown{run, changes, changes.last_entry(), owner, {}});
+    replays_.emplace(name, Shown{run, changes, changes.last_entry(), std::move(owner)});
     laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
         name, run.run_id(), control, std::move(result.rerun).take(), 0, false, std::move(result.there)}));
     (void)entry_of(name).world.take_events(); // discard the events that the seek caused
@@ -31,7 +32,6 @@ void ShownReplays::move_to(const std::string& name, SeekResult result) {
     entry.world = std::move(result.rerun).take();
     entry.replay = std::move(result.there);
     (void)entry.world.take_events(); // discard the events that the seek caused
-    moved_.push_back(name);
 }
 
 void ShownReplays::close(const std::string& name) {
@@ -44,15 +44,15 @@ const replay::StoredRun* ShownReplays::run_of(const std::string& name) const {
     return shown == replays_.end() ? nullptr : &shown->second.run;
 }
 
-bool ShownReplays::is_owned(const std::string& name) const {
+const ShownReplays::Owner* ShownReplays::owner_of(std::string_view name) const {
     const auto shown = replays_.find(name);
-    return shown != replays_.end() && shown->second.owner != 0;
+    return shown == replays_.end() ? nullptr : &shown->second.owner;
 }
 
-std::vector<std::string> ShownReplays::names(std::optional<std::uint64_t> owner) const {
+std::vector<std::string> ShownReplays::names(std::optional<std::uint64_t> session) const {
     std::vector<std::string> names;
     for (const auto& [name, shown] : replays_) {
-        if (!owner || shown.owner == *owner) {
+        if (!session || shown.owner.session == *session) {
             names.push_back(name);
         }
     }
@@ -75,7 +75,12 @@ std::optional<Clock::time_point> ShownReplays::refresh(Clock::time_point now) {
         }
         if (now >= shown.refreshed + refresh_time) {
             shown.refreshed = now;
-            read_new_records(name, shown);
+            shown.being_read = true;
+            jobs_.add([&mailbox = mailbox_, name = name, run = shown.run,
+                       after = shown.entries_read](const std::stop_token&) {
+                mailbox.push(RecordsRead{name, std::make_shared<const base::Result<replay::NewRecords>>(
+                                                   base::within_memory([&] { return run.new_records(after); }))});
+            });
         }
         const auto again = shown.refreshed + refresh_time;
         next = next ? std::min(*next, again) : again;
@@ -83,20 +88,15 @@ std::optional<Clock::time_point> ShownReplays::refresh(Clock::time_point now) {
     return next;
 }
 
-void ShownReplays::read_new_records(const std::string& name, Shown& shown) {
-    shown.being_read = true;
-    reader_.read([this, name, run = shown.run, after = shown.entries_read]() -> std::function<void()> {
-        return [this, name, records = base::within_memory([&] { return run.new_records(after); })] {
-            const auto shown_now = replays_.find(name);
-            if (shown_now == replays_.end()) {
-                return;
-            }
-            shown_now->second.being_read = false;
-            if (records) {
-                extend(entry_of(name), shown_now->second, *records);
-            }
-        };
-    });
+void ShownReplays::take(const RecordsRead& mail) {
+    const auto shown = replays_.find(mail.replay);
+    if (shown == replays_.end()) {
+        return; // it was closed
+    }
+    shown->second.being_read = false;
+    if (*mail.records) {
+        extend(entry_of(mail.replay), shown->second, **mail.records);
+    }
 }
 
 void ShownReplays::extend(simulation::Entry& entry, Shown& shown, const replay::NewRecords& records) {

@@ -1,50 +1,44 @@
 #include "server/runtime/simulation_loop.h"
 
+#include "server/base/assert.h"
 #include "server/base/overloaded.h"
 #include "server/log/log.h"
-#include "server/protocol/queries.h"
+#include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 namespace evod::runtime {
 namespace {
-
-Clock::duration seconds(double s) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{s});
-}
-
-constexpr std::chrono::milliseconds measuring_time{1000};
 
 /// Returns how many ticks take about `time`, at least 1 and at most `most`.
 std::uint64_t ticks_in(Clock::duration time, Clock::duration tick, std::int64_t most) {
     return static_cast<std::uint64_t>(tick.count() > 0 ? std::clamp<std::int64_t>(time / tick, 1, most) : 1);
 }
 
+std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a, std::optional<Clock::time_point> b) {
+    return a && b ? std::min(*a, *b) : a ? a : b;
+}
+
 } // namespace
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
-                               LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
-                               std::optional<FileReplay> replay)
-    : mailbox_{mailbox}
-    , demand_{demand}
-    , executor_{executor}
-    , clock_{clock}
+                               LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder)
+    : executor_{executor}
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
+    , mailbox_{mailbox}
+    , demand_{demand}
+    , clock_{clock}
     , recorder_{recorder}
-    , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply}
     , builds_{mailbox, executor}
-    , file_faults_{laboratory_, recorder, replays_, builds_} {
+    , file_faults_{laboratory_, recorder, builds_} {
     if (recorder_) {
         laboratory_.set_storage({});
+        recorder_->set_receipt_sink([reply = outputs_.reply](recording::Receipt receipt) { reply(std::move(receipt)); });
     }
     count_damaged_worlds();
-    if (replay) {
-        replays_.shown().show(replay->name, replay->run, 0, std::move(replay->shown));
-    }
 }
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
@@ -54,77 +48,19 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     answer_queries();
     poll_demand();
 
-    // Paced live worlds come first, because their ticks are due at fixed times.
-    std::optional<Clock::time_point> next;
-    std::optional<Clock::time_point> in_time; // due times of the worlds that keep their pace
-    const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
+    contenders_.clear();
+    list_contenders(contenders_);
+    const Due due = advance_paced(contenders_);
+    auto next = earlier(due.next, serve(contenders_, due));
     if (waiting_since_ && !laboratory_.storage()->worlds_wait()) {
-        at_latest(*waiting_since_ + slow_disk_patience);
+        next = earlier(next, *waiting_since_ + slow_disk_patience);
     }
-    const auto has_to_be_in_time = [](const simulation::Entry& entry) {
-        return entry.control.speed.has_value() && !entry.replay;
-    };
-    const auto wants_tick = [this](const simulation::Entry& entry) {
-        return entry.wants_tick() && !has_to_wait(entry);
-    };
-    for (const auto& entry : laboratory_.entries()) {
-        if (!has_to_be_in_time(*entry) || !wants_tick(*entry)) {
-            continue;
-        }
-        Track& track = tracks_.find(entry->name)->second;
-        const auto now = clock_.now();
-        if (track.due <= now) {
-            advance_slice(*entry, track, now + slice);
-        }
-        if (!entry->wants_tick()) {
-            continue;
-        }
-        at_latest(track.due);
-        if (!entry->slowed) {
-            in_time = in_time ? std::min(*in_time, track.due) : track.due;
-        }
-    }
-    // The other worlds share the time until then. All seeks together count as one world.
-    const auto wants_share = [&](const simulation::Entry& entry) {
-        return !has_to_be_in_time(entry) && wants_tick(entry) &&
-               (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
-    };
-    auto shares = std::ranges::count_if(laboratory_.entries(), [&](const auto& entry) { return wants_share(*entry); }) +
-                  (replays_.seeks().under_way() ? 1 : 0);
-    const auto end_of_share = [&](std::optional<Clock::time_point> until) {
-        const auto now = clock_.now();
-        const auto share = until ? (*until - now) / std::max<std::ptrdiff_t>(shares--, 1) : slice;
-        return now + std::min<Clock::duration>(share, slice);
-    };
-    const auto paced_until = next;
-    for (const auto& entry : laboratory_.entries()) {
-        if (has_to_be_in_time(*entry) || !wants_tick(*entry)) {
-            continue;
-        }
-        Track& track = tracks_.find(entry->name)->second;
-        if (!entry->control.speed || track.due <= clock_.now()) {
-            advance_slice(*entry, track, end_of_share(paced_until));
-        }
-        if (entry->wants_tick()) {
-            at_latest(entry->control.speed ? track.due : clock_.now());
-        }
-    }
-    if (replays_.seeks().under_way()) {
-        // Seeks share the processor with worlds that cannot keep their pace.
-        const auto end = end_of_share(in_time);
-        replays_.seeks().advance([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
-        at_latest(clock_.now());
-    }
-    if (const auto again = answer_queries()) { // answers queries until the next tick is due
-        at_latest(*again);
-    }
+    next = earlier(next, answer_queries()); // answers queries until the next tick is due
 
     const auto now = clock_.now();
-    if (const auto again = replays_.shown().refresh(now)) {
-        at_latest(*again);
-    }
+    next = earlier(next, refresh(now));
     for (const auto& entry : laboratory_.entries()) {
-        Track& track = tracks_.find(entry->name)->second;
+        Track& track = track_of(*entry);
         measure(*entry, track, now);
         show(*entry, track, now);
         if (track.counted) {
@@ -134,42 +70,102 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     return next;
 }
 
-void SimulationLoop::announce_moved_replays() {
-    for (const std::string& name : replays_.shown().take_moved_replays()) {
-        const auto entry = std::as_const(laboratory_).find(name);
-        const auto track = tracks_.find(name);
-        if (!entry || track == tracks_.end()) {
-            continue; // the replay was closed in the meantime
+SimulationLoop::Due SimulationLoop::advance_paced(std::vector<Contender>& contenders) {
+    Due due;
+    for (const auto& entry : laboratory_.entries()) {
+        if (!wants_tick(*entry)) {
+            continue;
         }
-        track->second.changed = true;
-        outputs_.events(laboratory_,
-                        {{name, (*entry)->run_id, (*entry)->world.moment().tick, simulation::GoalReached{}}});
+        Track& track = track_of(*entry);
+        if (!entry->control.speed) {
+            contenders.push_back({track.user, &track.turn, entry.get()});
+            continue;
+        }
+        const auto now = clock_.now();
+        if (track.pace.due() <= now) {
+            if (entry->slowed && has_more_than_its_share(track.user, contenders)) {
+                contenders.push_back({track.user, &track.turn, entry.get()});
+                continue;
+            }
+            advance_slice(*entry, track, now + slice);
+            shares_.spend(track.user, clock_.now() - now);
+            if (!entry->wants_tick()) {
+                continue;
+            }
+        }
+        due.next = earlier(due.next, track.pace.due());
+        if (!entry->slowed) {
+            due.in_time = earlier(due.in_time, track.pace.due());
+        }
+    }
+    return due;
+}
+
+bool SimulationLoop::has_more_than_its_share(const std::string& user, std::span<const Contender> contenders) const {
+    const auto waits_with_less = [&, spent = shares_.spent(user)](std::string_view other) {
+        return shares_.spent(other) + slice < spent;
+    };
+    return std::ranges::any_of(contenders, waits_with_less, &Contender::user) ||
+           std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+               return wants_tick(*entry) && waits_with_less(track_of(*entry).user);
+           });
+}
+
+std::optional<Clock::time_point> SimulationLoop::serve(std::vector<Contender>& contenders, const Due& due) {
+    if (contenders.empty()) {
+        return std::nullopt;
+    }
+    const Contender& next = *std::ranges::min_element(contenders, {}, [this](const Contender& contender) {
+        return std::pair{shares_.spent(contender.user), *contender.turn};
+    });
+    *next.turn = ++last_turn_;
+    shares_.serve(next.user);
+    const std::string user{next.user};
+    const auto began = clock_.now();
+    // A seek shares the processor with worlds that cannot keep their pace.
+    const auto end = *earlier(began + slice, next.world != nullptr ? due.next : due.in_time);
+    if (next.world != nullptr) {
+        advance_slice(*next.world, track_of(*next.world), end);
+    } else {
+        advance_seek(next.seek, [&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
+    }
+    const auto now = clock_.now();
+    shares_.spend(user, now - began);
+    if (contenders.size() > 1 || next.world == nullptr) {
+        return now;
+    }
+    const simulation::Entry& world = *next.world;
+    return !world.wants_tick() ? std::nullopt : std::optional{world.control.speed ? track_of(world).pace.due() : now};
+}
+
+void SimulationLoop::show_change(const std::string& world) {
+    if (const auto track = tracks_.find(world); track != tracks_.end()) {
+        track->second.snapshots.show_change();
     }
 }
 
+void SimulationLoop::handle(Mail& mail) {
+    std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
+                                [this](QueryMail& query) { queries_.add(std::move(query)); },
+                                [this](FindRun& run) { find_run(run); },
+                                [this](ReplayMail& request) { answer(request); },
+                                [this](WorldBrought& brought) { take(brought); },
+                                [this](SessionEnded& ended) { queries_.forget(ended.session); },
+                                [this](WorldBuilt& built) { take(built); },
+                                [](auto&) { EVOD_ASSERT(false); }},
+               mail);
+}
+
 void SimulationLoop::poll_mailbox() {
-    replays_.seeks().finish();
     if (mailbox_.pending()) {
         mail_ = mailbox_.drain(std::move(mail_));
         for (Mail& mail : mail_) {
-            std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
-                                        [this](QueryMail& query) { queries_.push_back(std::move(query)); },
-                                        [this](FindRun& run) { replays_.find_run(run); },
-                                        [this](ReplayMail& request) { replays_.apply(request); },
-                                        [this](SessionEnded& ended) {
-                                            std::erase_if(queries_, [&](const QueryMail& query) {
-                                                return query.session == ended.session;
-                                            });
-                                            replays_.forget(ended.session);
-                                        },
-                                        [](CallMail& call) { call.call(); },
-                                        [this](WorldBuilt& built) { take(built); }},
-                       mail);
+            handle(mail);
         }
         mail_.clear();
     }
+    update_worlds();
     follow_worlds();
-    announce_moved_replays();
 }
 
 std::optional<Clock::time_point> SimulationLoop::answer_queries() {
@@ -184,13 +180,13 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
             return now;
         }
         const bool time_is_free = !is_work_due(now);
-        if (!query_budget_.allows(now) && !time_is_free) {
-            return woken ? now : query_budget_.next_query_at();
+        if (!queries_.allows(now) && !time_is_free) {
+            return woken ? now : queries_.next_at();
         }
-        answer_query();
+        outputs_.reply(queries_.answer_next(laboratory_));
         const auto began = std::exchange(now, clock_.now());
         if (!time_is_free) {
-            query_budget_.spend(now - began);
+            queries_.spend(now - began);
         }
         if (mailbox_.pending()) {
             poll_mailbox(); // commands do not wait for queries
@@ -200,22 +196,62 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
     return woken ? std::optional{now} : std::nullopt;
 }
 
-void SimulationLoop::answer_query() {
-    QueryDone done{.mail = std::move(queries_.front()), .response = {}, .result = {}};
-    queries_.pop_front();
-    const QueryMail& query = done.mail;
-    done.response.set_request_id(query.request->request_id());
-    done.result = protocol::answer_query(*query.request, laboratory_, query.users_only, done.response);
-    outputs_.reply(std::move(done));
+bool SimulationLoop::is_work_due(Clock::time_point now) const {
+    return is_seeking() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+               return wants_tick(*entry) && (!entry->control.speed || track_of(*entry).pace.due() <= now);
+           });
 }
 
-bool SimulationLoop::is_work_due(Clock::time_point now) const {
-    return replays_.seeks().under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
-               if (!entry->wants_tick() || has_to_wait(*entry)) {
-                   return false;
-               }
-               return !entry->control.speed || tracks_.find(entry->name)->second.due <= now;
-           });
+base::Result<FoundRun> SimulationLoop::run_of(const simulation::Entry& entry) const {
+    if (!recorder_) {
+        return refusal(base::RefusalCode::FailedPrecondition,
+                       "this server stores no runs, so it cannot replay them: start it without --keep-nothing",
+                       base::Reason::RunsNotKept);
+    }
+    const simulation::Moment& now = entry.world.moment();
+    return FoundRun{.world = entry.name,
+                    .run = {recorder_->paths_of(entry.name, entry.run_id), entry.run_id},
+                    .generation = now.generation,
+                    .until = {.generation = now.generation, .tick = now.tick}};
+}
+
+void SimulationLoop::find_run(const FindRun& mail) {
+    const auto entry = std::as_const(laboratory_).find(mail.world);
+    if (!entry) {
+        const simulation::DamagedWorld* damaged = laboratory_.find_damaged(mail.world);
+        const auto* request = std::get_if<std::shared_ptr<const v1::Request>>(&mail.purpose);
+        if (damaged && damaged->run_id && request && (*request)->has_export_run()) {
+            const replay::StoredRun run{recorder_->paths_of(damaged->name, *damaged->run_id), *damaged->run_id};
+            return outputs_.reply(RunFound{mail, FoundRun{damaged->name, run}});
+        }
+        return outputs_.reply(RunFound{mail, entry.error()});
+    }
+    auto run = run_of(**entry);
+    if (!run) {
+        return outputs_.reply(RunFound{mail, run.error()});
+    }
+    recording::RunRecorder* const recorder = recorder_->of((*entry)->name);
+    if (recorder == nullptr || recorder_->refusal()) {
+        run->until = {}; // nothing more will be written
+        return outputs_.reply(RunFound{mail, *std::move(run)});
+    }
+    const recording::Ticket ticket = ++last_ticket_;
+    outputs_.reply(RunFound{mail, *std::move(run), ticket});
+    recorder->once_written(ticket);
+}
+
+void SimulationLoop::answer(const ReplayMail& mail) {
+    const std::string& world = std::visit([](const auto& request) -> const std::string& { return request.world; },
+                                          mail.request);
+    const auto entry = std::as_const(laboratory_).find(world);
+    base::Refusal refused = entry ? simulation::no_such_replay(world) : entry.error();
+    if (entry && std::holds_alternative<Seek>(mail.request)) {
+        refused = base::refusal(base::RefusalCode::FailedPrecondition,
+                                "this world is live and cannot be moved to another moment: open a replay of its run, as "
+                                "evoview and evoctl stats --at-generation do, or serve its run file with evod replay",
+                                base::Reason::WorldIsLive);
+    }
+    outputs_.reply(ReplayDone{.mail = mail, .world = std::move(refused)});
 }
 
 void SimulationLoop::close() {
@@ -225,7 +261,7 @@ void SimulationLoop::close() {
         poll_mailbox();
     }
     while (!queries_.empty()) {
-        answer_query();
+        outputs_.reply(queries_.answer_next(laboratory_));
     }
     if (recorder_) {
         recorder_->close_all(laboratory_);
@@ -239,7 +275,7 @@ void SimulationLoop::poll_demand() {
     watches_ = demand_.take();
     for (auto& [name, track] : tracks_) {
         const auto watch = watches_.find(name);
-        track.watch = watch == watches_.end() ? nullptr : &watch->second;
+        track.snapshots.set_demand(watch == watches_.end() ? nullptr : &watch->second);
     }
 }
 
@@ -257,7 +293,6 @@ void SimulationLoop::poll_storage() {
     }
     simulation::Storage now;
     if (trouble) {
-        replays_.stop_waiting();
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,
@@ -313,14 +348,15 @@ void SimulationLoop::count_damaged_worlds() {
     outputs_.counted->set_damaged(std::move(names));
 }
 
-SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
+void SimulationLoop::follow(simulation::Entry& entry) {
     auto found = tracks_.find(entry.name);
     if (found == tracks_.end()) {
         found = tracks_.emplace(entry.name, Track{}).first;
+        found->second.user = user_of(entry);
         if (const auto watch = watches_.find(entry.name); watch != watches_.end()) {
-            found->second.watch = &watch->second;
+            found->second.snapshots.set_demand(&watch->second);
         }
-        if (outputs_.counted != nullptr && !entry.replays_another_world()) {
+        if (outputs_.counted != nullptr && !simulation::is_replay_name(entry.name)) {
             found->second.counted = outputs_.counted->add(entry.name);
         }
     }
@@ -329,39 +365,18 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         track.recorder = recorder_->of(entry.name);
     }
     // A short wait for the disk does not count as a pause.
-    const bool wants_tick =
+    const bool runs =
         entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait()) && !builds_.holds(entry.name);
-    const double tick_s = entry.world.parameters().active.tick_s;
-    const bool restarts = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
-    if (wants_tick && (restarts || !track.running)) {
-        // Start a new time grid for the ticks. The time before the pause, or at another speed, does not count.
-        track.due = clock_.now();
-        track.measured_since = track.due;
-        track.ticks = 0;
-        track.lost = {};
-        entry.slowed = false;
+    if (track.pace.follow(entry, runs, clock_.now())) {
+        track.snapshots.show_change(); // the state changed, as after a Pause
     }
-    if (!wants_tick) {
-        entry.ticks_per_s = 0;
-        entry.slowed = false;
-        track.changed |= track.running; // the state changed, as after a Pause
-    }
-    track.run_id = entry.run_id;
-    track.speed = entry.control.speed;
-    track.tick_s = tick_s;
-    track.running = wants_tick;
-    return track;
-}
-
-Clock::duration SimulationLoop::period(const simulation::Entry& entry) const {
-    return seconds(entry.world.parameters().active.tick_s / *entry.control.speed);
 }
 
 void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end) {
     const bool paced = entry.control.speed.has_value();
     auto before = clock_.now();
     do {
-        const std::uint64_t ticks_per_clock_reading = ticks_in(between_clock_readings, track.tick_time, 100);
+        const std::uint64_t ticks_per_clock_reading = ticks_in(between_clock_readings, track.pace.tick_time(), 100);
         std::uint64_t taken = 0;
         bool stopped = false;
         do {
@@ -369,34 +384,24 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             if (track.recorder) {
                 track.recorder->follow(entry.world);
             }
-            if (entry.replay) {
-                replays_.shown().follow(entry);
-                laboratory_.settle(entry);
-            }
+            after_tick(entry);
             stopped = !entry.wants_tick();
             publish_events();
         } while (!paced && taken < ticks_per_clock_reading && !stopped && !mailbox_.pending());
-        track.ticks += taken;
-        if (stopped) {
-            track.changed = true; // the world has reached a goal
-            track.running = false;
-            entry.ticks_per_s = 0;
-        }
         const auto now = clock_.now();
-        if (paced) {
-            const auto due = track.due + period(entry);
-            track.due = std::max(due, now - catch_up_max);
-            track.lost += track.due - due;
+        const auto spent = now - std::exchange(before, now);
+        track.pace.advanced(entry, taken, spent, now);
+        if (stopped) {
+            track.pace.stop(entry);
+            track.snapshots.show_change(); // the world has reached a goal
         }
         measure(entry, track, now);
         show(entry, track, now);
-        const auto spent = now - std::exchange(before, now);
-        track.tick_time = spent / taken;
         if (track.counted) {
-            track.counted->tick_time.add(track.tick_time, taken);
+            track.counted->tick_time.add(track.pace.tick_time(), taken);
         }
         make_due_checkpoint(entry, track, spent);
-        if (stopped || now >= end || (paced && track.due > now)) {
+        if (stopped || now >= end || (paced && track.pace.due() > now)) {
             return;
         }
     } while (!mailbox_.pending() && !demand_.changed());
@@ -407,7 +412,7 @@ std::uint64_t SimulationLoop::advance(simulation::Entry& entry, Track& track) {
     std::uint64_t ticks = 1;
     if (entry.world.is_shared() && !entry.control.speed) {
         const std::uint64_t to_next_hash = run_file::ticks_per_hash - before % run_file::ticks_per_hash;
-        ticks = std::min(ticks_in(between_exchanges, track.tick_time, run_file::ticks_per_hash), to_next_hash);
+        ticks = std::min(ticks_in(between_exchanges, track.pace.tick_time(), run_file::ticks_per_hash), to_next_hash);
     }
     laboratory_.advance(entry, ticks, executor_);
     return entry.world.moment().tick - before;
@@ -423,60 +428,22 @@ void SimulationLoop::make_due_checkpoint(const simulation::Entry& entry, Track& 
 }
 
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {
-    const std::chrono::duration<double> passed = now - track.measured_since;
-    // The first measurement takes less time, because a user may be waiting for it.
-    if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time)) {
-        return;
+    if (track.pace.measure(entry, now)) {
+        track.snapshots.show_change();
     }
-    entry.ticks_per_s = static_cast<double>(track.ticks) / passed.count();
-    const bool slowed = std::chrono::duration<double>{track.lost} > slowed_from * passed;
-    track.changed |= slowed != entry.slowed;
-    entry.slowed = slowed;
-    track.ticks = 0;
-    track.lost = {};
-    track.measured_since = now;
 }
 
 void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::time_point now) {
-    if (!track.watch) {
+    if (!track.snapshots.is_due(entry.world, now)) {
         return;
     }
-    const WorldDemand& watch = *track.watch;
-    const bool newcomer = track.newcomers_served != watch.newcomers;
-    const auto between = seconds(1 / watch.rate_hz);
-    if (!newcomer && !track.changed) {
-        // A snapshot may be taken early by 10 % of the interval. Ticks rarely coincide with the planned time, and
-        // waiting for the next tick could delay the snapshot by a whole tick.
-        if (entry.world.moment().tick == track.shown_tick || now + between / 10 < track.next_snapshot) {
-            return;
-        }
-    }
-    island_indices_.clear();
-    const auto island_count = entry.world.island_count();
-    if (watch.all_islands) {
-        island_indices_.resize(island_count);
-        std::iota(island_indices_.begin(), island_indices_.end(), 0u);
-    } else {
-        for (const std::uint32_t island : watch.islands) {
-            if (island < island_count) {
-                island_indices_.push_back(island);
-            }
-        }
-    }
+    track.snapshots.list_islands(entry.world, island_indices_);
     const auto began = clock_.now();
-    outputs_.snapshot(pool_.take(entry, island_indices_, track.changed));
+    outputs_.snapshot(pool_.take(entry, island_indices_, track.snapshots.shows_change()));
     if (track.counted) {
         track.counted->snapshot_time.add(clock_.now() - began);
     }
-    // Snapshots follow a fixed time grid, so that the average rate is exact. A pause or an extra snapshot restarts the
-    // grid.
-    track.next_snapshot += between;
-    if (newcomer || track.changed || track.next_snapshot <= now) {
-        track.next_snapshot = now + between;
-    }
-    track.newcomers_served = watch.newcomers;
-    track.changed = false;
-    track.shown_tick = entry.world.moment().tick;
+    track.snapshots.taken(entry.world, now);
 }
 
 void SimulationLoop::publish_events() {

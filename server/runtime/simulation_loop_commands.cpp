@@ -5,7 +5,7 @@
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
-#include "server/replay/recovery.h"
+#include "server/simulation/world_name.h"
 
 #include <memory>
 #include <type_traits>
@@ -51,12 +51,12 @@ void SimulationLoop::apply(CommandMail& mail) {
             }
         },
         mail.command);
-    const auto before = run_of(mail.command);
+    const auto before = run_before(mail.command);
     if (auto refused = refusal_of(mail.command)) {
         return answer(mail, *refused, before);
     }
-    if (const auto* fork = std::get_if<simulation::ForkWorld>(&mail.command); fork && fork->at_generation) {
-        return fork_at_generation(mail, before);
+    if (std::holds_alternative<simulation::ForkWorld>(mail.command)) {
+        return fork(mail);
     }
     std::visit(
         [&]<class C>(const C& command) {
@@ -104,7 +104,7 @@ const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Comm
         command);
 }
 
-std::optional<SimulationLoop::RunBefore> SimulationLoop::run_of(const simulation::Command& command) const {
+std::optional<SimulationLoop::RunBefore> SimulationLoop::run_before(const simulation::Command& command) const {
     const simulation::Entry* entry = entry_of_command(command);
     return entry ? std::optional{RunBefore{entry->run_id, entry->world.moment().tick}} : std::nullopt;
 }
@@ -114,11 +114,6 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
         return std::nullopt;
     }
     const simulation::Entry* entry = entry_of_command(command);
-    const bool only_a_look =
-        entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // replays are not journaled
-    if (only_a_look) {
-        return std::nullopt;
-    }
     if (auto refused = recorder_->refusal()) {
         return refused;
     }
@@ -162,16 +157,7 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     }
     if constexpr (is_fork) {
         at_its_opening = command.at_generation.has_value();
-        if (order.construction.reads_world && (*laboratory_.find(command.world))->replay) {
-            // Requests for replays do not wait for builds, so a replay is copied at once.
-            auto copy = base::within_memory([&]() -> base::Result<std::shared_ptr<simulation::World>> {
-                return std::make_shared<simulation::World>(order.construction.construct(executor_));
-            });
-            if (!copy) {
-                return answer(mail, copy.error(), before);
-            }
-            order.construction.construct = [copy = *copy](base::Executor&) { return std::move(*copy); };
-        } else if (order.construction.reads_world) {
+        if (order.construction.reads_world) {
             order.original = command.world;
         }
     }
@@ -201,38 +187,43 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     builds_.begin(std::move(order));
 }
 
-void SimulationLoop::fork_at_generation(CommandMail& mail, const std::optional<RunBefore>& before) {
+void SimulationLoop::fork(CommandMail& mail) {
     const auto& command = std::get<simulation::ForkWorld>(mail.command);
-    const simulation::Entry* original = entry_of_command(command);
-    const std::uint64_t generation = *command.at_generation;
-    if (!original || generation == original->world.moment().generation) {
-        return construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
+    const simulation::Entry* original = entry_of_command(mail.command);
+    if (!original && simulation::is_replay_name(command.world)) {
+        return outputs_.reply(BringWorld{std::move(mail), {}});
     }
-    // The seek runs in slices, so that the thread can serve other clients meanwhile.
-    const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    replays_.seek_for_fork(original->name, generation, [this, waiting, before](base::Result<SeekResult> arrival) {
-        if (arrival) {
-            const auto there = std::make_shared<simulation::World>(std::move(arrival->rerun).take());
-            return construct<simulation::ForkWorld>(
-                *waiting, before,
-                simulation::Construction{.construct = [there](base::Executor&) { return std::move(*there); },
-                                         .genes = simulation::genes_of(there->parameters().active)});
+    const auto before = run_before(mail.command);
+    if (original && command.at_generation && *command.at_generation != original->world.moment().generation) {
+        if (const auto run = run_of(*original); !run) {
+            return answer(mail, run.error(), before);
         }
-        base::Refusal why = arrival.error();
-        for (base::Violation& violation : why.violations) {
-            violation.field = "at_" + violation.field;
-        }
-        answer(*waiting, why, before);
-    });
+        const std::string world = original->name;
+        return find_run({.world = world, .purpose = std::move(mail)});
+    }
+    construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
+}
+
+void SimulationLoop::take(WorldBrought& brought) {
+    const RunBefore before{brought.run_id, 0};
+    if (!*brought.world) {
+        return answer(brought.fork, brought.world->error(), before);
+    }
+    if (auto refused = refusal_of(brought.fork.command)) {
+        return answer(brought.fork, *refused, before);
+    }
+    construct<simulation::ForkWorld>(
+        brought.fork, before,
+        simulation::Construction{
+            .construct = [there = brought.world](base::Executor&) { return std::move(**there); },
+            .genes = simulation::genes_of((*brought.world)->parameters().active)});
 }
 
 void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                             const std::optional<RunBefore>& before, std::optional<run_file::RunBeginning> beginning) {
     publish_events();
     if (applied) {
-        if (const auto track = tracks_.find(applied->world); track != tracks_.end()) {
-            track->second.changed = true;
-        }
+        show_change(applied->world);
     }
     CommandDone done = done_of(std::move(mail), applied);
     const bool deleted_damaged_world = applied && !before && effect_of(done.mail.command) == RunEffect::Ends;
@@ -267,26 +258,17 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     const simulation::Applied applied = *done.outcome;
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
-    if (entry && (*entry)->replay) {
-        return outputs_.reply(std::move(done)); // commands to replays are not stored in the journal
-    }
+    done.ticket = ++last_ticket_;
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,
-                                    .answer = done.frame};
-    // After the command was written to the disk, the storage thread passes it on.
-    const auto waiting = std::make_shared<CommandDone>(std::move(done));
-    record.refused = [reply = outputs_.reply, waiting](const base::Refusal& why) {
-        const std::string world = waiting->outcome->world;
-        reply(refused(std::move(*waiting), replay::damaged_world(world, {}, why).refusal()));
-    };
+                                    .answer = done.frame,
+                                    .ticket = done.ticket};
     if (effect == RunEffect::BeginsAsFork) {
         const simulation::Entry& fork = **entry;
-        record.done = fork_check_.read_back(recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash(),
-                                            waiting, outputs_.reply);
-    } else {
-        record.done = [reply = outputs_.reply, waiting] { reply(std::move(*waiting)); };
+        done.fork = ForkFile{recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash()};
     }
+    outputs_.reply(std::move(done)); // before the record, so that its receipt comes later
     switch (effect) {
     case RunEffect::Begins:
     case RunEffect::BeginsAsFork:

@@ -1,30 +1,26 @@
 #include "server/runtime/simulation_thread.h"
 
-#include <pthread.h>
+#include "server/jobs/this_thread.h"
 
 #include <utility>
 
 namespace evod::runtime {
 
-SimulationThread::SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
-                                   LoopOutputs outputs, simulation::Laboratory laboratory,
-                                   recording::Recorder* recorder, std::optional<FileReplay> replay)
-    : mailbox_{mailbox}
-    , recorder_{recorder}
-    , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
-    , thread_{[this] {
-        pthread_setname_np(pthread_self(), "simulation"); // the name that `top -H` shows
+SimulationThread::SimulationThread(Options options, Mailbox& mailbox, std::unique_ptr<SimulationLoop> loop,
+                                   recording::Recorder* recorder)
+    : name_{options.name}, mailbox_{mailbox}, recorder_{recorder}, loop_{std::move(loop)}, thread_{[this, options] {
+        jobs::set_up_thread(options.name, options.niceness);
         if (recorder_) {
             recorder_->when_changed([this] { mailbox_.wake(); });
         }
         while (!stopping_.load(std::memory_order_acquire)) {
-            const auto next = loop_.pass();
+            const auto next = loop_->pass();
             // pass() treats a stop() after the check above like mail, so the flag must be checked again before waiting.
             if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending())) {
                 mailbox_.wait(next);
             }
         }
-        loop_.close();
+        loop_->close();
         if (recorder_) {
             recorder_->when_changed({});
         }

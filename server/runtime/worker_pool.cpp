@@ -4,7 +4,7 @@
 #include "server/base/inline_executor.h"
 
 #ifdef EVOD_THREAD_EXECUTOR
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #else
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -58,7 +58,7 @@ std::unique_ptr<base::Executor> make_executor(std::size_t threads) {
         return std::make_unique<base::InlineExecutor>();
     }
 #ifdef EVOD_THREAD_EXECUTOR
-    return std::make_unique<support::ThreadExecutor>(threads);
+    return std::make_unique<jobs::ThreadPool>(threads);
 #else
     return std::make_unique<Pool>(threads);
 #endif

@@ -1,7 +1,7 @@
 // Worker pool: the Executor that the server passes to the core.
 //
 // Threads      up to `threads` threads work at the same time, including the caller. oneTBB schedules them. Under
-//              ThreadSanitizer, ThreadExecutor from tests/support replaces oneTBB (EVOD_THREAD_EXECUTOR).
+//              ThreadSanitizer, jobs::ThreadPool replaces oneTBB (EVOD_THREAD_EXECUTOR).
 // Determinism  the loop is divided into the pieces that Executor guarantees, whichever thread computes them.
 #pragma once
 

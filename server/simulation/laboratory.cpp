@@ -3,6 +3,7 @@
 #include "server/base/inline_executor.h"
 #include "server/simulation/entities.h"
 #include "server/simulation/rating.h"
+#include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <functional>
@@ -191,6 +192,13 @@ base::Refusal DamagedWorld::refusal() const {
                          base::Reason::WorldDamaged);
 }
 
+base::Refusal no_such_replay(std::string_view name) {
+    return {.code = RefusalCode::NotFound,
+            .message = "there is no such replay",
+            .violations = {{"world", "one that was opened with OpenReplay", std::string{name}}},
+            .reason = base::Reason::WorldNotFound};
+}
+
 namespace {
 
 bool is_world(const std::unique_ptr<Entry>& entry) {
@@ -231,6 +239,9 @@ Result<Entry*> Laboratory::find(std::string_view name) {
 }
 
 Refusal Laboratory::not_found(std::string_view name) const {
+    if (is_replay_name(name)) {
+        return no_such_replay(name);
+    }
     std::string names;
     const auto add_name = [&names](const std::string& one) { names += (names.empty() ? "" : ", ") + one; };
     for (const auto& entry : entries_) {

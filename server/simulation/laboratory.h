@@ -95,6 +95,9 @@ struct DamagedWorld {
     base::Refusal refusal() const;
 };
 
+/// The answer to a request that names a replay which does not exist.
+base::Refusal no_such_replay(std::string_view name);
+
 /// Returns the number of genes of all organisms with which a world of these parameters begins.
 std::uint64_t genes_of(const parameters::Parameters& p);
 

@@ -1,4 +1,4 @@
-// World names: the rules for names of worlds, for all code that reads such a name.
+// World names: the rules for names of worlds and replays, for all code that reads such a name.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +17,14 @@ constexpr bool is_world_name_character(char c) {
 
 constexpr bool is_world_name(std::string_view name) {
     return !name.empty() && name.size() <= world_name_bytes_max && std::ranges::all_of(name, is_world_name_character);
+}
+
+/// A replay has the name of the world whose run it shows, "@" and a number.
+constexpr bool is_replay_name(std::string_view name) {
+    return name.find('@') != std::string_view::npos;
+}
+constexpr std::string_view original_of(std::string_view replay) {
+    return replay.substr(0, replay.find('@'));
 }
 
 } // namespace evod::simulation

@@ -4,7 +4,7 @@
 #include "server/evolution/next_generation.h"
 #include "server/evolution/price.h"
 
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/stage_choices.h"
 
 #include <benchmark/benchmark.h>
@@ -17,7 +17,7 @@ namespace {
 
 void breed(benchmark::State& state, const Parameters& parameters) {
     const auto count = static_cast<std::uint32_t>(state.range(0));
-    support::ThreadExecutor executor{static_cast<std::size_t>(state.range(1))};
+    jobs::ThreadPool executor{static_cast<std::size_t>(state.range(1))};
     const base::Seed seed{1};
     const GeneMatrix genes = initial_population(count, parameters, seed, 0);
     base::RandomStream random{{seed, base::Purpose::ScenarioTest, 0, 1}, 0};
@@ -36,7 +36,7 @@ void breed(benchmark::State& state, const Parameters& parameters) {
 /// migrants_came  some places are taken by others than were born there.
 void account(benchmark::State& state, bool migrants_came) {
     const auto count = static_cast<std::uint32_t>(state.range(0));
-    support::ThreadExecutor executor{static_cast<std::size_t>(state.range(1))};
+    jobs::ThreadPool executor{static_cast<std::size_t>(state.range(1))};
     const base::Seed seed{1};
     const Parameters parameters;
     const GeneMatrix before = initial_population(count, parameters, seed, 0);

@@ -4,7 +4,7 @@
 #include "server/parameters/experiment.h"
 #include "server/simulation/placement.h"
 #include "server/simulation/world.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <benchmark/benchmark.h>
 
@@ -49,7 +49,7 @@ double seconds(const std::function<void()>& work) {
 
 /// Generations of two ticks. The time is that of turn_over() and of what the last tick takes longer than the first.
 void turnover(benchmark::State& state) {
-    support::ThreadExecutor executor{static_cast<std::size_t>(state.range(2))};
+    jobs::ThreadPool executor{static_cast<std::size_t>(state.range(2))};
     parameters::Parameters parameters = parameters_of(state.range(0), state.range(1));
     parameters.generation_s = 2 * parameters.tick_s;
     simulation::World world{parameters, base::Seed{1}};
@@ -74,7 +74,7 @@ BENCHMARK(turnover)
 
 /// place_circles alone, where the bodies cover so many hundredths of the area.
 void place_circles(benchmark::State& state) {
-    support::ThreadExecutor executor{static_cast<std::size_t>(state.range(2))};
+    jobs::ThreadPool executor{static_cast<std::size_t>(state.range(2))};
     const std::vector<float> radius(static_cast<std::size_t>(state.range(0)), 20);
     const physics::Coordinate side = physics::to_units(
         std::sqrt(base::pi * 400 * 100 / static_cast<double>(state.range(1)) * static_cast<double>(state.range(0))) +

@@ -2,7 +2,7 @@
 
 #include "server/base/inline_executor.h"
 #include "tests/determinism/scenarios.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST_P(SameStateOnAnyThreadCount, TickByTick) {
     const auto& [scenario, thread_count] = GetParam();
     Play reference{scenario}, subject{scenario};
     base::InlineExecutor one;
-    support::ThreadExecutor many{thread_count};
+    jobs::ThreadPool many{thread_count};
     ASSERT_EQ(subject.world().hash(), reference.world().hash()) << "states differ from the start";
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
         reference.advance(one);
@@ -73,7 +73,7 @@ TEST_P(SameStateWithPlacedEntities, TickByTick) {
         ASSERT_TRUE(laboratory->apply(simulation::Run{"w", {}}));
     }
     base::InlineExecutor one;
-    support::ThreadExecutor many{GetParam()};
+    jobs::ThreadPool many{GetParam()};
     for (std::uint64_t tick = 0; tick < 130; ++tick) {
         if (tick % 7 == 0 && !reference.entries().front()->world.generation_over()) {
             change_entities(reference, tick);
@@ -119,7 +119,7 @@ TEST_P(AnyScenario, DoesNotDependOnObservers) {
     const Scenario& scenario = GetParam();
     Play alone{scenario}, watched{scenario};
     base::InlineExecutor executor;
-    support::ThreadExecutor other_executor{3};
+    jobs::ThreadPool other_executor{3};
     std::uint64_t seen = 0;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
         alone.advance(executor);

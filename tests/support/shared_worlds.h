@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/simulation/sharing.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/support/threaded_exchange.h"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "server/evolution/fitness_shuffle.h"
 
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/draws.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(FitnessShuffle, KeepsAllValuesOnAnyThreadCount) {
         for (std::size_t i = 0; i < count; ++i) {
             ASSERT_EQ(sorted[i], static_cast<double>(i));
         }
-        support::ThreadExecutor many{5};
+        jobs::ThreadPool many{5};
         ASSERT_EQ(dealt(count, key, many), reference);
     }
 }

@@ -3,7 +3,7 @@
 #include "server/base/state_hash.h"
 #include "server/evolution/ranking.h"
 #include "server/evolution/shuffle.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/draws.h"
 #include "tests/unit/evolution/stage_choices.h"
 
@@ -458,7 +458,7 @@ TEST(NextGeneration, HasItsGoldenHash) {
 class SameBitsOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(SameBitsOnAnyThreadCount, ForEveryChoiceOfEveryStage) {
-    support::ThreadExecutor executor{GetParam()};
+    jobs::ThreadPool executor{GetParam()};
     const Population population = population_of(9001, 237);
     for (const Parameters& parameters : stage_choices()) {
         const NextGeneration reference = breed(population, parameters, 9003, 5, 6);
@@ -471,7 +471,7 @@ TEST_P(SameBitsOnAnyThreadCount, ForEveryChoiceOfEveryStage) {
 }
 
 TEST_P(SameBitsOnAnyThreadCount, AlsoForShufflesInParts) {
-    support::ThreadExecutor executor{GetParam()};
+    jobs::ThreadPool executor{GetParam()};
     const Population population = population_of(2 * shuffled_whole_max + 9, 241);
     for (const StageChoice& choice : stage_choices()) {
         if (choice.population_model == PopulationModel::Hybrid && choice.selection == SelectionMethod::Roulette &&

@@ -2,7 +2,7 @@
 
 #include "server/evolution/migration.h"
 #include "server/evolution/next_generation.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/draws.h"
 
 #include <gtest/gtest.h>
@@ -350,7 +350,7 @@ TEST(Price, IsTheSameOnAnyNumberOfThreads) {
     const Bred bred = breed(of);
     expect_closed(bred.account);
     for (const std::size_t threads : {2u, 3u, 8u}) {
-        support::ThreadExecutor executor{threads};
+        jobs::ThreadPool executor{threads};
         EXPECT_EQ(account_for(bred.before, bred.bred_from, bred.next.genes, bred.next.parents, executor), bred.account)
             << threads;
     }

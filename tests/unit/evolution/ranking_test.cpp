@@ -1,6 +1,6 @@
 #include "server/evolution/ranking.h"
 
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/draws.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(Ranking, IsAStableSortOfManyWithTies) {
                      [&](std::uint32_t a, std::uint32_t b) { return fitness[a] > fitness[b]; });
     EXPECT_EQ(best_first(fitness), expected);
     for (const std::size_t threads : {2, 3, 8, 13}) {
-        support::ThreadExecutor executor{threads};
+        jobs::ThreadPool executor{threads};
         Ranking ranking{fitness, executor};
         EXPECT_TRUE(std::ranges::equal(ranking.best_first(), expected));
     }

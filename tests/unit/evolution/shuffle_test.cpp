@@ -1,7 +1,7 @@
 #include "server/evolution/shuffle.h"
 
 #include "server/evolution/distribution.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/evolution/draws.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Distribute, IsAStableSortByBucketOnAnyThreadCount) {
     std::iota(expected.begin(), expected.end(), 0u);
     std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return bucket_of[i]; });
     for (const std::size_t threads : {1, 2, 3, 8, 13}) {
-        support::ThreadExecutor executor{threads};
+        jobs::ThreadPool executor{threads};
         std::vector<std::uint32_t> order(count);
         const auto begins = distribute(
             count, buckets, executor, [&](std::size_t i) { return bucket_of[i]; },
@@ -55,7 +55,7 @@ TEST(Shuffle, OfManyKeepsAllItemsOnAnyThreadCount) {
     base::InlineExecutor inline_executor;
     const auto reference = shuffled(150'001, 262, inline_executor);
     for (const std::size_t threads : {2, 3, 8, 13}) {
-        support::ThreadExecutor executor{threads};
+        jobs::ThreadPool executor{threads};
         ASSERT_EQ(shuffled(150'001, 262, executor), reference);
     }
     auto sorted = reference;

@@ -1,6 +1,6 @@
 #include "server/physics/broad_phase.h"
 
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/physics/test_bodies.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ RC_GTEST_PROP(Strips, ContainEveryCircleExceptVoidOnesInOrder, ()) {
     const TestBodies setup = some_scene(random);
     Strips one, many;
     base::InlineExecutor executor;
-    support::ThreadExecutor threads{3};
+    jobs::ThreadPool threads{3};
     const float reach = uniform_float(random, 1, 200);
     one.sort(setup.circles, setup.area, reach, executor);
     many.sort(setup.circles, setup.area, reach, threads);

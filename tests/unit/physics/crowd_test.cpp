@@ -1,6 +1,6 @@
 // Crowds: circles, crates and obstacles cover half of the area, and all of them touch others all the time.
 #include "server/physics/shapes.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/physics/test_bodies.h"
 
 #include <gtest/gtest.h>
@@ -221,7 +221,7 @@ TEST(ACrowd, OverlapsLessThanHalfARadiusAndStaysInsideTheWalls) {
 TEST(ACrowd, MovesAlikeOnAnyThreadCountAndWithNewPairLists) {
     TestBodies one = crowd(0.5, 25), many = one, fresh = one;
     base::InlineExecutor executor;
-    support::ThreadExecutor threads{3};
+    jobs::ThreadPool threads{3};
     for (int tick = 0; tick < 150; ++tick) {
         one.step(executor);
         many.step(threads);
@@ -294,7 +294,7 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
     }
     ASSERT_GT(touching.size(), 1500u);
     Contacts contacts;
-    support::ThreadExecutor threads{3};
+    jobs::ThreadPool threads{3};
     contacts.find(setup.circles, setup.boxes, setup.area, threads);
     EXPECT_EQ(contacts.size(), touching.size());
     contacts.resolve(setup.circles, setup.boxes, 0.8f, threads);
@@ -315,7 +315,7 @@ TEST(ACrowd, OnOneCrateIsResolvedAlikeOnAnyThreadCount) {
     one.add_box(2000, 2000, 900, 900, 0.001f);
     TestBodies many = one;
     base::InlineExecutor executor;
-    support::ThreadExecutor threads{3};
+    jobs::ThreadPool threads{3};
     for (int tick = 0; tick < 20; ++tick) {
         one.step(executor);
         many.step(threads);

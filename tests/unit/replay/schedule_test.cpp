@@ -6,7 +6,7 @@
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -49,7 +49,7 @@ class StoredScheduleTest : public testing::Test {
     Schedule schedule;
     std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
     base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
+    jobs::ThreadPool three_threads{3};
 };
 
 TEST_F(StoredScheduleTest, ItContinuesAfterAKillAtAnyMoment) {

@@ -3,7 +3,7 @@
 
 #include "server/replay/run_tables.h"
 #include "server/replay/verify.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ class StoredRuns : public testing::Test {
     std::unique_ptr<recording::StorageThread> thread =
         std::make_unique<recording::StorageThread>(run_file::RunFile::Options{});
     base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
+    jobs::ThreadPool three_threads{3};
 };
 
 } // namespace evod::replay

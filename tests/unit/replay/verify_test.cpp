@@ -3,7 +3,7 @@
 
 #include "server/replay/archive.h"
 #include "server/replay/fork.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -101,7 +101,7 @@ class VerifyTest : public testing::Test {
     TemporaryFolder folder;
     DataFolder data;
     base::InlineExecutor one_thread;
-    support::ThreadExecutor two_threads{2}, many{7}; // fewer and more threads than generations
+    jobs::ThreadPool two_threads{2}, many{7}; // fewer and more threads than generations
 };
 
 TEST_F(VerifyTest, ARunAgreesWithItselfOnAnyNumberOfThreads) {

@@ -4,7 +4,7 @@
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
 #include "server/run_file/check.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -54,7 +54,7 @@ class CheckpointTest : public testing::Test {
     DataFolder data;
     std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
     base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
+    jobs::ThreadPool three_threads{3};
 };
 
 TEST(CheckpointState, ContainsFitnessFromClients) {

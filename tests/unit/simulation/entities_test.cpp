@@ -2,7 +2,7 @@
 
 #include "server/base/inline_executor.h"
 #include "server/simulation/laboratory.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ class EntitiesTest : public testing::Test {
     parameters::Parameters parameters;
     Laboratory laboratory;
     base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
+    jobs::ThreadPool three_threads{3};
 };
 
 TEST_F(EntitiesTest, PlacedFoodIsEatenAndDoesNotReappear) {

@@ -7,7 +7,7 @@
 #include "server/base/inline_executor.h"
 #include "server/parameters/experiment.h"
 #include "server/simulation/world.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ Curve curve_of(const parameters::Parameters& parameters, std::size_t generations
 /// Runs the world with the seeds 1 … seed_count.
 std::vector<Curve> run(const parameters::Parameters& parameters, std::size_t generations, std::size_t seed_count) {
     std::vector<Curve> curves(seed_count);
-    support::ThreadExecutor cores{std::max(std::thread::hardware_concurrency(), 1u)};
+    jobs::ThreadPool cores{std::max(std::thread::hardware_concurrency(), 1u)};
     cores.parallel_for(seed_count, 1, [&](base::Range seeds) {
         for (std::size_t i = seeds.begin; i < seeds.end; ++i) {
             curves[i] = curve_of(parameters, generations, i + 1);

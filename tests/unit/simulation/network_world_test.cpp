@@ -4,7 +4,7 @@
 #include "server/base/inline_executor.h"
 #include "server/base/instructions.h"
 #include "server/simulation/world.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST_P(NetworkWorlds, AreTheSameOnAnyThreadsAndInstructions) {
     base::InlineExecutor one;
     const std::vector<base::StateHash> expected = hashes(one);
     for (const std::size_t threads : {2u, 3u, 16u}) {
-        support::ThreadExecutor several{threads};
+        jobs::ThreadPool several{threads};
         EXPECT_EQ(hashes(several), expected) << threads;
     }
     for (const std::string_view instructions : base::available_instructions()) {

@@ -3,7 +3,7 @@
 #include "server/base/inline_executor.h"
 #include "server/physics/shapes.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -182,7 +182,7 @@ bool operator==(const Place& a, const Place& b) {
 class PlaceCirclesOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(PlaceCirclesOnAnyThreadCount, EqualsPlacingThemOneByOne) {
-    support::ThreadExecutor executor{GetParam()};
+    jobs::ThreadPool executor{GetParam()};
     for (const auto& [least, greatest] : {std::pair{20.0f, 20.0f}, {1.0f, 30.0f}}) {
         for (const std::size_t count : {1u, 50u, 6000u}) {
             const Crowd crowd{count, least, greatest};
@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, PlaceCirclesOnAnyThreadCount, testing::Values(
 
 TEST(PlaceCircles, ManyAreClearOfEachOtherOnACrowdedIsland) {
     const Crowd crowd{40'000, 4, 24};
-    support::ThreadExecutor executor{3};
+    jobs::ThreadPool executor{3};
     const auto places =
         place_circles(crowd.radius, base::Seed{12}, 0, 1, crowd.area, BoxGrid{crowd.area, crowd.boxes}, executor);
     std::vector<std::size_t> by_x(places.size());

@@ -4,7 +4,7 @@
 #include "server/parameters/experiment.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
@@ -118,7 +118,7 @@ TEST_F(ScheduleTest, IsTheSameOnAnyThreadCount) {
         read(R"("mutation_chance": {"2": 0.5}, "population_size": {"1": 12, "2": 200, "4": 20},
         "body_size_max": {"3": 150}, "selection": {"4": "tournament"})");
     World alone = make(experiment), many = make(experiment);
-    support::ThreadExecutor threads{5};
+    jobs::ThreadPool threads{5};
     for (int tick = 0; tick < 12 * 5; ++tick) {
         alone.advance_tick(executor);
         many.advance_tick(threads);

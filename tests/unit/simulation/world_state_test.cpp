@@ -3,7 +3,7 @@
 
 #include "server/base/inline_executor.h"
 #include "server/simulation/world.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -97,7 +97,7 @@ class WorldStateTest : public testing::Test {
     }
 
     base::InlineExecutor executor;
-    support::ThreadExecutor three_threads{3};
+    jobs::ThreadPool three_threads{3};
 };
 
 TEST_F(WorldStateTest, ARestoredWorldContinuesLikeTheOriginal) {

@@ -4,7 +4,7 @@
 #include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
 #include "server/simulation/fitness.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
@@ -213,7 +213,7 @@ TEST_F(WorldTest, AccountsForTheChangeOfGeneMeans) {
     parameters.migration = evolution::Topology::Ring;
     parameters.migrant_count = 500;
     parameters.migration_epoch = 2;
-    support::ThreadExecutor many{3};
+    jobs::ThreadPool many{3};
     World world = make(), again = make();
     for (unsigned generation = 1; generation <= 6; ++generation) {
         for (World* each : {&world, &again}) {
@@ -523,7 +523,7 @@ TEST_F(WorldTest, HasTheSameStatisticsOnAnyThreadCount) {
     };
     const GenerationStatistics reference = statistics(executor);
     for (const std::size_t threads : {2, 3, 8, 13}) {
-        support::ThreadExecutor many{threads};
+        jobs::ThreadPool many{threads};
         const GenerationStatistics s = statistics(many);
         EXPECT_EQ(s.fitness_mean, reference.fitness_mean);
         EXPECT_EQ(s.fitness_deviation, reference.fitness_deviation);

@@ -1,5 +1,5 @@
 #include "server/base/inline_executor.h"
-#include "tests/support/thread_executor.h"
+#include "server/jobs/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 class AnyExecutor : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(AnyExecutor, RunsEveryIndexOnceInPiecesOfTheGrain) {
-    support::ThreadExecutor threads{GetParam()};
+    jobs::ThreadPool threads{GetParam()};
     for (const std::size_t count : {0ul, 1ul, 6ul, 99ul, 1000ul}) {
         std::vector<int> visits(count);
         threads.parallel_for(count, 7, [&](Range range) {
@@ -27,7 +27,7 @@ TEST_P(AnyExecutor, RunsEveryIndexOnceInPiecesOfTheGrain) {
 }
 
 TEST_P(AnyExecutor, LoopsMayBeNested) {
-    support::ThreadExecutor threads{GetParam()};
+    jobs::ThreadPool threads{GetParam()};
     std::vector<int> visits(64 * 64);
     threads.parallel_for(64, 1, [&](Range outer) {
         threads.parallel_for(64, 8, [&](Range inner) {

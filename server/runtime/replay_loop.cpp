@@ -1,0 +1,211 @@
+#include "server/runtime/replay_loop.h"
+
+#include "server/base/overloaded.h"
+#include "server/base/within_memory.h"
+#include "server/protocol/worlds.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace evod::runtime {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+/// Completes the names of the fields in a refusal of a seek, which are those of a moment.
+Refusal with_prefix(const std::string& prefix, Refusal refused) {
+    for (base::Violation& violation : refused.violations) {
+        violation.field = prefix + violation.field;
+    }
+    return refused;
+}
+
+Refusal no_room(std::string message) {
+    return refusal(RefusalCode::ResourceExhausted, std::move(message), base::Reason::ReplaysMax);
+}
+
+} // namespace
+
+ReplayLoop::ReplayLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
+                       LoopOutputs outputs, std::optional<FileReplay> file)
+    : SimulationLoop{mailbox, demand, executor, clock, std::move(outputs)}
+    , seeks_{mailbox, jobs_, executor}
+    , shown_{laboratory_, mailbox, jobs_} {
+    if (file) {
+        shown_.show(file->name, file->run, {}, std::move(file->shown));
+    }
+}
+
+void ReplayLoop::handle(Mail& mail) {
+    std::visit(base::Overloaded{[this](BringWorld& request) { bring(request); },
+                                [this](SeekRead& read) { seeks_.take(read); },
+                                [this](RecordsRead& read) { shown_.take(read); },
+                                [this, &mail](SessionEnded& ended) {
+                                    forget(ended.session);
+                                    SimulationLoop::handle(mail);
+                                },
+                                [this, &mail](auto&) { SimulationLoop::handle(mail); }},
+               mail);
+}
+
+void ReplayLoop::update_worlds() {
+    for (Seeks::Ended& seek : seeks_.take_ended()) {
+        finish(std::move(seek));
+    }
+}
+
+void ReplayLoop::list_contenders(std::vector<Contender>& contenders) {
+    for (auto& [number, seek] : seeks_.all()) {
+        if (seek.at) {
+            contenders.push_back({.user = seek.user, .turn = &seek.turn, .seek = number});
+        }
+    }
+}
+
+void ReplayLoop::after_tick(simulation::Entry& entry) {
+    shown_.follow(entry);
+    laboratory_.settle(entry);
+}
+
+std::string ReplayLoop::user_of(const simulation::Entry& entry) const {
+    const ShownReplays::Owner* owner = shown_.owner_of(entry.name);
+    return owner != nullptr ? owner->user : std::string{};
+}
+
+void ReplayLoop::find_run(const FindRun& mail) {
+    const auto entry = std::as_const(laboratory_).find(mail.world);
+    if (!entry) {
+        return outputs_.reply(RunFound{mail, entry.error()});
+    }
+    const replay::StoredRun* run = shown_.run_of((*entry)->name);
+    if (run == nullptr) {
+        return SimulationLoop::find_run(mail);
+    }
+    const std::string& original = (*entry)->replay->replay_of;
+    outputs_.reply(RunFound{mail, FoundRun{.world = original.empty() ? (*entry)->name : original,
+                                           .run = *run,
+                                           .generation = (*entry)->world.moment().generation}});
+}
+
+void ReplayLoop::answer(const ReplayMail& mail) {
+    std::visit(base::Overloaded{[&](const OpenReplay& request) { open(mail, request); },
+                                [&](const Seek& request) { seek(mail, request); },
+                                [&](const CloseReplay& request) { close(mail, request); }},
+               mail.request);
+}
+
+void ReplayLoop::open(const ReplayMail& mail, const OpenReplay& request) {
+    if (shown_.names(mail.session).size() + seeks_.opening_count(mail.session) >= replays_max) {
+        return outputs_.reply(ReplayDone{mail, no_room("this session has " + std::to_string(replays_max) +
+                                                       " replays open already: close one first")});
+    }
+    if (shown_.names().size() + seeks_.opening_count() >= replays_of_all_max) {
+        return outputs_.reply(ReplayDone{mail, no_room("all clients together have " + std::to_string(replays_of_all_max) +
+                                                       " replays open already: try again when one of them is closed")});
+    }
+    seeks_.begin({.purpose = {mail}, .run = mail.run->run, .to = request.at, .until = mail.run->until});
+}
+
+void ReplayLoop::seek(const ReplayMail& mail, const Seek& request) {
+    const auto entry = std::as_const(laboratory_).find(request.world);
+    const replay::StoredRun* run = entry ? shown_.run_of((*entry)->name) : nullptr;
+    if (run == nullptr) {
+        return SimulationLoop::answer(mail);
+    }
+    const simulation::Replay& seen = *(*entry)->replay;
+    replay::RecordedUntil until{.generation = seen.last_generation, .tick = seen.last_tick};
+    // The world may have begun a new run; the replay still shows this one.
+    if (mail.run && mail.run->run.run_id() == run->run_id()) {
+        until.generation = std::max(until.generation, mail.run->until.generation);
+        until.tick = std::max(until.tick, mail.run->until.tick);
+    }
+    seeks_.begin({.purpose = {mail, (*entry)->name}, .run = *run, .to = request.to, .until = until});
+}
+
+void ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
+    const ShownReplays::Owner* owner = shown_.owner_of(request.world);
+    if (owner == nullptr || owner->session == 0) {
+        return outputs_.reply(ReplayDone{mail, simulation::no_such_replay(request.world)});
+    }
+    shown_.close(request.world);
+    seeks_.cancel_of_replay(request.world);
+    outputs_.reply(ReplayDone{mail, request.world});
+}
+
+void ReplayLoop::fork(CommandMail& mail) {
+    bring({.fork = std::move(mail), .run = {}});
+}
+
+void ReplayLoop::bring(const BringWorld& mail) {
+    const auto& command = std::get<simulation::ForkWorld>(mail.fork.command);
+    const auto begin = [&](const replay::StoredRun& run, replay::RecordedUntil until) {
+        const replay::WantedMoment to{.generation = command.at_generation, .tick = {}};
+        seeks_.begin({.purpose = {mail}, .run = run, .to = to, .until = until});
+    };
+    if (mail.run) {
+        return begin(mail.run->run, mail.run->until);
+    }
+    const auto entry = std::as_const(laboratory_).find(command.world);
+    if (!entry) {
+        return brought(mail, {}, entry.error());
+    }
+    const simulation::World& world = (*entry)->world;
+    if (command.at_generation && *command.at_generation != world.moment().generation) {
+        if (const replay::StoredRun* run = shown_.run_of((*entry)->name)) {
+            return begin(*run, {});
+        }
+        return brought(mail, (*entry)->run_id, run_of(**entry).error());
+    }
+    brought(mail, (*entry)->run_id,
+            base::within_memory([&]() -> Result<simulation::World> { return world.copy(executor_); }));
+}
+
+void ReplayLoop::brought(const BringWorld& mail, const simulation::RunId& run_id, Result<simulation::World> world) {
+    outputs_.reply(WorldBrought{mail.fork, run_id, std::make_shared<Result<simulation::World>>(std::move(world))});
+}
+
+void ReplayLoop::finish(Seeks::Ended ended) {
+    const replay::StoredRun& run = ended.request.run;
+    if (const auto* fork = std::get_if<BringWorld>(&ended.request.purpose.request)) {
+        return ended.result ? brought(*fork, run.run_id(), std::move(ended.result->rerun).take())
+                            : brought(*fork, run.run_id(), with_prefix("at_", ended.result.error()));
+    }
+    finish(std::get<ReplayMail>(ended.request.purpose.request), ended.request.purpose.replay, run,
+           std::move(ended.result));
+}
+
+void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
+                        Result<SeekResult> result) {
+    if (!result) {
+        const std::string field = moved.empty() ? "at." : "to.";
+        return outputs_.reply(ReplayDone{mail, with_prefix(field, result.error())});
+    }
+    std::string name = moved;
+    if (moved.empty()) {
+        result->there.replay_of = mail.run->world;
+        name = mail.run->world + "@" + std::to_string(++last_name_);
+        shown_.show(name, run, {mail.session, mail.user}, *std::move(result));
+    } else {
+        shown_.move_to(name, *std::move(result));
+    }
+    const simulation::Entry& entry = **laboratory_.find(name);
+    outputs_.reply(ReplayDone{mail, name, protocol::to_proto(entry)});
+    if (!moved.empty()) {
+        show_change(name);
+        outputs_.events(laboratory_, {{name, entry.run_id, entry.world.moment().tick, simulation::GoalReached{}}});
+    }
+}
+
+void ReplayLoop::forget(std::uint64_t session) {
+    seeks_.cancel_of_session(session);
+    for (const std::string& name : shown_.names(session)) {
+        shown_.close(name);
+        seeks_.cancel_of_replay(name);
+    }
+}
+
+} // namespace evod::runtime

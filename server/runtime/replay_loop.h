@@ -1,0 +1,60 @@
+// Replay loop: the simulation loop of the replays, which are worlds that show stored runs, and of the seeks that move
+// them. It has a laboratory of its own, and shares nothing with the loop of the live worlds.
+//
+// A server that shows a run file has only this loop. Worlds that clients then create live in it, next to the replays.
+//
+// Threads      only the thread of the replays calls it.
+// Determinism  a replay reproduces a run bit for bit.
+#pragma once
+
+#include "server/runtime/seeks.h"
+#include "server/runtime/shown_replays.h"
+#include "server/runtime/simulation_loop.h"
+
+#include <optional>
+#include <string>
+
+namespace evod::runtime {
+
+class ReplayLoop final : public SimulationLoop {
+  public:
+    static constexpr std::size_t replays_max = 4;         // maximum per client
+    static constexpr std::size_t replays_of_all_max = 64; // maximum of all clients together
+
+    /// All references must outlive the loop.
+    ///
+    /// file  the replay of a run file that the server shows from its start.
+    ReplayLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
+               std::optional<FileReplay> file = {});
+
+  private:
+    void handle(Mail& mail) override;
+    void update_worlds() override;
+    void list_contenders(std::vector<Contender>& contenders) override;
+    void advance_seek(std::uint64_t seek, const std::function<bool()>& stop) override { seeks_.advance(seek, stop); }
+    bool is_seeking() const override { return seeks_.under_way(); }
+    void after_tick(simulation::Entry& entry) override;
+    std::optional<Clock::time_point> refresh(Clock::time_point now) override { return shown_.refresh(now); }
+    std::string user_of(const simulation::Entry& entry) const override;
+    void find_run(const FindRun& mail) override;
+    void answer(const ReplayMail& mail) override;
+    void fork(CommandMail& mail) override;
+
+    void open(const ReplayMail& mail, const OpenReplay& request);
+    void seek(const ReplayMail& mail, const Seek& request);
+    void close(const ReplayMail& mail, const CloseReplay& request);
+    void bring(const BringWorld& mail);
+    void finish(Seeks::Ended ended);
+    void finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
+                base::Result<SeekResult> result);
+    void brought(const BringWorld& mail, const simulation::RunId& run_id, base::Result<simulation::World> world);
+    /// Closes all replays of a session that has ended, and cancels its seeks.
+    void forget(std::uint64_t session);
+
+    std::uint64_t last_name_ = 0;
+    jobs::JobQueue jobs_{{.name = "replay files", .niceness = 10}};
+    Seeks seeks_;
+    ShownReplays shown_;
+};
+
+} // namespace evod::runtime
