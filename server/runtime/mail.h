@@ -73,6 +73,9 @@ struct SessionEnded {
     std::uint64_t session = 0;
 };
 
+/// Asks whether the simulation thread responds, which it does with a Pong (replies.h).
+struct Ping {};
+
 /// A short function that another part of the server runs on the simulation thread, such as the end of a background job.
 struct CallMail {
     std::function<void()> call;
@@ -89,6 +92,6 @@ struct WorldBuilt {
     std::shared_ptr<base::Result<BuiltWorld>> world; // nullptr: it has only read the original world so far
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail, WorldBuilt>;
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, Ping, CallMail, WorldBuilt>;
 
 } // namespace evod::runtime

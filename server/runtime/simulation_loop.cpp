@@ -162,6 +162,7 @@ void SimulationLoop::poll_mailbox() {
                                             });
                                             replays_.forget(ended.session);
                                         },
+                                        [this](const Ping&) { outputs_.reply(Pong{}); },
                                         [](CallMail& call) { call.call(); },
                                         [this](WorldBuilt& built) { take(built); }},
                        mail);
