@@ -2,6 +2,7 @@
 
 #include "server/access/role.h"
 #include "server/base/assert.h"
+#include "server/base/overloaded.h"
 #include "server/log/log.h"
 #include "server/network/description.h"
 #include "server/network/random_ids.h"
@@ -135,19 +136,19 @@ base::Refusal shutting_down_refusal() {
 } // namespace
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
-                       const Sessions& sessions, Streams& streams, LimitCounters& limit_counters,
-                       std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
+                       const Sessions& sessions, Streams& streams, SessionHost& host, std::function<void()> shut_down,
+                       std::function<v1::Metrics()> metrics)
     : simulations_{simulations}
     , sessions_{sessions}
     , streams_{streams}
-    , limit_counters_{limit_counters}
+    , host_{host}
     , shut_down_{std::move(shut_down)}
     , metrics_{std::move(metrics)}
-    , exports_{outbox, limit_counters}
-    , breeding_queries_{outbox, limit_counters}
+    , background_queries_{outbox, sessions, host.limit_counters}
+    , heartbeat_{simulations.mailbox_of("")}
     , leases_{context,
               [this](const std::string& world, std::uint64_t lease) {
-                  limit_counters_.met(Limit::Lease);
+                  host_.limit_counters.met(Limit::Lease);
                   v1::Request request;
                   request.mutable_release_lease()->set_world(world);
                   handle_own(std::move(request), lease);
@@ -156,11 +157,11 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulati
                     .keys_max = client_keys_max,
                     .bytes_max = retry_bytes_max,
                     .evicted_max = evicted_keys_max},
-                   [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
+                   [&host] { host.limit_counters.met(Limit::ClientKeys); }}
     , own_key_{"evod " + to_text(draw_run_id())} {}
 
 base::Refusal Dispatcher::busy() {
-    limit_counters_.met(Limit::MailboxCommands);
+    host_.limit_counters.met(Limit::MailboxCommands);
     return refusal(base::RefusalCode::ResourceExhausted, "the server is busy, its mailbox is full: try again",
                    base::Reason::ServerBusy);
 }
@@ -263,7 +264,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     }
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
-        count_exceeded_limits(request, limit_counters_);
+        count_exceeded_limits(request, host_.limit_counters);
         return session.answer(refused(command.error()));
     }
 
@@ -283,7 +284,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
                                        .violations = {{"request_id", "an unused id", std::to_string(id)}},
                                        .reason = base::Reason::RequestIdReused}));
     case ReplyCache::Verdict::TooOld:
-        limit_counters_.met(Limit::RetriesKept);
+        host_.limit_counters.met(Limit::RetriesKept);
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
                     "the request is older than the cached answers and may have been applied; it is not applied again: "
@@ -334,14 +335,15 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
 
 void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
     for (runtime::Delivery& delivery : deliveries) {
-        if (auto* reply = std::get_if<runtime::Reply>(&delivery)) {
-            if (auto answer = simulations_.pass_on(std::move(*reply))) {
-                std::visit([this](auto& done) { on_done(std::move(done)); }, *answer);
-            }
-        } else {
-            // Destroys the call and its captured data before the next delivery.
-            std::exchange(std::get<runtime::Call>(delivery), nullptr)();
-        }
+        std::visit(base::Overloaded{[this](runtime::Reply& reply) {
+                                        if (auto answer = simulations_.pass_on(std::move(reply))) {
+                                            std::visit([this](auto& done) { on_done(std::move(done)); }, *answer);
+                                        }
+                                    },
+                                    [this](v1::Event& event) { streams_.publish(std::move(event)); },
+                                    [this](const runtime::StorageChanged& changed) { on_storage(changed); },
+                                    [this](const simulation::DamagedWorld& damaged) { on_damaged(damaged); }},
+                   delivery);
     }
 }
 
@@ -367,10 +369,18 @@ void Dispatcher::on_done(runtime::CommandDone done) {
     }
 }
 
-void Dispatcher::on_damaged(const v1::Event& event) {
-    leases_.end(event.world());
-    streams_.forget_world(event.world());
-    streams_.publish(event);
+void Dispatcher::on_storage(const runtime::StorageChanged& changed) {
+    v1::Event event = protocol::event_of(changed.storage, changed.world);
+    if (changed.world.empty()) {
+        host_.storage = event.storage_changed().storage(); // for sessions that connect later
+    }
+    streams_.publish(std::move(event));
+}
+
+void Dispatcher::on_damaged(const simulation::DamagedWorld& damaged) {
+    leases_.end(damaged.name);
+    streams_.forget_world(damaged.name);
+    streams_.publish(protocol::event_of(damaged));
 }
 
 void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
@@ -383,11 +393,11 @@ void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusa
     }
     log_refusal(mail.session, mail.origin.client, mail.origin.request_id, why);
     if (why.reason == base::Reason::PlannedChangesMax) {
-        limit_counters_.met(Limit::PlannedChanges);
+        host_.limit_counters.met(Limit::PlannedChanges);
     } else if (why.reason == base::Reason::PlacedMax) {
-        limit_counters_.met(Limit::Placed);
+        host_.limit_counters.met(Limit::Placed);
     } else if (why.reason == base::Reason::WorldsMax) {
-        limit_counters_.met(Limit::Worlds);
+        host_.limit_counters.met(Limit::Worlds);
     }
     // A temporary refusal is not cached, so the same request may succeed when the client sends it again.
     if (why.code == base::RefusalCode::Unavailable || why.code == base::RefusalCode::ResourceExhausted) {
@@ -395,11 +405,6 @@ void Dispatcher::on_refused(const runtime::CommandMail& mail, const base::Refusa
     } else {
         reply_cache_.finish(key, mail.origin.request_id, frame);
     }
-}
-
-SessionPtr Dispatcher::find(std::uint64_t session) const {
-    const auto found = sessions_.find(session);
-    return found == sessions_.end() ? nullptr : found->second;
 }
 
 bool Dispatcher::ask(Session& session, std::uint64_t request_id, std::string_view world, runtime::Mail mail) {
@@ -421,14 +426,14 @@ void Dispatcher::ask(Session& session, v1::Request request) {
 }
 
 void Dispatcher::on_done(runtime::QueryDone done) {
-    const SessionPtr session = find(done.mail.session);
+    const SessionPtr session = find_session(sessions_, done.mail.session);
     if (!session) {
         return;
     }
     const v1::Request& request = *done.mail.request;
     session->query_under_way = false;
     session->expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
-    count_shortened_answers(done.result, limit_counters_);
+    count_shortened_answers(done.result, host_.limit_counters);
     protocol::add_rows(done.result, done.response);
     if (const auto* world = std::get_if<protocol::FoundWorld>(&done.result)) {
         if (const auto refused = apply(request, *world, *session, done.response)) {
@@ -527,7 +532,7 @@ std::optional<base::Refusal> Dispatcher::apply(const v1::Request& request, const
                              .reason = base::Reason::NoLease};
     }
     if (session.snapshots.subscriptions.size() + session.events.size() >= subscriptions_max) {
-        limit_counters_.met(Limit::Subscriptions);
+        host_.limit_counters.met(Limit::Subscriptions);
         return refusal(base::RefusalCode::ResourceExhausted,
                        "this session already has " + std::to_string(subscriptions_max) +
                            " subscriptions: unsubscribe from one first",
@@ -549,7 +554,7 @@ std::optional<base::Refusal> Dispatcher::subscribe(const v1::SubscribeSnapshots&
                                                    v1::Response& response) {
     const double rate_hz = std::clamp(request.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
     if (rate_hz < request.rate_hz()) {
-        limit_counters_.met(Limit::SnapshotRate);
+        host_.limit_counters.met(Limit::SnapshotRate);
     }
     auto subscription = streaming::to_subscription(request, world.name, world.island_count, rate_hz);
     std::size_t watched = subscription.island_count;
@@ -557,7 +562,7 @@ std::optional<base::Refusal> Dispatcher::subscribe(const v1::SubscribeSnapshots&
         watched += other.island_count;
     }
     if (watched > watched_islands_max) {
-        limit_counters_.met(Limit::WatchedIslands);
+        host_.limit_counters.met(Limit::WatchedIslands);
         return refusal(base::RefusalCode::ResourceExhausted,
                        "the subscriptions of this session would come to more than " +
                            std::to_string(watched_islands_max) +
@@ -593,9 +598,9 @@ void Dispatcher::on_done(runtime::ReplayDone done) {
     const runtime::ReplayMail& mail = done.mail;
     const bool opens = std::holds_alternative<runtime::OpenReplay>(mail.request);
     if (opens && !done.world && done.world.error().code == base::RefusalCode::ResourceExhausted) {
-        limit_counters_.met(Limit::Replays);
+        host_.limit_counters.met(Limit::Replays);
     }
-    const SessionPtr session = find(mail.session);
+    const SessionPtr session = find_session(sessions_, mail.session);
     if (!session) {
         return;
     }
@@ -621,7 +626,7 @@ void Dispatcher::export_text(Session& session, v1::Request request) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
     if (request.has_continue_export()) {
-        return exports_.send_next_part(session, id, request.continue_export());
+        return background_queries_.send_next_part(session, id, request.continue_export());
     }
     find_run(session, std::move(request));
 }
@@ -633,7 +638,7 @@ void Dispatcher::find_run(Session& session, v1::Request request) {
 }
 
 void Dispatcher::on_done(runtime::RunFound done) {
-    const SessionPtr session = find(done.mail.session);
+    const SessionPtr session = find_session(sessions_, done.mail.session);
     if (!session) {
         return;
     }
@@ -642,15 +647,15 @@ void Dispatcher::on_done(runtime::RunFound done) {
     if (!done.run) {
         session->answer(protocol::refusing(id, protocol::with_paths(done.run.error(), protocol::name_of(request))));
     } else if (request.has_export_run()) {
-        exports_.begin(*session, id, done.run->run, wanted(request.export_run(), session->visitor().role));
+        background_queries_.begin_export(*session, id, done.run->run,
+                                         wanted(request.export_run(), session->visitor().role));
     } else {
-        breeding_queries_.ask(*session, id, request.get_breeding(), *std::move(done.run));
+        background_queries_.ask_breeding(*session, request, *std::move(done.run));
     }
 }
 
 void Dispatcher::forget(const Session& session) {
-    exports_.forget(session);
-    breeding_queries_.forget(session);
+    background_queries_.forget(session);
     simulations_.forget(session.number());
 }
 

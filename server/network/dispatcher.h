@@ -3,11 +3,11 @@
 //
 // Owner        the server.
 // Threads      the network thread. Requests go to the simulation thread as data (server/runtime/mail.h) and come back
-//              as data (server/runtime/replies.h).
+//              as data (server/runtime/replies.h), as do the results of background queries.
 #pragma once
 
-#include "server/network/breeding_queries.h"
-#include "server/network/exports.h"
+#include "server/network/background_queries.h"
+#include "server/network/heartbeat.h"
 #include "server/network/leases.h"
 #include "server/network/limits.h"
 #include "server/network/reply_cache.h"
@@ -21,19 +21,21 @@ namespace evod::network {
 
 class Dispatcher {
   public:
-    /// All arguments must outlive the dispatcher. The simulation thread must end before the dispatcher is destroyed.
+    /// All arguments must outlive the dispatcher.
     ///
     /// shut_down  shuts the server down.
     /// metrics    returns the current metrics.
-    Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox, const Sessions& sessions,
-               Streams& streams, LimitCounters& limit_counters, std::function<void()> shut_down,
+    Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
+               const Sessions& sessions, Streams& streams, SessionHost& host, std::function<void()> shut_down,
                std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
     /// Handles deliveries from the outbox in order.
     void deliver(std::vector<runtime::Delivery> deliveries);
-    /// Ends the lease and the snapshot streams of a world that has become damaged, and publishes the event.
-    void on_damaged(const v1::Event& event);
+    /// Returns whether the simulation thread responds within `patience`.
+    asio::awaitable<bool> simulation_answers_within(std::chrono::milliseconds patience) {
+        return heartbeat_.answers_within(patience);
+    }
 
     /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
     /// is full, the command is dropped.
@@ -52,6 +54,7 @@ class Dispatcher {
     /// Makes the dispatcher refuse all further requests, because the server is shutting down.
     void refuse_all() {
         going_away_ = true;
+        heartbeat_.stop();
         leases_.end_all();
     }
 
@@ -88,6 +91,12 @@ class Dispatcher {
     void on_done(runtime::QueryDone done);
     void on_done(runtime::ReplayDone done);
     void on_done(runtime::RunFound done);
+    void on_done(runtime::ExportPartDone done) { background_queries_.on_done(std::move(done)); }
+    void on_done(runtime::BreedingDone done) { background_queries_.on_done(std::move(done)); }
+    void on_done(runtime::Pong /*pong*/) { heartbeat_.answered(); }
+    void on_storage(const runtime::StorageChanged& changed);
+    /// Ends the lease and the snapshot streams of a world that has become damaged, and publishes the event.
+    void on_damaged(const simulation::DamagedWorld& damaged);
     /// key  the sender's key in the reply cache.
     void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
                     const SharedBytes& frame);
@@ -100,17 +109,15 @@ class Dispatcher {
     /// Sends a query to the simulation thread. The session's further requests are held back until it is answered.
     void ask(Session& session, v1::Request request);
     void find_run(Session& session, v1::Request request);
-    /// The session with this number; nullptr if it has ended.
-    SessionPtr find(std::uint64_t session) const;
 
     runtime::Simulations& simulations_;
     const Sessions& sessions_;
     Streams& streams_;
-    LimitCounters& limit_counters_;
+    SessionHost& host_;
     std::function<void()> shut_down_;
     std::function<v1::Metrics()> metrics_;
-    Exports exports_;
-    BreedingQueries breeding_queries_;
+    BackgroundQueries background_queries_;
+    Heartbeat heartbeat_;
     Leases leases_;
     ReplyCache reply_cache_;
     const std::string own_key_; // client_key for commands of the server itself

@@ -18,7 +18,7 @@ asio::awaitable<bool> Heartbeat::answers_within(std::chrono::milliseconds patien
     waiting_.insert(&timer);
     // push() ignores the capacity of the mailbox. The heartbeat adds at most one entry at a time.
     if (!std::exchange(asked_, true)) {
-        mailbox_.push(runtime::CallMail{[this] { outbox_.answer([this] { answered(); }); }});
+        mailbox_.push(runtime::Ping{});
     }
     const auto [cancelled] = co_await timer.async_wait(no_throw);
     waiting_.erase(&timer);

@@ -5,7 +5,6 @@
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
-#include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
 #include "server/protocol/public_text.h"
@@ -117,14 +116,8 @@ Server::Server(ServerOptions options)
     , simulations_{options_.replay.has_value()}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, simulations_}
-    , dispatcher_{context_,
-                  simulations_,
-                  outbox_,
-                  sessions_,
-                  streams_,
-                  limit_counters_,
-                  [this] { stop(); },
-                  [this] { return metrics(); }} {
+    , dispatcher_{
+          context_, simulations_, outbox_, sessions_, streams_, host_, [this] { stop(); }, [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
     host_.instance_id = to_text(draw_run_id());
     host_.clock = &clock_;
@@ -308,23 +301,12 @@ bool Server::run() {
             .events = streams_.outlet(outbox_),
             .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
             .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); },
-            .storage =
-                [this](const simulation::Storage& storage) {
-                    // The event is passed like an answer, because the outbox may drop events. Sessions that connect
-                    // later read the state from host_.storage.
-                    outbox_.answer([this, event = protocol::event_of(storage)] {
-                        host_.storage = event.storage_changed().storage();
-                        streams_.publish(event);
-                    });
-                },
+            .storage = [this](const simulation::Storage& storage) { outbox_.storage({.storage = storage}); },
             .storage_of_world =
                 [this](const std::string& world, const simulation::Storage& storage) {
-                    outbox_.answer([this, event = protocol::event_of(storage, world)] { streams_.publish(event); });
+                    outbox_.storage({.storage = storage, .world = world});
                 },
-            .damaged =
-                [this](const simulation::DamagedWorld& damaged) {
-                    outbox_.answer([this, event = protocol::event_of(damaged)] { dispatcher_.on_damaged(event); });
-                },
+            .damaged = [this](const simulation::DamagedWorld& damaged) { outbox_.damaged(damaged); },
             .counted = &worlds_counted_,
         },
         .laboratory = std::move(worlds),
@@ -540,7 +522,6 @@ void Server::begin_shutdown() {
     }
     housekeeping_timer_.cancel();
     listener_->close();
-    heartbeat_.stop();
     if (http_) {
         http_->close();
     }

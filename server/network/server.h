@@ -5,7 +5,6 @@
 
 #include "server/access/tls.h"
 #include "server/network/dispatcher.h"
-#include "server/network/heartbeat.h"
 #include "server/network/http.h"
 #include "server/network/listener.h"
 #include "server/replay/archive.h"
@@ -140,7 +139,6 @@ class Server {
     runtime::Simulations simulations_;
     runtime::Outbox outbox_;
     metrics::Worlds worlds_counted_;
-    Heartbeat heartbeat_{simulations_.mailbox_of(""), outbox_};
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;

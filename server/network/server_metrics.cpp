@@ -207,7 +207,7 @@ asio::awaitable<HttpAnswer> Server::health() {
         return HttpAnswer{.status = boost::beast::http::status::service_unavailable,
                           .text = protocol::quotable(why, 1000) + '\n'};
     };
-    const bool answers = co_await heartbeat_.answers_within(simulation_patience);
+    const bool answers = co_await dispatcher_.simulation_answers_within(simulation_patience);
     if (going_away_) {
         co_return ill("the server is shutting down");
     }

@@ -21,6 +21,11 @@
 
 namespace evod::network {
 
+SessionPtr find_session(const Sessions& sessions, std::uint64_t number) {
+    const auto found = sessions.find(number);
+    return found == sessions.end() ? nullptr : found->second;
+}
+
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     : Session{std::make_unique<Transport>(std::move(socket), host.tls), host, number} {}
 

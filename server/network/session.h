@@ -44,6 +44,10 @@ namespace evod::network {
 
 class Session;
 using SessionPtr = std::shared_ptr<Session>;
+/// The key is the number of the session.
+using Sessions = std::map<std::uint64_t, SessionPtr>;
+/// Returns the session with this number; nullptr if it has ended.
+SessionPtr find_session(const Sessions& sessions, std::uint64_t number);
 
 /// The interface of the server that a session uses.
 struct SessionHost {

@@ -103,8 +103,7 @@ Streams::outlet(runtime::Outbox& outbox) {
             return;
         }
         for (const simulation::Event& event : events) {
-            outbox.event(
-                [this, message = protocol::to_proto(event, laboratory)]() mutable { publish(std::move(message)); });
+            outbox.event(protocol::to_proto(event, laboratory));
         }
     };
 }

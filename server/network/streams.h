@@ -11,14 +11,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 namespace evod::network {
-
-/// The key is the number of the session.
-using Sessions = std::map<std::uint64_t, SessionPtr>;
 
 class Streams {
   public:

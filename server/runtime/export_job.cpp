@@ -47,9 +47,10 @@ class ExportJob::PartBuffer : public std::streambuf {
     const std::stop_token& stop_;
 };
 
-ExportJob::ExportJob(jobs::JobQueue& jobs, replay::StoredRun run, const replay::WantedTable& wanted,
+ExportJob::ExportJob(jobs::JobQueue& jobs, Outbox& outbox, replay::StoredRun run, const replay::WantedTable& wanted,
                      std::chrono::milliseconds patience_time)
-    : run_{std::move(run)}
+    : outbox_{outbox}
+    , run_{std::move(run)}
     , wanted_{wanted}
     , patience_{patience_time}
     , stop_{jobs.add([this](const std::stop_token& stop) { work(stop); })} {}
@@ -65,32 +66,32 @@ bool ExportJob::finished() {
     return finished_;
 }
 
-void ExportJob::next(Reply reply) {
+void ExportJob::next(const PartRequest& request) {
     {
         const std::lock_guard lock{mutex_};
         if (!over_) {
-            reply_ = std::move(reply);
+            request_ = request;
             changed_.notify_one();
             return;
         }
     }
-    reply(over());
+    outbox_.reply(ExportPartDone{request, over()});
 }
 
-bool ExportJob::give(Part part, const std::stop_token& stop) {
+bool ExportJob::give(ExportPart part, const std::stop_token& stop) {
     part.generations_left_out = generations_left_out_;
-    Reply reply;
+    PartRequest request;
     {
         std::unique_lock lock{mutex_};
         // A part that was not requested in time is lost. Later parts would leave a gap, so none is returned.
-        over_ = over_ || !changed_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
+        over_ = over_ || !changed_.wait_for(lock, stop, patience_, [this] { return request_.has_value(); });
         if (over_) {
             return false;
         }
-        reply = std::exchange(reply_, {});
+        request = *std::exchange(request_, std::nullopt);
         over_ = part.last;
     }
-    reply(std::move(part));
+    outbox_.reply(ExportPartDone{request, std::move(part)});
     return true;
 }
 
@@ -116,17 +117,17 @@ void ExportJob::work(const std::stop_token& stop) {
     if (written) {
         give({.text = std::move(text_), .last = true}, stop);
     }
-    Reply reply;
+    std::optional<PartRequest> request;
     {
         std::unique_lock lock{mutex_};
         if (!written) {
-            changed_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
+            changed_.wait_for(lock, stop, patience_, [this] { return request_.has_value(); });
         }
         over_ = true;
-        reply = std::exchange(reply_, {});
+        request = std::exchange(request_, std::nullopt);
     }
-    if (reply) {
-        reply(written ? over() : written.error());
+    if (request) {
+        outbox_.reply(ExportPartDone{*request, written ? over() : written.error()});
     }
     const std::lock_guard lock{mutex_};
     finished_ = true;

@@ -97,6 +97,9 @@ struct SessionEnded {
     std::uint64_t session = 0;
 };
 
+/// Asks whether the simulation thread responds, which it does with a Pong (replies.h).
+struct Ping {};
+
 /// A world that was constructed for a command, before it is added to the laboratory.
 struct BuiltWorld {
     simulation::World world;

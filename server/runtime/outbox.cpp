@@ -5,24 +5,16 @@
 
 namespace evod::runtime {
 
-void Outbox::answer(Call call) {
-    add(std::move(call));
-}
-
-void Outbox::reply(Reply reply) {
-    add(std::move(reply));
-}
-
 void Outbox::add(Delivery delivery) {
     std::unique_lock lock{mutex_};
     waiting_.deliveries.push_back(std::move(delivery));
     added(std::move(lock));
 }
 
-void Outbox::event(Call call) {
+void Outbox::event(v1::Event event) {
     std::unique_lock lock{mutex_};
     if (events_waiting_ < events_max_) {
-        waiting_.deliveries.push_back(std::move(call));
+        waiting_.deliveries.push_back(std::move(event));
         ++events_waiting_;
     } else {
         ++waiting_.dropped_events;

@@ -1,18 +1,21 @@
-// Outbox: passes data from the simulation thread to the network thread: answers and events in order, and the newest
-// snapshots.
+// Outbox: passes data from other threads to the network thread: replies, events and the state of run files in order, and
+// the newest snapshots.
 //
-// Threads      the simulation thread adds data. The storage thread adds the answers to journaled commands. `wake`
-//              notifies the network thread, which then takes all data.
-// Full         the mailbox and the sessions bound the number of answers. At most `events_max` events wait; further ones
-//              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted.
+// Threads      the simulation thread adds data. The storage thread adds the answers to journaled commands, and background
+//              jobs add their results. `wake` notifies the network thread, which then takes all data.
+// Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait; further ones
+//              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted. Changes
+//              of the state of run files are rare and never dropped.
 #pragma once
 
 #include "server/runtime/replies.h"
 #include "server/runtime/snapshot.h"
+#include "server/simulation/laboratory.h"
 
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -20,9 +23,14 @@ namespace evod::runtime {
 
 constexpr std::size_t outbox_events_max = 4096;
 
-/// A function that the network thread calls. It delivers an event or the result of a background job.
-using Call = std::function<void()>;
-using Delivery = std::variant<Call, Reply>;
+/// A new state of the disk.
+struct StorageChanged {
+    simulation::Storage storage;
+    std::string world = {}; // the only world that the state concerns; empty: all worlds
+};
+
+/// An event is for the sessions that are subscribed to it. A damaged world is one that has stopped now.
+using Delivery = std::variant<Reply, v1::Event, StorageChanged, simulation::DamagedWorld>;
 
 class Outbox {
   public:
@@ -30,9 +38,10 @@ class Outbox {
     explicit Outbox(std::function<void()> wake, std::size_t events_max = outbox_events_max)
         : wake_{std::move(wake)}, events_max_{events_max} {}
 
-    void answer(Call call);
-    void reply(Reply reply);
-    void event(Call call);
+    void reply(Reply reply) { add(std::move(reply)); }
+    void event(v1::Event event);
+    void storage(StorageChanged changed) { add(std::move(changed)); }
+    void damaged(simulation::DamagedWorld world) { add(std::move(world)); }
     void snapshot(SnapshotPtr snapshot);
 
     struct NewestSnapshot {

@@ -1,5 +1,5 @@
-// Replies: what the simulation thread computes for its mail (mail.h), as data on the way to the network thread, where
-// Dispatcher::on_done() completes the answer to the client.
+// Replies: what the simulation thread computes for its mail (mail.h), and what background jobs compute, as data on the way
+// to the network thread, where Dispatcher::on_done() completes the answer to the client.
 //
 // A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
 // with this ticket (unwritten_replies.h).
@@ -59,14 +59,45 @@ struct RunFound {
     recording::Ticket ticket = 0;
 };
 
+/// The reply to a Ping.
+struct Pong {};
+
+// Results of background jobs (network/background_queries.h).
+
+struct ExportPart {
+    std::string text;
+    bool last = false; // this is the last part of the table
+    // In tables of organisms or lineage: the number of generations that are missing
+    // (replay::generations_out_of_reach()).
+    std::uint64_t generations_left_out = 0;
+};
+/// A request for the next part of an export.
+struct PartRequest {
+    std::uint64_t session = 0; // number of the sender's session
+    std::uint64_t request_id = 0;
+    std::uint64_t export_id = 0;
+};
+struct ExportPartDone {
+    PartRequest request;
+    base::Result<ExportPart> part;
+};
+
+/// The answer to GetBreeding.
+struct BreedingDone {
+    std::uint64_t query = 0; // number of the background query
+    v1::Response response;
+    bool is_shortened = false; // the answer omits rows because of a limit
+};
+
 /// Turns the answer to an applied command into a refusal. The command has changed the world but was not recorded, or the
 /// record cannot be read.
 CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.
-using Answer = std::variant<CommandDone, QueryDone, ReplayDone, RunFound>;
+using Answer = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone>;
 /// What the outbox contains. BringWorld and WorldBrought are on their way to the other simulation thread
 /// (simulations.h).
-using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, BringWorld, WorldBrought, recording::Receipt>;
+using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone, BringWorld,
+                           WorldBrought, recording::Receipt>;
 
 } // namespace evod::runtime

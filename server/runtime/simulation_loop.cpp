@@ -152,6 +152,7 @@ void SimulationLoop::handle(Mail& mail) {
                                 [this](WorldBrought& brought) { take(brought); },
                                 [this](SessionEnded& ended) { queries_.forget(ended.session); },
                                 [this](WorldBuilt& built) { take(built); },
+                                [this](Ping&) { outputs_.reply(Pong{}); },
                                 [](auto&) { EVOD_ASSERT(false); }},
                mail);
 }

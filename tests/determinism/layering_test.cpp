@@ -3,7 +3,7 @@
 // Covered      every .h and .cpp below server/, client/, proto/ and tests/: includes of this project. The core,
 //              server/{base, physics, evolution, parameters, simulation}: headers and calls that would make a run
 //              depend on time, disk, threads, a device or the last bits of the C library. server/{protocol, run_file,
-//              recording, replay}: sockets. All: MPI.
+//              recording, replay}: sockets. What threads exchange: closures. All: MPI.
 // Not covered  the contents of library headers; Python and scripts.
 
 #include <gtest/gtest.h>
@@ -375,6 +375,26 @@ TEST(ProtocolAndRunFiles, OpenNoSockets) {
             }
         }
     }
+}
+
+TEST(Messages, ContainNoClosure) {
+    static const std::set<std::string> messages = {"server/runtime/outbox.h", "server/runtime/replies.h"};
+    // The outbox itself has one function, which wakes the network thread.
+    static const std::regex closure{
+        R"(\b(packaged_task|move_only_function|function)\b(?!<void\(\)> wake_?\b)|\bweak_ptr\b)"};
+    std::size_t found = 0;
+    for (const Source& source : sources()) {
+        if (!messages.contains(source.path)) {
+            continue;
+        }
+        ++found;
+        std::istringstream lines{source.code};
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_FALSE(std::regex_search(line, closure))
+                << source.path << ": send a struct of plain data instead: " << line;
+        }
+    }
+    EXPECT_EQ(found, messages.size());
 }
 
 TEST(Mpi, IsUsedByOneSource) {

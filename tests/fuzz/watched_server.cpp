@@ -106,7 +106,7 @@ WatchedServer::WatchedServer()
                   outbox_,
                   sessions_,
                   streams_,
-                  limit_counters_,
+                  host_,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
     , loop_{mailbox_,
@@ -180,13 +180,17 @@ void WatchedServer::watch_mail() {
                     .mail = std::move(*command), .outcome = refused, .frame = protocol::frame_of(answer)});
                 continue;
             }
-            mailbox_.push(runtime::CallMail{[this] { state_before_ = state_of_all(); }});
+            mailbox_.push(runtime::Ping{});
         }
         mailbox_.push(std::move(mail));
     }
 }
 
 void WatchedServer::check_reply(runtime::Reply reply) {
+    if (std::holds_alternative<runtime::Pong>(reply)) {
+        state_before_ = state_of_all(); // the next mail is a command
+        return;
+    }
     if (const auto* done = std::get_if<runtime::CommandDone>(&reply)) {
         if (done->outcome) {
             follow(done->mail.command, *done->outcome);

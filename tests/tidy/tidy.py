@@ -39,7 +39,7 @@ BANNED = {
 }
 # Names from the time before the glossary, which have an ordinary meaning as words: only as a whole name.
 BANNED_NAMES = {
-    "Retries": "ReplyCache", "Pulse": "Heartbeat", "Buffers": "SendMemory", "Breedings": "BreedingQueries",
+    "Retries": "ReplyCache", "Pulse": "Heartbeat", "Buffers": "SendMemory", "Breedings": "BackgroundQueries",
     "Rearranging": "OrderMutation", "Sight": "Perception or ViewOptions", "Scene": "QuantisedSnapshot or IslandRenderer",
     "Chain": "DeltaStream", "Watch": "WorldFeed or StreamDemand", "Thinning": "Retention", "Inquiry": "Poll",
     "Readout": "StatusText",
@@ -181,7 +181,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/simulation", "sharing world_sharing"): "tests/determinism/shared_world_test and shared_laboratory_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
-    ("server/network", "breeding_queries description exports http http_connection messages random_ids server_metrics transport"):
+    ("server/network", "background_queries description http http_connection messages random_ids server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "session_sending"): "unit/network/session_test",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",

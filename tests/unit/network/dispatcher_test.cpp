@@ -5,6 +5,11 @@
 #include "server/protocol/queries.h"
 #include "tests/unit/network/loopback.h"
 
+#include <boost/asio/co_spawn.hpp>
+
+#include <chrono>
+#include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -83,7 +88,7 @@ class DispatcherTest : public Loopback {
     Streams streams{sessions, demand, mailbox};
     int shut_downs = 0;
     Dispatcher dispatcher{
-        context, mailbox, outbox, sessions, streams, counters, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
+        context, mailbox, outbox, sessions, streams, host, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
 };
 
 TEST_F(DispatcherTest, SendsACommandToTheSimulationOnce) {
@@ -248,6 +253,69 @@ TEST_F(DispatcherTest, AnswersShutDownBeforeItShutsDown) {
     EXPECT_EQ(shut_downs, 1);
     ASSERT_EQ(client.responses.size(), 1u);
     EXPECT_EQ(client.responses[0].status().code(), v1::CODE_UNSPECIFIED);
+}
+
+TEST_F(DispatcherTest, AllHealthChecksWaitForOnePong) {
+    std::vector<bool> answers;
+    for (int i = 0; i < 3; ++i) {
+        asio::co_spawn(context, dispatcher.simulation_answers_within(std::chrono::hours{1}),
+                       [&](const std::exception_ptr&, bool answered) { answers.push_back(answered); });
+    }
+    settle();
+    const auto waiting = mailbox.drain();
+    ASSERT_EQ(waiting.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<runtime::Ping>(waiting[0]));
+    EXPECT_TRUE(answers.empty());
+    outbox.reply(runtime::Pong{});
+    take_commands();
+    EXPECT_EQ(answers, (std::vector{true, true, true}));
+}
+
+TEST_F(DispatcherTest, AHealthCheckEndsWithoutAPong) {
+    std::optional<bool> answer;
+    asio::co_spawn(context, dispatcher.simulation_answers_within(std::chrono::hours{1}),
+                   [&](const std::exception_ptr&, bool answered) { answer = answered; });
+    settle();
+    dispatcher.refuse_all();
+    settle();
+    EXPECT_EQ(answer, false);
+}
+
+TEST_F(DispatcherTest, LaterSessionsLearnTheStateOfTheDisk) {
+    host.storage = v1::Storage{};
+    Client& client = connect(Role::Viewer);
+    streams.subscribe(*client.session, EventSubscription{});
+    outbox.storage({.storage = {simulation::StorageState::Failing, "of one world"}, .world = "w"});
+    outbox.storage({.storage = {simulation::StorageState::Stalled, "of all worlds"}});
+    take_commands();
+    EXPECT_EQ(host.storage->state(), v1::STORAGE_STATE_STALLED);
+    EXPECT_EQ(host.storage->reason(), "of all worlds");
+    ASSERT_EQ(client.events.size(), 2u);
+    EXPECT_EQ(client.events[0].world(), "w");
+    EXPECT_EQ(client.events[1].world(), "");
+}
+
+TEST_F(DispatcherTest, EventsAndDamagedWorldsReachSubscribers) {
+    Client& client = connect(Role::Viewer);
+    streams.subscribe(*client.session, EventSubscription{});
+    v1::Event event;
+    event.set_world("v");
+    outbox.event(event);
+    outbox.damaged({.name = "w", .run_id = {}, .reason = "cut off"});
+    take_commands();
+    ASSERT_EQ(client.events.size(), 2u);
+    EXPECT_EQ(client.events[0].world(), "v");
+    EXPECT_EQ(client.events[1].world(), "w");
+    EXPECT_TRUE(client.events[1].has_world_damaged());
+}
+
+TEST_F(DispatcherTest, ResultsForEndedSessionsAreDropped) {
+    outbox.reply(runtime::ExportPartDone{{.session = 9, .request_id = 1, .export_id = 1}, runtime::ExportPart{}});
+    outbox.reply(runtime::ExportPartDone{
+        {.session = 9, .request_id = 2, .export_id = 1},
+        base::refusal(base::RefusalCode::FailedPrecondition, "the export is over", base::Reason::ExportEnded)});
+    take_commands();
+    EXPECT_EQ(counters.count(Limit::ExportPatience), 1u);
 }
 
 TEST_F(DispatcherTest, SendsCommandsOfTheServerItself) {

@@ -6,7 +6,6 @@
 
 #include <gmock/gmock.h>
 
-#include <future>
 #include <sstream>
 
 namespace evod::runtime {
@@ -32,10 +31,19 @@ class ExportJobTest : public testing::Test {
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         past.emplace(*replay::StoredRun::of_file(data.file_of("w")));
     }
-    static base::Result<ExportJob::Part> next(ExportJob& thread) {
-        std::promise<base::Result<ExportJob::Part>> part;
-        thread.next([&](base::Result<ExportJob::Part> came) { part.set_value(std::move(came)); });
-        return part.get_future().get();
+    base::Result<ExportPart> next(ExportJob& thread) {
+        thread.next({.session = 3, .request_id = ++last_request_id, .export_id = 7});
+        std::vector<Delivery> deliveries;
+        EXPECT_TRUE(wait_until([&] {
+            deliveries = outbox.take().deliveries;
+            return !deliveries.empty();
+        }));
+        EXPECT_EQ(deliveries.size(), 1u);
+        auto& done = std::get<ExportPartDone>(std::get<Reply>(deliveries.at(0)));
+        EXPECT_EQ(done.request.session, 3u);
+        EXPECT_EQ(done.request.request_id, last_request_id);
+        EXPECT_EQ(done.request.export_id, 7u);
+        return std::move(done.part);
     }
     std::string whole(const replay::WantedTable& wanted) {
         const auto file = past->open();
@@ -47,6 +55,8 @@ class ExportJobTest : public testing::Test {
     recording::TemporaryFolder folder;
     run_file::DataFolder data{*run_file::DataFolder::open(folder.path())};
     base::InlineExecutor executor;
+    Outbox outbox{[] {}};
+    std::uint64_t last_request_id = 0;
     jobs::JobQueue jobs{{.name = "export", .threads_max = 8}};
     std::optional<replay::StoredRun> past;
 };
@@ -54,7 +64,7 @@ class ExportJobTest : public testing::Test {
 TEST_F(ExportJobTest, PartsPutTogetherAreTheTable) {
     record(300, 100);
     const replay::WantedTable wanted{.table = RunTable::Organisms, .format = replay::Table::Format::JsonLines};
-    ExportJob thread{jobs, *past, wanted};
+    ExportJob thread{jobs, outbox, *past, wanted};
     std::string text;
     int parts = 0;
     for (bool last = false; !last; ++parts) {
@@ -74,7 +84,7 @@ TEST_F(ExportJobTest, ReportsHowManyGenerationsAreLeftOut) {
     past.emplace(std::vector{data.file_of("w")}, run_id);
     for (const auto& [table, left_out] :
          {std::pair{RunTable::Organisms, 4u}, std::pair{RunTable::Lineage, 4u}, std::pair{RunTable::Generations, 0u}}) {
-        ExportJob thread{jobs, *past, {.table = table}};
+        ExportJob thread{jobs, outbox, *past, {.table = table}};
         const auto part = next(thread);
         ASSERT_TRUE(part) << to_text(part.error());
         EXPECT_EQ(part->generations_left_out, left_out);
@@ -83,7 +93,7 @@ TEST_F(ExportJobTest, ReportsHowManyGenerationsAreLeftOut) {
 
 TEST_F(ExportJobTest, AnErrorIsReportedInsteadOfAPart) {
     record(2);
-    ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 7}};
+    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Population, .generation = 7}};
     const auto part = next(thread);
     ASSERT_FALSE(part);
     EXPECT_EQ(part.error().code, RefusalCode::NotFound);
@@ -92,7 +102,7 @@ TEST_F(ExportJobTest, AnErrorIsReportedInsteadOfAPart) {
 
 TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     record(300);
-    ExportJob thread{jobs, *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
+    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
     const auto part = next(thread);
     ASSERT_FALSE(part);
@@ -101,7 +111,7 @@ TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
 
 TEST_F(ExportJobTest, StoppingEndsASimulationUnderWay) {
     record(300, 1'000'000); // all but the first and the last are simulated again
-    ExportJob thread{jobs, *past, {.table = RunTable::Population, .generation = 299}};
+    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Population, .generation = 299}};
     thread.request_stop();
     const auto part = next(thread);
     ASSERT_FALSE(part);

@@ -13,37 +13,40 @@ SnapshotPtr snapshot_of(const char* world, std::uint64_t tick, bool after_change
     return snapshot;
 }
 
-TEST(Outbox, KeepsAnswersAndEventsInOneOrder) {
+TEST(Outbox, KeepsAllDeliveriesInOneOrder) {
     int woken = 0;
     Outbox outbox{[&] { ++woken; }};
-    std::vector<int> order;
-    outbox.answer([&] { order.push_back(1); });
-    outbox.event([&] { order.push_back(2); });
-    outbox.answer([&] { order.push_back(3); });
+    v1::Event event;
+    event.set_world("a");
+    outbox.damaged({.name = "w", .run_id = {}, .reason = "cut off"});
+    outbox.event(event);
+    outbox.storage({.storage = {simulation::StorageState::Failing, "full"}, .world = "b"});
     EXPECT_EQ(woken, 1) << "once until it is taken";
     outbox.reply(CommandDone{.mail = {}, .outcome = simulation::Applied{}, .frame = "answer"});
     const auto taken = outbox.take().deliveries;
     ASSERT_EQ(taken.size(), 4);
-    for (std::size_t i = 0; i < 3; ++i) {
-        std::get<Call>(taken[i])();
-    }
-    EXPECT_EQ(order, (std::vector{1, 2, 3}));
+    EXPECT_EQ(std::get<simulation::DamagedWorld>(taken[0]).reason, "cut off");
+    EXPECT_EQ(std::get<v1::Event>(taken[1]).world(), "a");
+    EXPECT_EQ(std::get<StorageChanged>(taken[2]).storage.reason, "full");
     EXPECT_EQ(std::get<CommandDone>(std::get<Reply>(taken[3])).frame, "answer");
     EXPECT_TRUE(outbox.take().deliveries.empty());
-    outbox.answer([] {});
+    outbox.reply(Pong{});
     EXPECT_EQ(woken, 2);
 }
 
-TEST(Outbox, DropsAndCountsExcessEventsButNoAnswers) {
+TEST(Outbox, DropsAndCountsExcessEventsButNothingElse) {
     Outbox outbox{[] {}, 2};
     for (int i = 0; i < 5; ++i) {
-        outbox.event([] {});
-        outbox.answer([] {});
+        outbox.event({});
+        outbox.reply(Pong{});
+        outbox.storage({.storage = {}});
+        outbox.damaged({.name = "w", .run_id = {}, .reason = {}});
     }
+    EXPECT_EQ(outbox.fill().events, 2);
     const auto taken = outbox.take();
-    EXPECT_EQ(taken.deliveries.size(), 2 + 5);
+    EXPECT_EQ(taken.deliveries.size(), 2 + 3 * 5);
     EXPECT_EQ(taken.dropped_events, 3);
-    outbox.event([] {});
+    outbox.event({});
     EXPECT_EQ(outbox.take().dropped_events, 0);
 }
 

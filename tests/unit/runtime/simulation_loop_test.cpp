@@ -65,6 +65,7 @@ class Loop : public testing::Test {
                         } else if (const auto* answered = std::get_if<QueryDone>(&reply)) {
                             on_query(answered->response);
                         }
+                        pongs += std::holds_alternative<Pong>(reply);
                     },
                 .counted = &counted}} {}
 
@@ -96,10 +97,18 @@ class Loop : public testing::Test {
     std::vector<simulation::Event> events;
     std::vector<SnapshotPtr> snapshots;
     std::vector<CommandDone> answers;
+    int pongs = 0;
     std::function<void(const v1::Response&)> on_query = [](const v1::Response&) {};
     metrics::Worlds counted;
     SimulationLoop loop;
 };
+
+TEST_F(Loop, AnswersEachPing) {
+    mailbox.push(Ping{});
+    mailbox.push(Ping{});
+    loop.pass();
+    EXPECT_EQ(pongs, 2);
+}
 
 TEST_F(Loop, SleepsUntilMailWhenIdle) {
     EXPECT_FALSE(loop.pass());
