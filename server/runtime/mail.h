@@ -122,7 +122,7 @@ struct RecordsRead {
     std::shared_ptr<const base::Result<replay::NewRecords>> records;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, WorldBrought, SessionEnded, WorldBuilt,
-                          SeekRead, RecordsRead>;
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, WorldBrought, SessionEnded, Ping,
+                          WorldBuilt, SeekRead, RecordsRead>;
 
 } // namespace evod::runtime
