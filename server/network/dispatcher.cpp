@@ -13,6 +13,7 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/fork_check.h"
 #include "server/simulation/world_name.h"
 
 #include <google/protobuf/descriptor.h>
@@ -20,6 +21,7 @@
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -136,6 +138,7 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
                        const Sessions& sessions, Streams& streams, LimitCounters& limit_counters,
                        std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : mailbox_{mailbox}
+    , outbox_{outbox}
     , sessions_{sessions}
     , streams_{streams}
     , limit_counters_{limit_counters}
@@ -323,7 +326,9 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
 void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
     for (runtime::Delivery& delivery : deliveries) {
         if (auto* reply = std::get_if<runtime::Reply>(&delivery)) {
-            std::visit([this](auto& done) { on_done(std::move(done)); }, *reply);
+            if (auto answer = unwritten_.pass(std::move(*reply))) {
+                std::visit([this](auto& done) { on_done(std::move(done)); }, *answer);
+            }
         } else {
             // Destroys the call and its captured data before the next delivery.
             std::exchange(std::get<runtime::Call>(delivery), nullptr)();
@@ -332,6 +337,12 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
 }
 
 void Dispatcher::on_done(runtime::CommandDone done) {
+    if (done.fork) {
+        fork_checks_.add([this, waiting = std::make_shared<runtime::CommandDone>(std::move(done))](const auto&) {
+            outbox_.reply(check_fork(std::move(*waiting)));
+        });
+        return;
+    }
     const runtime::CommandMail& mail = done.mail;
     const std::string key = ReplyCache::key_of(run_file::user_of(mail.origin), mail.origin.client_key);
     const auto frame = std::make_shared<const std::string>(std::move(done.frame));

@@ -16,6 +16,7 @@
 #include "server/protocol/queries.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
+#include "server/runtime/unwritten_replies.h"
 
 namespace evod::network {
 
@@ -82,7 +83,7 @@ class Dispatcher {
     bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
               std::uint64_t session);
     /// Called after a command was refused, or was applied and stored. Sends the answer and reports the change to
-    /// subscribers.
+    /// subscribers. The file of a fork is read back first.
     void on_done(runtime::CommandDone done);
     // The following functions complete the answer to a request and send it, if the session still exists.
     void on_done(runtime::QueryDone done);
@@ -103,6 +104,7 @@ class Dispatcher {
     SessionPtr find(std::uint64_t session) const;
 
     runtime::Mailbox& mailbox_;
+    runtime::Outbox& outbox_;
     const Sessions& sessions_;
     Streams& streams_;
     LimitCounters& limit_counters_;
@@ -115,6 +117,8 @@ class Dispatcher {
     const std::string own_key_; // client_key for commands of the server itself
     std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
+    runtime::UnwrittenReplies unwritten_;
+    jobs::JobQueue fork_checks_{{.name = "fork check"}}; // last member, because its jobs use the outbox
 };
 
 } // namespace evod::network

@@ -38,7 +38,8 @@ bool RecordQueue::enqueue(RunNumber run, std::vector<WaitingRecord> records) {
     for (const WaitingRecord& record : records) {
         bytes += record.bytes;
     }
-    urgent_ |= records.back().done != nullptr || bytes > gathered_bytes_max;
+    urgent_ |= records.back().ticket != 0 || bytes > gathered_bytes_max;
+    has_barrier_ |= records.back().is_barrier();
     // Only an urgent batch and the first batch of a group wake the thread.
     const bool wake = urgent_ || handed_over_.records.empty();
     if (handed_over_.records.empty()) {
@@ -71,13 +72,14 @@ std::optional<std::chrono::steady_clock::time_point> RecordQueue::waiting_since(
     return taken_since_ ? taken_since_ : handed_over_since_;
 }
 
-HandedOver RecordQueue::take(bool more, std::optional<std::chrono::milliseconds> retry_after,
+HandedOver RecordQueue::take(bool more, std::optional<std::chrono::steady_clock::time_point> retry_at,
                              std::optional<std::chrono::steady_clock::time_point> wake_at, bool jobs_run) {
     std::unique_lock lock{mutex_};
     const bool& stopping = handed_over_.stopping;
     const auto hurries = [&] { return urgent_ || !results_.empty() || (stopping && !jobs_run); };
-    if (retry_after) {
-        changed_.wait_for(lock, *retry_after, [&] { return stopping && (!jobs_run || !results_.empty()); });
+    if (retry_at) {
+        changed_.wait_until(lock, *retry_at,
+                            [&] { return has_barrier_ || (stopping && (!jobs_run || !results_.empty())); });
     } else if (!more) {
         --unfinished;
         const auto has_work = [&] { return hurries() || !handed_over_.records.empty(); };
@@ -92,11 +94,11 @@ HandedOver RecordQueue::take(bool more, std::optional<std::chrono::milliseconds>
         }
     }
     const auto now = std::chrono::steady_clock::now();
-    if (more && !retry_after && !urgent_ && !stopping &&
+    if (more && !retry_at && !urgent_ && !stopping &&
         !(handed_over_since_ && now - *handed_over_since_ >= gathering_time)) {
         return {};
     }
-    urgent_ = false;
+    urgent_ = has_barrier_ = false;
     if (!taken_since_) {
         taken_since_ = handed_over_since_;
     }

@@ -1,6 +1,6 @@
 // Record queue: the records on their way from the simulation thread to the storage thread.
 //
-// Group commit   a record with a `done` is taken at once, together with all records that wait. Without one, the storage
+// Group commit   a record with a ticket is taken at once, together with all records that wait. Without one, the storage
 //                thread takes everything that arrived within `gathering_time`.
 // Full           the records have no bound here: DiskState counts their bytes.
 // Threads        the simulation thread adds records. The storage thread takes them, and the results of jobs.
@@ -53,14 +53,14 @@ class RecordQueue {
     /// Waits for records, results or stop(), then removes and returns the records that are due.
     ///
     /// more         true: does not wait, because the caller has other work.
-    /// retry_after  if set, waits for this time, because a write has failed.
+    /// retry_at     if set, waits until this time, because a write has failed. A barrier ends the wait.
     /// wake_at      if set, waits for records until this time at most, because a single run must then be tried again.
     /// jobs_run     true: jobs are running; the thread must not end before their results have arrived.
-    HandedOver take(bool more, std::optional<std::chrono::milliseconds> retry_after,
+    HandedOver take(bool more, std::optional<std::chrono::steady_clock::time_point> retry_at,
                     std::optional<std::chrono::steady_clock::time_point> wake_at, bool jobs_run);
     /// Called when all records that were taken are written.
     void all_written();
-    /// Whether a record with a `done` waits.
+    /// Whether a record with a ticket waits.
     bool is_urgent() const;
     bool is_empty() const;
 
@@ -84,6 +84,7 @@ class RecordQueue {
     std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
     RunNumber last_number_ = 0;
     bool urgent_ = false;
+    bool has_barrier_ = false; // in handed_over_
 };
 
 } // namespace evod::recording

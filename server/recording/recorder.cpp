@@ -17,7 +17,7 @@ void RunRecorder::pass_new_records(const simulation::World& world) {
         since_beginning_ = {};
     }
     if (!records.empty()) {
-        thread_.write(number_, {std::move(records), {}});
+        thread_.write(number_, {.records = std::move(records)});
     }
 }
 
@@ -47,17 +47,16 @@ run_file::JournalEntry RunRecorder::entry(CommandRecord& command) {
 void RunRecorder::journal(CommandRecord command) {
     std::vector<Record> records;
     records.emplace_back(entry(command));
-    thread_.write(number_, {std::move(records), std::move(command.done), std::move(command.refused)});
+    thread_.write(number_, {std::move(records), command.ticket});
 }
 
 StorageThread::Batch RunRecorder::first(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
     const run_file::RunIdentity& run = beginning.identity;
     news_ = {run.first_tick, run.first_generation, beginning.ended ? run.first_generation : 0};
-    StorageThread::Batch batch{run_file::RunFile::records_of(std::move(beginning)), {}};
+    StorageThread::Batch batch{.records = run_file::RunFile::records_of(std::move(beginning))};
     if (command) {
         batch.records.emplace_back(entry(*command));
-        batch.done = std::move(command->done);
-        batch.refused = std::move(command->refused);
+        batch.ticket = command->ticket;
     }
     return batch;
 }
@@ -67,7 +66,7 @@ StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::s
     StorageThread::Ending ending{.last = {}, .renamed = std::move(renamed)};
     if (command) {
         ending.last.records.emplace_back(entry(*command));
-        ending.last.done = std::move(command->done);
+        ending.last.ticket = command->ticket;
     }
     news_.seen(tick);
     ending.last.records.emplace_back(run_file::EndMark{.ended = ended, .tick = news_.tick()});
@@ -171,14 +170,10 @@ void Recorder::end(const std::string& world, const simulation::RunId& run_id, Co
         leaving = std::make_shared<Leaving>(0);
     }
     ++*leaving;
-    command.done = [leaving = leaving, done = std::move(command.done)] {
-        --*leaving;
-        if (done) {
-            done();
-        }
-    };
-    thread_.close(run->second.number_,
-                  run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command)));
+    StorageThread::Ending ending =
+        run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command));
+    ending.leaving = leaving;
+    thread_.close(run->second.number_, std::move(ending));
     runs_.erase(run);
 }
 

@@ -8,7 +8,6 @@
 #include "server/run_file/data_folder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -16,14 +15,13 @@
 
 namespace evod::recording {
 
-/// A command that the simulation has applied. `done` is called once the record is on the disk.
+/// A command that the simulation has applied.
 struct CommandRecord {
     std::uint64_t tick = 0;              // the command was applied after this tick
     simulation::RunControl control = {}; // run control of the world after the command
     run_file::Origin origin = {};
     std::string answer = {};
-    Done done = {};
-    Refused refused = {}; // called instead of `done` if the file is damaged
+    Ticket ticket = 0;
 };
 
 /// Finds new records in a world after a tick: the beginning and end of a generation, and the state hash.
@@ -87,11 +85,8 @@ class RunRecorder {
         }
     }
     void journal(CommandRecord command);
-    /// Calls `done` on the storage thread once all records passed so far are on the disk.
-    /// If the file is damaged, calls `refused`.
-    void once_written(Done done, Refused refused = {}) {
-        thread_.write(number_, {{}, std::move(done), std::move(refused)});
-    }
+    /// Requests a receipt for all records passed so far. If they cannot be written now, it is a refusal.
+    void once_written(Ticket ticket) { thread_.write(number_, {{}, ticket}); }
     /// Whether a checkpoint is due right after the last followed tick.
     ///
     /// spent  time that the simulation took since the previous call.
@@ -144,6 +139,8 @@ class Recorder {
     std::optional<std::string> trouble() const { return thread_.disk().trouble(); }
     /// The storage thread calls `changed` when has_room(), trouble() or faults() has changed.
     void when_changed(std::function<void()> changed) { thread_.disk().when_changed(std::move(changed)); }
+    /// Must be called before the first record with a ticket.
+    void set_receipt_sink(ReceiptSink sink) { thread_.set_receipt_sink(std::move(sink)); }
 
     /// The recorder of a world; nullptr if the world has no file.
     RunRecorder* of(const std::string& world);
@@ -174,9 +171,7 @@ class Recorder {
 
     run_file::DataFolder& folder_;
     StorageThread& thread_;
-    std::map<std::string, RunRecorder, std::less<>> runs_; // by name of the world
-    /// The number of a world's ended runs whose files may not have been renamed yet.
-    using Leaving = std::atomic<std::size_t>;
+    std::map<std::string, RunRecorder, std::less<>> runs_;                 // by name of the world
     std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by name of the world
 };
 

@@ -12,17 +12,16 @@ std::vector<WaitingRecord> records_of(StorageThread::Batch batch, DiskState& dis
     std::size_t bytes = 0;
     for (Record& record : batch.records) {
         const std::size_t record_bytes = bytes_of(record);
-        records.push_back({.record = std::move(record), .done = {}, .writing = {}, .bytes = record_bytes});
+        records.push_back({.record = std::move(record), .bytes = record_bytes});
         bytes += record_bytes;
     }
     if (records.empty()) {
         records.emplace_back();
     }
-    if (batch.done) {
+    if (batch.ticket != 0) {
         records.back().handed_over = std::chrono::steady_clock::now();
     }
-    records.back().done = std::move(batch.done);
-    records.back().refused = std::move(batch.refused);
+    records.back().ticket = batch.ticket;
     disk.added(bytes);
     return records;
 }
@@ -31,7 +30,7 @@ std::vector<WaitingRecord> records_of(StorageThread::Batch batch, DiskState& dis
 
 StorageThread::StorageThread(run_file::RunFile::Options options, std::chrono::milliseconds retry_after)
     : options_{options}, thread_{[this, retry_after] {
-        lost_ = !StorageWorker{queue_, disk_, jobs_, times_, retry_after}.work();
+        lost_ = !StorageWorker{queue_, disk_, jobs_, times_, receipt_sink_, retry_after}.work();
     }} {}
 
 StorageThread::~StorageThread() {
@@ -82,12 +81,14 @@ void StorageThread::write(RunNumber run, run_file::Checkpoint checkpoint, std::s
     writing->waits = true;
     ++queue_.unfinished;
     std::vector<WaitingRecord> records;
-    records.push_back({.record = std::move(checkpoint), .done = {}, .writing = std::move(writing)});
+    records.push_back({.record = std::move(checkpoint), .writing = std::move(writing)});
     queue_.add(run, std::move(records));
 }
 
 void StorageThread::close(RunNumber run, Ending ending) {
-    Closing closing{.last = records_of(std::move(ending.last), disk_), .renamed = std::move(ending.renamed)};
+    Closing closing{.last = records_of(std::move(ending.last), disk_),
+                    .renamed = std::move(ending.renamed),
+                    .leaving = std::move(ending.leaving)};
     queue_.close(run, std::move(closing));
 }
 

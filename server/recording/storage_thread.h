@@ -1,22 +1,24 @@
 // Storage thread: writes the records of all runs to their files, with a group commit per file.
 //
-// records wait (record_queue.h) → one transaction per run → commit → calls `done`: the record is on the disk
+// records wait (record_queue.h) → one transaction per run → commit → gives the receipts: the records are on the disk
 //
-// Priorities     records with a `done` come first. Background writes are split into transactions of
+// Priorities     records with a ticket come first. Background writes are split into transactions of
 //                `Options::part_bytes`; the thread serves pending commands between them. Three kinds of writes cannot
 //                be split: the beginning of a generation, the outcome of a generation, and the creation or end of a
 //                run.
 // Checkpoints    come after the other records of all runs. A job compresses them; this thread writes them in parts. At
 //                most one checkpoint per run waits. Its bytes are not counted. If the run ends, its waiting checkpoint
 //                is dropped; if the server stops, the checkpoint is written first.
-// Errors         `done` is not called for a record that could not be written. The thread keeps the record. At intervals
-//                of `retry_time` it opens the file again and writes all records that may be missing.
-//                DiskState::trouble() returns the reason.
+// Receipts       one sink receives the receipts of all records with tickets (receipt.h). A barrier is a ticket without a
+//                record.
+// Errors         a record that could not be written gets no receipt yet. The thread keeps the record. At intervals of
+//                `retry_time` it opens the file again and writes all records that may be missing. Barriers do not wait
+//                for that: they are refused. DiskState::trouble() returns the reason.
 // File names     a moved or deleted file counts as an error of its run, because data written to it would be lost when the
 //                server stops. The file stays open, so the error ends when the file is moved back. The thread continues to
 //                write the other runs.
-// Damage         if a file is damaged, the thread closes it, drops the records of its run, calls `refused` instead of
-//                `done`, and writes nothing to the file any more. DiskState::faults() returns the reason. The run remains
+// Damage         if a file is damaged, the thread closes it, drops the records of its run, gives refused receipts for
+//                them, and writes nothing to the file any more. DiskState::faults() returns the reason. The run remains
 //                in the list until it is closed.
 //
 // Threads        only the simulation thread calls create(), write(), close() and so on. It never waits for the disk.
@@ -58,18 +60,20 @@ class StorageThread {
     /// returns  false if something could not be written; the log contains the details.
     bool finish();
 
-    /// The records of one transaction. `done` is empty if no client waits. For a batch without records, `done` is
-    /// called once everything passed before it is on the disk.
+    /// Sets the function that receives all receipts. Must be called before the first record with a ticket is passed.
+    void set_receipt_sink(ReceiptSink sink) { receipt_sink_ = std::move(sink); }
+
+    /// The records of one transaction. A batch without records is a barrier.
     struct Batch {
-        std::vector<Record> records;
-        Done done;
-        Refused refused = {};
+        std::vector<Record> records = {};
+        Ticket ticket = 0;
     };
     /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path. A damaged
     /// file gets no last records.
     struct Ending {
         Batch last; // the last of these records is the end mark
         std::string renamed;
+        std::shared_ptr<Leaving> leaving = {}; // decremented when the file has its new name
     };
 
     /// Creates a run with a new file and its first records.
@@ -101,6 +105,7 @@ class StorageThread {
     RecordQueue queue_;
     LogJobs jobs_{queue_};
     StorageTimes times_; // the storage thread writes them
+    ReceiptSink receipt_sink_ = [](const Receipt&) {};
     bool lost_ = false;  // something could not be written before the thread ended
     std::thread thread_; // last, because it uses all other members
 };

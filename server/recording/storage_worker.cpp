@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -19,7 +21,7 @@ bool StorageWorker::work() {
     int skipped = 0;
     for (bool more = false;;) {
         const bool stopping = take(more);
-        const bool first_try = !std::exchange(failed_, false);
+        const bool first_try = !std::exchange(failure_, std::nullopt);
         for (auto& [number, run] : runs_) {
             jobs_.compress_next(run);
         }
@@ -32,7 +34,7 @@ bool StorageWorker::work() {
             more |= background_step();
         }
         std::erase_if(runs_, [](const auto& item) { return item.second.is_finished(); });
-        if (!failed_) {
+        if (!failure_) {
             const bool all_written =
                 std::ranges::all_of(runs_, [](const auto& run) { return run.second.waiting.empty(); });
             if (all_written) {
@@ -41,20 +43,39 @@ bool StorageWorker::work() {
             disk_.set_trouble({});
         }
         report_faults();
+        refuse_barriers();
         // When the server stops, retries failed records as long as any record can still be written. After that, the
         // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
-        if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failed_ && advanced)) {
+        if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failure_ && advanced)) {
             const bool displaced = next_retry().has_value();
-            return (!(failed_ || displaced) || log_lost_records()) && !lost_;
+            return (!(failure_ || displaced) || log_lost_records()) && !lost_;
         }
     }
 }
 
 bool StorageWorker::take(bool more) {
-    HandedOver taken =
-        queue_.take(more, failed_ ? std::optional{retry_after_} : std::nullopt, next_retry(), jobs_.are_running());
+    using Clock = std::chrono::steady_clock;
+    const auto retry_at = failure_ ? std::optional{Clock::now() + retry_after_} : std::nullopt;
+    bool stopping = false;
+    do {
+        HandedOver taken = queue_.take(more, retry_at, next_retry(), jobs_.are_running());
+        stopping = taken.stopping;
+        distribute(taken);
+        refuse_barriers();
+        jobs_.apply_results(runs_, false);
+    } while (retry_at && !stopping && Clock::now() < *retry_at);
+    const auto now = Clock::now();
+    for (auto& [number, run] : runs_) {
+        run.retry_is_due = stopping || now >= run.retry_at;
+        if (run.retry_is_due) {
+            run.retry_at = now + retry_after_;
+        }
+    }
+    return stopping;
+}
 
+void StorageWorker::distribute(HandedOver& taken) {
     runs_.merge(taken.new_runs);
     for (auto& [number, records] : taken.records) {
         RunLog& run = runs_[number];
@@ -68,22 +89,13 @@ bool StorageWorker::take(bool more) {
     for (auto& [number, closing] : taken.closing) {
         runs_[number].closing = std::move(closing);
     }
-    jobs_.apply_results(runs_, false);
-    const auto now = std::chrono::steady_clock::now();
-    for (auto& [number, run] : runs_) {
-        run.retry_is_due = taken.stopping || now >= run.retry_at;
-        if (run.retry_is_due) {
-            run.retry_at = now + retry_after_;
-        }
-    }
-    return taken.stopping;
 }
 
 bool StorageWorker::write_records() {
     std::vector<RunLog*> others;
     for (auto& [number, run] : runs_) {
         if (run.closing ||
-            std::ranges::any_of(run.waiting, [](const WaitingRecord& record) { return record.done != nullptr; })) {
+            std::ranges::any_of(run.waiting, [](const WaitingRecord& record) { return record.ticket != 0; })) {
             (void)write_records(run);
         } else if (!run.waiting.empty() || run.creation) {
             others.push_back(&run);
@@ -225,10 +237,17 @@ bool StorageWorker::end(RunLog& run) {
     if (const auto renamed = run.rename_ended_file(); !renamed) {
         return fail(run, renamed.error());
     }
+    finish(closing);
+    return true;
+}
+
+void StorageWorker::finish(Closing& closing) {
     closing.finished = true;
     advanced_ = true;
+    if (closing.leaving) {
+        --*closing.leaving;
+    }
     report_written(closing.last);
-    return true;
 }
 
 bool StorageWorker::background_step() {
@@ -264,11 +283,11 @@ void StorageWorker::report_written(std::vector<WaitingRecord>& records) {
     std::size_t bytes = 0;
     for (const WaitingRecord& record : std::exchange(records, {})) {
         bytes += record.bytes;
-        if (record.done) {
-            if (record.record) { // only a batch with a command has a record and a `done`
+        if (record.ticket != 0) {
+            if (!record.is_barrier()) { // only a batch with a command has a record and a ticket
                 times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
             }
-            record.done();
+            receipts_({.ticket = record.ticket});
         }
         if (record.writing) {
             record.writing->took = record.took;
@@ -283,8 +302,8 @@ void StorageWorker::refuse(std::vector<WaitingRecord>& records, const base::Refu
     std::size_t bytes = 0;
     for (const WaitingRecord& record : std::exchange(records, {})) {
         bytes += record.bytes;
-        if (record.refused) {
-            record.refused(why);
+        if (record.ticket != 0) {
+            receipts_({.ticket = record.ticket, .refused = why});
         }
         if (record.writing) {
             record.writing->waits = false;
@@ -294,18 +313,38 @@ void StorageWorker::refuse(std::vector<WaitingRecord>& records, const base::Refu
     disk_.written(bytes);
 }
 
+void StorageWorker::refuse_barriers() {
+    for (auto& [number, run] : runs_) {
+        const auto why = run.fault ? std::optional{run.fault->why} : failure_;
+        if (!why) {
+            continue;
+        }
+        for (std::vector<WaitingRecord>* records : {&run.written, &run.waiting}) {
+            std::vector<WaitingRecord> barriers;
+            std::ranges::copy_if(*records, std::back_inserter(barriers), &WaitingRecord::is_barrier);
+            std::erase_if(*records, std::mem_fn(&WaitingRecord::is_barrier));
+            refuse(barriers, *why);
+        }
+    }
+}
+
 void StorageWorker::refuse_records_of_damaged(RunLog& run) {
     for (std::vector<WaitingRecord>* records : {&run.written, &run.waiting, &run.checkpoints}) {
         refuse(*records, run.fault->why);
     }
 }
 
+void StorageWorker::fail(const base::Refusal& why) {
+    if (!failure_) {
+        failure_ = why;
+        disk_.set_trouble(why.message); // reports only the first error of a round
+    }
+}
+
 bool StorageWorker::fail(RunLog& run, const base::Refusal& why) {
     const auto fault = fault_of(why);
     if (!fault) {
-        if (!std::exchange(failed_, true)) {
-            disk_.set_trouble(why.message); // reports only the first error of a round
-        }
+        fail(why);
     } else if (fault->kind == RunFault::Kind::Damaged) {
         give_up(run, why);
     } else {
@@ -363,15 +402,11 @@ bool StorageWorker::end_damaged(RunLog& run) {
         refuse(closing.last, run.fault->why);
     } else if (std::filesystem::exists(name_now, error)) {
         if (const auto renamed = run_file::rename_run_file(name_now, closing.renamed); !renamed) {
-            if (!std::exchange(failed_, true)) {
-                disk_.set_trouble(renamed.error().message);
-            }
+            fail(renamed.error());
             return false;
         }
     }
-    closing.finished = true;
-    advanced_ = true;
-    report_written(closing.last); // the world is deleted, although its file has no end mark
+    finish(closing); // the world is deleted, although its file has no end mark
     return true;
 }
 

@@ -1,6 +1,6 @@
 // Storage worker: the loop of the storage thread. It decides in which order the runs are written.
 //
-// In each round, it takes all new records, writes the records of all runs, those with a `done` first, and then does one
+// In each round, it takes all new records, writes the records of all runs, those with a ticket first, and then does one
 // background step. While commands wait, it skips the background step, but at most eight times in succession.
 //
 // Owner        the storage thread. No other thread uses it.
@@ -18,9 +18,9 @@ namespace evod::recording {
 
 class StorageWorker {
   public:
-    StorageWorker(RecordQueue& queue, DiskState& disk, LogJobs& jobs, StorageTimes& times,
+    StorageWorker(RecordQueue& queue, DiskState& disk, LogJobs& jobs, StorageTimes& times, const ReceiptSink& receipts,
                   std::chrono::milliseconds retry_after)
-        : queue_{queue}, disk_{disk}, jobs_{jobs}, times_{times}, retry_after_{retry_after} {}
+        : queue_{queue}, disk_{disk}, jobs_{jobs}, times_{times}, receipts_{receipts}, retry_after_{retry_after} {}
 
     /// Runs until the thread must stop and everything that can be written is written.
     ///
@@ -28,10 +28,13 @@ class StorageWorker {
     bool work();
 
   private:
-    /// Takes the new records and results. Waits for work first, unless `more` is set.
+    /// Takes the new records and results. Waits for work first, unless `more` is set. After a failed write, waits until
+    /// the next attempt is due, and refuses barriers meanwhile.
     ///
     /// returns  whether the server stops.
     bool take(bool more);
+    /// Passes the records that were taken to their runs.
+    void distribute(HandedOver& taken);
 
     /// Writes the records of all runs, until a command arrives.
     ///
@@ -49,15 +52,21 @@ class StorageWorker {
     bool end(RunLog& run);
     /// Ends a run whose file is damaged. A deleted world's file gets its final name, so that the name of the world is free.
     bool end_damaged(RunLog& run);
+    /// Marks a run as ended, after its file has been closed and renamed.
+    void finish(Closing& closing);
     /// Does one background step for one run; the runs take turns. Returns whether there was any work.
     bool background_step();
     bool background_step(RunLog& run);
 
-    /// Calls the `done` of each record and frees the memory of the records. They must be on the disk.
+    /// Gives the receipts of the records and frees their memory. They must be on the disk.
     void report_written(std::vector<WaitingRecord>& records);
-    /// Frees the memory of the records and calls their `refused`. They will not be written.
+    /// Gives refused receipts for the records and frees their memory. They will not be written.
     void refuse(std::vector<WaitingRecord>& records, const base::Refusal& why);
+    /// Refuses the barriers of the runs whose records cannot be written now.
+    void refuse_barriers();
     void refuse_records_of_damaged(RunLog& run);
+    /// Handles a failed write that concerns all runs.
+    void fail(const base::Refusal& why);
     /// Handles a failed write of a run's file. Returns false.
     bool fail(RunLog& run, const base::Refusal& why);
     void give_up(RunLog& run, const base::Refusal& why);
@@ -77,10 +86,11 @@ class StorageWorker {
     DiskState& disk_;
     LogJobs& jobs_;
     StorageTimes& times_;
+    const ReceiptSink& receipts_;
     const std::chrono::milliseconds retry_after_;
     std::map<RunNumber, RunLog> runs_;
     RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
-    bool failed_ = false;                              // a write has failed in this round
+    std::optional<base::Refusal> failure_;             // the first write that has failed in this round
     bool advanced_ = false;                            // something has been written in this round
     bool lost_ = false; // the last records of a run were lost, because its file is damaged
 };

@@ -1,11 +1,11 @@
 // Waiting record: a record between the simulation thread, which produced it, and the run file.
 #pragma once
 
+#include "server/recording/receipt.h"
 #include "server/run_file/run_file.h"
 
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,11 +15,6 @@ namespace evod::recording {
 
 using Record = run_file::RunFile::Record;
 
-/// A function that the storage thread calls once the record is on the disk.
-using Done = std::function<void()>;
-/// A function that the storage thread calls instead of Done, if the file is damaged: the record will never be on the disk.
-using Refused = std::function<void(const base::Refusal& why)>;
-
 /// The progress of a checkpoint. The storage thread and the recorder share it.
 struct CheckpointWriting {
     std::atomic<bool> waits = false; // the checkpoint still has to be written
@@ -28,26 +23,32 @@ struct CheckpointWriting {
 };
 
 struct WaitingRecord {
-    std::optional<Record> record; // nullopt: only `done` waits
-    Done done = {};
-    Refused refused = {};
+    std::optional<Record> record; // nullopt: a barrier, whose receipt reports that all earlier records are on the disk
+    Ticket ticket = 0;
     std::shared_ptr<CheckpointWriting> writing = {}; // only for a checkpoint
     std::size_t bytes = 0;
-    std::chrono::steady_clock::time_point handed_over = {}; // time of the hand-over, only for a record with `done`
+    std::chrono::steady_clock::time_point handed_over = {}; // time of the hand-over, only for a record with a ticket
     std::chrono::nanoseconds took{0};                       // time for compressing and writing a checkpoint
     bool being_compressed = false; // a job compresses the checkpoint; `record` is an empty Checkpoint
+
+    bool is_barrier() const { return !record && ticket != 0; }
 };
 
 /// The approximate memory that a record takes. Returns 0 for checkpoints, which have a limit of their own.
 std::size_t bytes_of(const Record& record);
 
+/// The number of a world's ended runs whose files may not have been renamed yet. The storage thread and the recorder share
+/// it.
+using Leaving = std::atomic<std::size_t>;
+
 /// How the file of a run is closed.
 struct Closing {
-    std::vector<WaitingRecord> last; // the last of these records is the end mark
-    std::string renamed;             // the new path of the file; empty: the file keeps its name
-    bool replaced = false;           // true: wait until the run that replaces this one is committed
-    bool marked = false;             // the end mark is committed
-    bool finished = false;           // the file is closed and, if requested, renamed
+    std::vector<WaitingRecord> last;       // the last of these records is the end mark
+    std::string renamed;                   // the new path of the file; empty: the file keeps its name
+    std::shared_ptr<Leaving> leaving = {}; // decremented when the file has its new name
+    bool replaced = false;                 // true: wait until the run that replaces this one is committed
+    bool marked = false;                   // the end mark is committed
+    bool finished = false;                 // the file is closed and, if requested, renamed
 };
 
 } // namespace evod::recording

@@ -24,7 +24,6 @@ FileFaults::Changes FileFaults::poll() {
     for (const auto& [name, fault] : recorder_->faults()) {
         if (fault.kind == recording::RunFault::Kind::Displaced) {
             displaced.emplace(name, fault.why);
-            replays_.stop_waiting(name);
             continue;
         }
         if (builds_.holds(name)) {

@@ -9,7 +9,6 @@
 #pragma once
 
 #include "server/recording/recorder.h"
-#include "server/runtime/replays.h"
 #include "server/runtime/world_builds.h"
 #include "server/simulation/laboratory.h"
 
@@ -24,9 +23,8 @@ namespace evod::runtime {
 class FileFaults {
   public:
     /// All arguments must outlive this object. recorder: nullptr if the server stores no runs.
-    FileFaults(simulation::Laboratory& laboratory, recording::Recorder* recorder, Replays& replays,
-               const WorldBuilds& builds)
-        : laboratory_{laboratory}, recorder_{recorder}, replays_{replays}, builds_{builds} {}
+    FileFaults(simulation::Laboratory& laboratory, recording::Recorder* recorder, const WorldBuilds& builds)
+        : laboratory_{laboratory}, recorder_{recorder}, builds_{builds} {}
 
     struct Changes {
         std::vector<simulation::DamagedWorld> damaged; // the laboratory contains them now as damaged worlds
@@ -43,7 +41,6 @@ class FileFaults {
   private:
     simulation::Laboratory& laboratory_;
     recording::Recorder* recorder_;
-    Replays& replays_;
     const WorldBuilds& builds_;
     std::map<std::string, base::Refusal> displaced_; // by name of the world
 };

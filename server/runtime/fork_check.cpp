@@ -11,16 +11,15 @@
 namespace evod::runtime {
 namespace {
 
-base::Result<void> check_once(const std::vector<std::string>& paths, const simulation::RunId& run_id,
-                              const base::StateHash& hash) {
-    for (const std::string& path : paths) {
+base::Result<void> check_once(const ForkFile& fork) {
+    for (const std::string& path : fork.paths) {
         const auto file = run_file::RunFile::open_read_only(path);
         if (!file && file.error().code != base::RefusalCode::NotFound) {
             return file.error();
         }
-        if (file && (*file)->identity().run_id == run_id) {
+        if (file && (*file)->identity().run_id == fork.run_id) {
             base::InlineExecutor executor;
-            return replay::check_beginning(**file, hash, executor);
+            return replay::check_beginning(**file, fork.hash, executor);
         }
     }
     return {}; // another command has ended the run
@@ -28,13 +27,12 @@ base::Result<void> check_once(const std::vector<std::string>& paths, const simul
 
 /// If another command ends the run at the same time, the file and its log are renamed one after the other, and what is
 /// between cannot be read.
-base::Result<void> check_file(const std::vector<std::string>& paths, const simulation::RunId& run_id,
-                              const base::StateHash& hash) {
+base::Result<void> check_file(const ForkFile& fork) {
     constexpr int attempts = 5;
-    auto checked = check_once(paths, run_id, hash);
+    auto checked = check_once(fork);
     for (int attempt = 1; !checked && attempt < attempts; ++attempt) {
         std::this_thread::sleep_for(std::chrono::milliseconds{100});
-        checked = check_once(paths, run_id, hash);
+        checked = check_once(fork);
     }
     return checked;
 }
@@ -46,19 +44,14 @@ base::Refusal unreadable_fork(const std::string& why) {
 
 } // namespace
 
-recording::Done ForkCheck::read_back(std::vector<std::string> paths, const simulation::RunId& run_id,
-                                     const base::StateHash& hash, std::shared_ptr<CommandDone> done,
-                                     std::function<void(Reply)> reply) {
-    return [jobs = jobs_, paths = std::move(paths), run_id, hash, waiting = std::move(done), reply = std::move(reply)] {
-        jobs->add([=](const std::stop_token&) {
-            const auto checked = check_file(paths, run_id, hash);
-            if (!checked) {
-                log::error({.world = waiting->outcome->world}, "{}", checked.error().message);
-            }
-            reply(checked ? std::move(*waiting)
-                          : refused(std::move(*waiting), unreadable_fork(checked.error().message)));
-        });
-    };
+CommandDone check_fork(CommandDone done) {
+    const ForkFile file = *std::exchange(done.fork, std::nullopt);
+    const auto checked = check_file(file);
+    if (!checked) {
+        log::error({.world = done.outcome->world}, "{}", checked.error().message);
+        return refused(std::move(done), unreadable_fork(checked.error().message));
+    }
+    return done;
 }
 
 } // namespace evod::runtime

@@ -2,11 +2,12 @@
 // thread. replies.h contains the ways back.
 //
 // Way          network thread → mailbox → simulation thread, which computes the reply → outbox → Dispatcher::on_done()
-//              on the network thread. Replies to commands go through the storage thread first, if runs are stored: it
-//              writes the journal.
+//              on the network thread. If runs are stored, the reply to a command waits there for a receipt: the storage
+//              thread writes the journal.
 // Threads      plain data; one thread at a time owns it. A v1::Request is shared, and constant.
 #pragma once
 
+#include "server/recording/receipt.h"
 #include "server/replay/stored_run.h"
 #include "server/run_file/records.h"
 #include "server/simulation/commands.h"
@@ -89,6 +90,7 @@ struct WorldBuilt {
     std::shared_ptr<base::Result<BuiltWorld>> world; // nullptr: it has only read the original world so far
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail, WorldBuilt>;
+using Mail =
+    std::variant<CommandMail, QueryMail, FindRun, ReplayMail, SessionEnded, CallMail, WorldBuilt, recording::Receipt>;
 
 } // namespace evod::runtime

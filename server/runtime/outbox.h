@@ -1,8 +1,8 @@
 // Outbox: passes data from the simulation thread to the network thread: answers and events in order, and the newest
 // snapshots.
 //
-// Threads      the simulation thread adds data. The storage thread adds the answers to journaled commands. `wake`
-//              notifies the network thread, which then takes all data.
+// Threads      the simulation thread adds data, the storage thread adds receipts. `wake` notifies the network thread, which
+//              then takes all data.
 // Full         the mailbox and the sessions bound the number of answers. At most `events_max` events wait; further ones
 //              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted.
 #pragma once

@@ -42,11 +42,8 @@ class Replays {
     Seeks& seeks() { return seeks_; }
     const Seeks& seeks() const { return seeks_; }
     ShownReplays& shown() { return shown_; }
-    /// Makes requests that wait for the disk continue with the present file. Called when nothing can be written to the
-    /// disk.
-    void stop_waiting() { reader_.stop_waiting(); }
-    /// Does the same for the requests that wait for one world, whose run file cannot be written.
-    void stop_waiting(const std::string& world) { reader_.stop_waiting(world); }
+    /// Continues the request that waited for this receipt.
+    void take(const recording::Receipt& receipt) { reader_.take(receipt); }
 
   private:
     void open(const OpenReplay& request, const ReplayMail& mail);

@@ -12,6 +12,7 @@ CommandDone refused(CommandDone done, base::Refusal why) {
     done.frame = protocol::frame_of(
         protocol::answer_of(done.mail.origin.request_id, done.mail.request_name, no_worlds, done.outcome));
     done.event.reset();
+    done.fork.reset();
     return done;
 }
 

@@ -37,9 +37,16 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , recorder_{recorder}
     , replays_{laboratory_, mailbox, executor, recorder, outputs_.reply}
     , builds_{mailbox, executor}
-    , file_faults_{laboratory_, recorder, replays_, builds_} {
+    , file_faults_{laboratory_, recorder, builds_} {
     if (recorder_) {
         laboratory_.set_storage({});
+        recorder_->set_receipt_sink([&mailbox, reply = outputs_.reply](recording::Receipt receipt) {
+            if (receipt.ticket >= RunReader::first_ticket) {
+                mailbox.push(receipt);
+            } else {
+                reply(std::move(receipt));
+            }
+        });
     }
     count_damaged_worlds();
     if (replay) {
@@ -162,8 +169,8 @@ void SimulationLoop::poll_mailbox() {
                                             });
                                             replays_.forget(ended.session);
                                         },
-                                        [](CallMail& call) { call.call(); },
-                                        [this](WorldBuilt& built) { take(built); }},
+                                        [](CallMail& call) { call.call(); }, [this](WorldBuilt& built) { take(built); },
+                                        [this](const recording::Receipt& receipt) { replays_.take(receipt); }},
                        mail);
         }
         mail_.clear();
@@ -257,7 +264,6 @@ void SimulationLoop::poll_storage() {
     }
     simulation::Storage now;
     if (trouble) {
-        replays_.stop_waiting();
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,

@@ -21,7 +21,6 @@
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/file_faults.h"
-#include "server/runtime/fork_check.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/query_budget.h"
 #include "server/runtime/replays.h"
@@ -43,8 +42,7 @@ namespace evod::runtime {
 struct LoopOutputs {
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
     std::function<void(SnapshotPtr)> snapshot;
-    /// Receives the replies. The reply to a command comes once the command was refused, or was applied and stored if
-    /// runs are stored. Also called on the storage thread.
+    /// Receives the replies. If runs are stored, also receives the receipts, on the storage thread.
     std::function<void(Reply)> reply = [](Reply) {};
     /// Receives a new state of the disk.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
@@ -184,9 +182,9 @@ class SimulationLoop {
     bool worlds_wait_ = false;                       // true: live worlds wait for the disk
     std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
     Replays replays_;
-    ForkCheck fork_check_;
     WorldBuilds builds_;
     FileFaults file_faults_;
+    recording::Ticket last_ticket_ = 0;
     std::vector<CommandMail> kept_; // commands to worlds that builds hold, in order of arrival
     std::map<std::string, Track, std::less<>> tracks_;
     WorldDemands watches_;

@@ -5,7 +5,6 @@
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
-#include "server/replay/recovery.h"
 
 #include <memory>
 #include <type_traits>
@@ -270,23 +269,17 @@ void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& be
     if (entry && (*entry)->replay) {
         return outputs_.reply(std::move(done)); // commands to replays are not stored in the journal
     }
+    done.ticket = ++last_ticket_;
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,
-                                    .answer = done.frame};
-    // After the command was written to the disk, the storage thread passes it on.
-    const auto waiting = std::make_shared<CommandDone>(std::move(done));
-    record.refused = [reply = outputs_.reply, waiting](const base::Refusal& why) {
-        const std::string world = waiting->outcome->world;
-        reply(refused(std::move(*waiting), replay::damaged_world(world, {}, why).refusal()));
-    };
+                                    .answer = done.frame,
+                                    .ticket = done.ticket};
     if (effect == RunEffect::BeginsAsFork) {
         const simulation::Entry& fork = **entry;
-        record.done = fork_check_.read_back(recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash(),
-                                            waiting, outputs_.reply);
-    } else {
-        record.done = [reply = outputs_.reply, waiting] { reply(std::move(*waiting)); };
+        done.fork = ForkFile{recorder_->paths_of(fork.name, fork.run_id), fork.run_id, fork.world.hash()};
     }
+    outputs_.reply(std::move(done)); // before the record, so that its receipt comes later
     switch (effect) {
     case RunEffect::Begins:
     case RunEffect::BeginsAsFork:

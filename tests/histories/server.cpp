@@ -52,11 +52,15 @@ const simulation::Entry* Server::find(const std::string& name) const {
 }
 
 void Server::on_reply(runtime::Reply reply) {
+    auto answer = written_.pass(std::move(reply));
+    if (!answer) {
+        return;
+    }
     {
         const std::lock_guard lock{mutex_};
-        if (auto* done = std::get_if<runtime::CommandDone>(&reply)) {
+        if (auto* done = std::get_if<runtime::CommandDone>(&*answer)) {
             answers_[done->mail.origin.request_id] = std::move(done->outcome);
-        } else if (auto* shown = std::get_if<runtime::ReplayDone>(&reply)) {
+        } else if (auto* shown = std::get_if<runtime::ReplayDone>(&*answer)) {
             replay_ = std::move(shown->world);
         }
     }

@@ -9,6 +9,7 @@
 #include "server/replay/archive.h"
 #include "server/runtime/simulation_loop.h"
 #include "tests/support/manual_clock.h"
+#include "tests/support/written_replies.h"
 
 #include <chrono>
 #include <cstdint>
@@ -73,6 +74,7 @@ class Server {
     mutable std::mutex mutex_;                                                          // guards the next two members
     std::map<std::uint64_t, std::optional<base::Result<simulation::Applied>>> answers_; // by request id
     std::optional<base::Result<std::string>> replay_;
+    support::WrittenReplies written_;
     std::unique_ptr<replay::Archive> archive_; // its thread calls on_reply()
     std::optional<runtime::SimulationLoop> loop_;
 };

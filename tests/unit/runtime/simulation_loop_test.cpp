@@ -7,6 +7,7 @@
 #include "server/runtime/simulation_thread.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/waiting.h"
+#include "tests/support/written_replies.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -722,8 +723,8 @@ TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
     Mailbox letters;
     std::string said; // of the last command; refusals come at once, on this thread
     const auto on_reply = [&](const Reply& reply) {
-        if (const auto& outcome = std::get<CommandDone>(reply).outcome; !outcome) {
-            said = to_text(outcome.error());
+        if (const auto* done = std::get_if<CommandDone>(&reply); done && !done->outcome) {
+            said = to_text(done->outcome.error());
         }
     };
     SimulationLoop kept{
@@ -780,11 +781,12 @@ class LoopWithDisk : public Loop {
                 .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
                 .reply =
                     [this](const Reply& reply) {
-                        if (const auto* done = std::get_if<ReplayDone>(&reply)) {
-                            waiting.extract(done->mail.request_id).mapped()(done->world);
-                        } else if (const auto* command = std::get_if<CommandDone>(&reply)) {
-                            const std::lock_guard lock{mutex};
-                            answered.emplace(command->mail.origin.request_id, command->outcome);
+                        const auto* receipt = std::get_if<recording::Receipt>(&reply);
+                        if (receipt && receipt->ticket == holding_ticket) {
+                            at_work.set_value();
+                            go_on.get_future().wait();
+                        } else if (const auto answer = written.pass(reply)) {
+                            on_answer(*answer);
                         }
                     },
                 .storage = [this](const simulation::Storage& storage) { reported.push_back(storage.state); },
@@ -800,6 +802,20 @@ class LoopWithDisk : public Loop {
         clock.per_look = 100us; // so that slices end
     }
     ~LoopWithDisk() override { give_back(); }
+
+    void on_answer(const Answer& answer) {
+        if (const auto* done = std::get_if<ReplayDone>(&answer)) {
+            waiting.extract(done->mail.request_id).mapped()(done->world);
+        } else if (const auto* command = std::get_if<CommandDone>(&answer)) {
+            const std::lock_guard lock{mutex};
+            answered.emplace(command->mail.origin.request_id, command->outcome);
+        }
+    }
+    /// Holds the storage thread until go_on is set, after it has written everything passed so far.
+    void hold_storage_thread() {
+        recorder.of("w")->once_written(holding_ticket);
+        at_work.get_future().wait();
+    }
 
     /// With a serialised request, because replays parse it.
     void ask(v1::Request request) {
@@ -894,6 +910,9 @@ class LoopWithDisk : public Loop {
         send(simulation::SetSpeed{"crowd", {}});
     }
 
+    static constexpr recording::Ticket holding_ticket = 1'000'000; // no command has it
+    std::promise<void> at_work, go_on;
+    support::WrittenReplies written;
     recording::TemporaryFolder folder;
     const std::string away = folder.path() + "_away";
     run_file::DataFolder data;
@@ -1028,14 +1047,8 @@ TEST_F(LoopWithDisk, AMovedFileLetsOnlyItsWorldWait) {
 TEST_F(LoopWithDisk, AFailedCreationRefusesNothingElse) {
     ask_create("w");
     EXPECT_TRUE(answer_of_last());
-    recorder.of("w")->once_written([] {});
+    hold_storage_thread();
     // The file appears between the check of the name and the creation of the file.
-    std::promise<void> at_work, go_on;
-    recorder.of("w")->once_written([&] {
-        at_work.set_value();
-        go_on.get_future().wait();
-    });
-    at_work.get_future().wait();
     ask_create("new");
     kept.pass();
     std::ofstream{run_file::DataFolder::next_file_of(data.file_of("new"))} << std::string(5000, 'x');
@@ -1240,8 +1253,7 @@ TEST_F(LoopWithDisk, ASeekFinishesWhateverElseRuns) {
 TEST_F(LoopWithDisk, ASlowDiskIsReportedAfterAWhile) {
     ask_create("w");
     kept.pass();
-    std::promise<void> writes_again;
-    recorder.of("w")->once_written([when = writes_again.get_future().share()] { when.wait(); });
+    hold_storage_thread();
     run_crowd();
     pass_until([&] { return !recorder.has_room(); });
     kept.pass();
@@ -1255,7 +1267,7 @@ TEST_F(LoopWithDisk, ASlowDiskIsReportedAfterAWhile) {
     EXPECT_EQ(state(), simulation::StorageState::Behind);
     EXPECT_FALSE(recorder.refusal());
     EXPECT_EQ(tick("crowd"), stands);
-    writes_again.set_value();
+    go_on.set_value();
     pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
     EXPECT_EQ(reported, (std::vector{simulation::StorageState::Behind, simulation::StorageState::KeepsUp}));
     pass_until([&] { return tick("crowd") > stands; });

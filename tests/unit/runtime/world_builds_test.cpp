@@ -6,6 +6,7 @@
 #include "server/runtime/simulation_loop.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/waiting.h"
+#include "tests/support/written_replies.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -163,6 +164,7 @@ class LoopWithBuilds : public testing::Test {
     static constexpr std::uint64_t server_itself = 0;
     std::uint64_t session = 1; // the sender of the commands
     std::mutex mutex;
+    support::WrittenReplies written;
     std::vector<std::string> answered; // the requests, in the order of their answers; with the message if refused
     int sent = 0;
     recording::TemporaryFolder folder;
@@ -181,7 +183,8 @@ class LoopWithBuilds : public testing::Test {
                          .snapshot = [](SnapshotPtr) {},
                          .reply =
                              [this](const Reply& reply) {
-                                 if (const auto* done = std::get_if<CommandDone>(&reply)) {
+                                 const auto answer = written.pass(reply);
+                                 if (const auto* done = answer ? std::get_if<CommandDone>(&*answer) : nullptr) {
                                      const std::lock_guard lock{mutex};
                                      answered.push_back(done->mail.request_name +
                                                         (done->outcome ? "" : ": " + done->outcome.error().message));
