@@ -4,9 +4,11 @@
 #include "server/protocol/breeding.h"
 #include "server/protocol/refusals.h"
 #include "server/replay/breeding.h"
+#include "server/runtime/fork_check.h"
 #include "server/runtime/worker_pool.h"
 
 #include <algorithm>
+#include <memory>
 #include <ranges>
 #include <utility>
 
@@ -197,6 +199,11 @@ void BackgroundQueries::on_done(runtime::BreedingDone done) {
 }
 
 // ---- both ------------------------------------------------------------------------------------------------------
+
+void BackgroundQueries::check_fork(runtime::CommandDone done) {
+    fork_jobs_.add([&outbox = outbox_, waiting = std::make_shared<runtime::CommandDone>(std::move(done))](
+                       const std::stop_token&) { outbox.reply(runtime::check_fork(std::move(*waiting))); });
+}
 
 void BackgroundQueries::forget(const Session& session) {
     if (const auto found = exports_.find(session.number()); found != exports_.end()) {

@@ -1,5 +1,5 @@
-// Background queries: exports and GetBreeding, which job queues compute from run files. Meanwhile the storage thread may
-// write to these files.
+// Background queries: exports, GetBreeding and the checks of new forks, which job queues compute from run files. Meanwhile
+// the storage thread may write to these files.
 //
 // Owner        the dispatcher, on the network thread. The jobs return their results through the outbox.
 // Full         while exports_max exports are running, a new export is refused. A session has at most one export.
@@ -37,6 +37,9 @@ class BackgroundQueries {
     void send_next_part(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
     /// Starts or queues a GetBreeding. The session receives the answer later.
     void ask_breeding(Session& session, const v1::Request& request, runtime::FoundRun run);
+
+    /// Reads the file of a new fork back. The result is the answer to the command that created it.
+    void check_fork(runtime::CommandDone done);
 
     // Must be called with the results of the jobs. They send the answers, if the sessions still exist.
     void on_done(runtime::ExportPartDone done);
@@ -86,6 +89,8 @@ class BackgroundQueries {
     std::deque<WaitingBreeding> waiting_breedings_;
     std::map<std::uint64_t, RunningBreeding> running_breedings_; // key: number of the query
     std::uint64_t last_query_ = 0;
+
+    jobs::JobQueue fork_jobs_{{.name = "fork check"}};
 };
 
 } // namespace evod::network

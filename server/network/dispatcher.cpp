@@ -325,12 +325,12 @@ bool Dispatcher::send(simulation::Command command, const v1::Request& request, s
         command);
     runtime::Mailbox& mailbox = simulations_.mailbox_of(world);
     return mailbox.try_push(runtime::CommandMail{.command = std::move(command),
-                                                  .origin = {.client = std::move(by),
-                                                             .client_key = request.client_key(),
-                                                             .request_id = request.request_id(),
-                                                             .request = std::move(bytes)},
-                                                  .request_name = protocol::name_of(request),
-                                                  .session = session});
+                                                 .origin = {.client = std::move(by),
+                                                            .client_key = request.client_key(),
+                                                            .request_id = request.request_id(),
+                                                            .request = std::move(bytes)},
+                                                 .request_name = protocol::name_of(request),
+                                                 .session = session});
 }
 
 void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
@@ -348,6 +348,9 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
 }
 
 void Dispatcher::on_done(runtime::CommandDone done) {
+    if (done.fork) {
+        return background_queries_.check_fork(std::move(done));
+    }
     const runtime::CommandMail& mail = done.mail;
     const std::string key = ReplyCache::key_of(run_file::user_of(mail.origin), mail.origin.client_key);
     const auto frame = std::make_shared<const std::string>(std::move(done.frame));
@@ -579,19 +582,9 @@ void Dispatcher::replay(Session& session, const v1::Request& request) {
     if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     }
-    runtime::ReplayMail mail = replay_mail(request, session);
-    if (const auto* open = std::get_if<runtime::OpenReplay>(&mail.request)) {
-        const std::string world = open->world;
-        ask(session, id, world, runtime::FindRun{world, session.number(), std::move(mail)});
-        return;
+    if (!simulations_.try_send(replay_mail(request, session))) {
+        session.answer(protocol::refusing(id, busy()));
     }
-    const std::string world = protocol::lookup_name(protocol::world_of(request));
-    if (request.has_seek() && simulation::is_replay_name(world)) {
-        const std::string original{simulation::original_of(world)};
-        ask(session, id, original, runtime::FindRun{original, session.number(), std::move(mail)});
-        return;
-    }
-    ask(session, id, world, std::move(mail));
 }
 
 void Dispatcher::on_done(runtime::ReplayDone done) {

@@ -85,7 +85,7 @@ class Dispatcher {
     bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
               std::uint64_t session);
     /// Called after a command was refused, or was applied and stored. Sends the answer and reports the change to
-    /// subscribers.
+    /// subscribers. The file of a fork is read back first.
     void on_done(runtime::CommandDone done);
     // The following functions complete the answer to a request and send it, if the session still exists.
     void on_done(runtime::QueryDone done);

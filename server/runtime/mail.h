@@ -2,11 +2,12 @@
 // thread. replies.h contains the ways back.
 //
 // Way          network thread → mailbox → simulation thread, which computes the reply → outbox → Dispatcher::on_done()
-//              on the network thread. Replies to commands go through the storage thread first, if runs are stored: it
-//              writes the journal.
+//              on the network thread. If runs are stored, the reply to a command waits there for a receipt: the storage
+//              thread writes the journal.
 // Threads      plain data; one thread at a time owns it. A v1::Request is shared, and constant.
 #pragma once
 
+#include "server/recording/receipt.h"
 #include "server/replay/stored_run.h"
 #include "server/run_file/records.h"
 #include "server/simulation/commands.h"
@@ -40,7 +41,7 @@ struct QueryMail {
 
 /// The stored run of a world.
 struct FoundRun {
-    std::string world; // whose run it is; of a replay: the original world
+    std::string world = {}; // whose run it is; of a replay: the original world
     replay::StoredRun run;
     std::uint64_t generation = 0; // generation of the world when the request was handled
     // The file reaches this moment once everything that was recorded is on the disk; zeros if that is not known.
@@ -67,8 +68,8 @@ struct ReplayMail {
     std::uint64_t session = 0; // number of the sender's session, >= 1
     std::string user = {};     // whose account pays for the time of the replay and its seeks
     std::uint64_t request_id = 0;
-    std::string request_name = {};        // name of the field in the request: "open_replay"
-    std::optional<FoundRun> run = {};     // OpenReplay: the run to show. Seek: the present run of the original world
+    std::string request_name = {};    // name of the field in the request: "open_replay"
+    std::optional<FoundRun> run = {}; // OpenReplay: the run to show. Seek: the present run of the original world
 };
 
 /// A request to find the stored run of a world. The reply waits until everything recorded so far is on the disk, or
@@ -88,8 +89,8 @@ struct BringWorld {
 /// The answer.
 struct WorldBrought {
     CommandMail fork;
-    simulation::RunId run_id;                                    // of the original
-    std::shared_ptr<base::Result<simulation::World>> world;      // moved out by the reader
+    simulation::RunId run_id;                               // of the original
+    std::shared_ptr<base::Result<simulation::World>> world; // moved out by the reader
 };
 
 /// A session has ended. Its query is dropped, its replays are closed and its seeks are cancelled.

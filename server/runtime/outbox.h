@@ -1,8 +1,8 @@
 // Outbox: passes data from other threads to the network thread: replies, events and the state of run files in order, and
 // the newest snapshots.
 //
-// Threads      the simulation thread adds data. The storage thread adds the answers to journaled commands, and background
-//              jobs add their results. `wake` notifies the network thread, which then takes all data.
+// Threads      the simulation threads add data, the storage thread adds receipts, and background jobs add their results.
+//              `wake` notifies the network thread, which then takes all data.
 // Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait; further ones
 //              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted. Changes
 //              of the state of run files are rare and never dropped.

@@ -104,8 +104,9 @@ void ReplayLoop::open(const ReplayMail& mail, const OpenReplay& request) {
                                                        " replays open already: close one first")});
     }
     if (shown_.names().size() + seeks_.opening_count() >= replays_of_all_max) {
-        return outputs_.reply(ReplayDone{mail, no_room("all clients together have " + std::to_string(replays_of_all_max) +
-                                                       " replays open already: try again when one of them is closed")});
+        return outputs_.reply(
+            ReplayDone{mail, no_room("all clients together have " + std::to_string(replays_of_all_max) +
+                                     " replays open already: try again when one of them is closed")});
     }
     seeks_.begin({.purpose = {mail}, .run = mail.run->run, .to = request.at, .until = mail.run->until});
 }

@@ -4,6 +4,9 @@
 // A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
 // with this ticket (unwritten_replies.h).
 //
+// A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
+// with this ticket (unwritten_replies.h).
+//
 // Threads      plain data; one thread at a time owns it.
 #pragma once
 

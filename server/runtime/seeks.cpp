@@ -103,8 +103,8 @@ void Seeks::begin(Request request) {
     jobs_.add([&mailbox = mailbox_, number = seek->first, run = begun.run, to = begun.to,
                until = begun.until](const std::stop_token&) {
         base::InlineExecutor executor;
-        mailbox.push(SeekRead{number, std::make_shared<base::Result<replay::SeekStart>>(base::within_memory(
-                                          [&] { return run.start_seek(to, until, executor); }))});
+        mailbox.push(SeekRead{number, std::make_shared<base::Result<replay::SeekStart>>(
+                                          base::within_memory([&] { return run.start_seek(to, until, executor); }))});
     });
 }
 

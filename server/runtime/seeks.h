@@ -67,7 +67,7 @@ class Seeks {
         Request request;
         std::string user = {};
         std::optional<replay::SeekStart> at = {}; // empty while the file is being read
-        std::uint64_t turn = 0;              // when it last had a slice; the loop sets it
+        std::uint64_t turn = 0;                   // when it last had a slice; the loop sets it
     };
 
     /// All arguments must outlive this object. mailbox: of the loop, which gets the results of jobs.

@@ -36,7 +36,8 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Exe
     , file_faults_{laboratory_, recorder, builds_} {
     if (recorder_) {
         laboratory_.set_storage({});
-        recorder_->set_receipt_sink([reply = outputs_.reply](recording::Receipt receipt) { reply(std::move(receipt)); });
+        recorder_->set_receipt_sink(
+            [reply = outputs_.reply](recording::Receipt receipt) { reply(std::move(receipt)); });
     }
     count_damaged_worlds();
 }
@@ -145,16 +146,14 @@ void SimulationLoop::show_change(const std::string& world) {
 }
 
 void SimulationLoop::handle(Mail& mail) {
-    std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
-                                [this](QueryMail& query) { queries_.add(std::move(query)); },
-                                [this](FindRun& run) { find_run(run); },
-                                [this](ReplayMail& request) { answer(request); },
-                                [this](WorldBrought& brought) { take(brought); },
-                                [this](SessionEnded& ended) { queries_.forget(ended.session); },
-                                [this](WorldBuilt& built) { take(built); },
-                                [this](Ping&) { outputs_.reply(Pong{}); },
-                                [](auto&) { EVOD_ASSERT(false); }},
-               mail);
+    std::visit(
+        base::Overloaded{
+            [this](CommandMail& command) { apply(command); },
+            [this](QueryMail& query) { queries_.add(std::move(query)); }, [this](FindRun& run) { find_run(run); },
+            [this](ReplayMail& request) { answer(request); }, [this](WorldBrought& brought) { take(brought); },
+            [this](SessionEnded& ended) { queries_.forget(ended.session); }, [this](WorldBuilt& built) { take(built); },
+            [this](Ping&) { outputs_.reply(Pong{}); }, [](auto&) { EVOD_ASSERT(false); }},
+        mail);
 }
 
 void SimulationLoop::poll_mailbox() {
@@ -242,15 +241,16 @@ void SimulationLoop::find_run(const FindRun& mail) {
 }
 
 void SimulationLoop::answer(const ReplayMail& mail) {
-    const std::string& world = std::visit([](const auto& request) -> const std::string& { return request.world; },
-                                          mail.request);
+    const std::string& world =
+        std::visit([](const auto& request) -> const std::string& { return request.world; }, mail.request);
     const auto entry = std::as_const(laboratory_).find(world);
     base::Refusal refused = entry ? simulation::no_such_replay(world) : entry.error();
     if (entry && std::holds_alternative<Seek>(mail.request)) {
-        refused = base::refusal(base::RefusalCode::FailedPrecondition,
-                                "this world is live and cannot be moved to another moment: open a replay of its run, as "
-                                "evoview and evoctl stats --at-generation do, or serve its run file with evod replay",
-                                base::Reason::WorldIsLive);
+        refused =
+            base::refusal(base::RefusalCode::FailedPrecondition,
+                          "this world is live and cannot be moved to another moment: open a replay of its run, as "
+                          "evoview and evoctl stats --at-generation do, or serve its run file with evod replay",
+                          base::Reason::WorldIsLive);
     }
     outputs_.reply(ReplayDone{.mail = mail, .world = std::move(refused)});
 }

@@ -96,8 +96,8 @@ class SimulationLoop {
   protected:
     /// Work that takes as much time as it can get: a world, or a seek.
     struct Contender {
-        std::string_view user;         // whose account pays
-        std::uint64_t* turn = nullptr; // the number of its last slice
+        std::string_view user;              // whose account pays
+        std::uint64_t* turn = nullptr;      // the number of its last slice
         simulation::Entry* world = nullptr; // nullptr: a seek
         std::uint64_t seek = 0;             // number of the seek
     };

@@ -214,9 +214,8 @@ void SimulationLoop::take(WorldBrought& brought) {
     }
     construct<simulation::ForkWorld>(
         brought.fork, before,
-        simulation::Construction{
-            .construct = [there = brought.world](base::Executor&) { return std::move(**there); },
-            .genes = simulation::genes_of((*brought.world)->parameters().active)});
+        simulation::Construction{.construct = [there = brought.world](base::Executor&) { return std::move(**there); },
+                                 .genes = simulation::genes_of((*brought.world)->parameters().active)});
 }
 
 void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,

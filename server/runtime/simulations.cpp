@@ -20,8 +20,8 @@ void Simulations::start(Start with) {
     of_replays.counted = nullptr;
     live_.thread = std::make_unique<SimulationThread>(
         SimulationThread::Options{.name = "simulation"}, live_.mailbox,
-        std::make_unique<SimulationLoop>(live_.mailbox, live_.demand, with.executor, with.clock, std::move(with.outputs),
-                                         std::move(with.laboratory), with.recorder),
+        std::make_unique<SimulationLoop>(live_.mailbox, live_.demand, with.executor, with.clock,
+                                         std::move(with.outputs), std::move(with.laboratory), with.recorder),
         with.recorder);
     // The threads of the pool inherit the priority of the thread that starts them, which is that of the replays.
     replay_executor_ = std::make_unique<jobs::ThreadPool>(with.executor.thread_count());
@@ -49,6 +49,20 @@ void Simulations::for_each_thread(const std::function<void(const char*, pthread_
 
 Simulations::Part& Simulations::part_of(std::string_view world) {
     return shows_file_ || simulation::is_replay_name(world) ? replays_ : live_;
+}
+
+bool Simulations::try_send(ReplayMail mail) {
+    const std::string world = std::visit([](const auto& request) { return request.world; }, mail.request);
+    std::string with_run;
+    if (std::holds_alternative<OpenReplay>(mail.request)) {
+        with_run = world;
+    } else if (std::holds_alternative<Seek>(mail.request) && simulation::is_replay_name(world)) {
+        with_run = simulation::original_of(world); // its run may have grown
+    } else {
+        return mailbox_of(world).try_push(std::move(mail));
+    }
+    const std::uint64_t session = mail.session;
+    return mailbox_of(with_run).try_push(FindRun{with_run, session, std::move(mail)});
 }
 
 void Simulations::set_demand(WorldDemands worlds, bool events_wanted) {

@@ -30,7 +30,8 @@ class Simulations {
     static constexpr int replay_niceness = 7;
 
     /// shows_file  there are no live worlds apart from the replay of a run file.
-    explicit Simulations(bool shows_file) : shows_file_{shows_file} {}
+    explicit Simulations(bool shows_file, std::size_t mailbox_capacity = mailbox_commands_max)
+        : shows_file_{shows_file}, live_{Mailbox{mailbox_capacity}, {}}, replays_{Mailbox{mailbox_capacity}, {}} {}
 
     struct Start {
         base::Executor& executor; // for the live worlds; must outlive this object
@@ -47,6 +48,9 @@ class Simulations {
 
     /// The mailbox of the thread that has the world of this name, or would have it. Empty: the live worlds.
     Mailbox& mailbox_of(std::string_view world) { return part_of(world).mailbox; }
+    /// Sends a request for a replay. Unlike a command, it may need the run of a live world first. Returns false if the
+    /// mailbox is full.
+    bool try_send(ReplayMail mail);
     /// Sets which worlds are streamed, and whether any session is subscribed to events.
     void set_demand(WorldDemands worlds, bool events_wanted);
     bool events_wanted() const { return replays_.demand.events_wanted(); }

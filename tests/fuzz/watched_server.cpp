@@ -100,9 +100,9 @@ base::Result<access::Visitor> admit(const std::string& token) {
 WatchedServer::WatchedServer()
     : send_memory_{network::client_buffer_bytes_max, [] { require(false); }} // a script leaves less than this unread
     , outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
-    , streams_{sessions_, demand_, mailbox_}
+    , streams_{sessions_, simulations_}
     , dispatcher_{context_,
-                  mailbox_,
+                  simulations_,
                   outbox_,
                   sessions_,
                   streams_,
@@ -110,12 +110,19 @@ WatchedServer::WatchedServer()
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
     , loop_{mailbox_,
-            demand_,
+            simulations_.part_of("").demand,
             executor_,
             clock(),
             {.events = streams_.outlet(outbox_),
              .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
-             .reply = [this](runtime::Reply reply) { check_reply(std::move(reply)); }}} {
+             .reply = [this](runtime::Reply reply) { check_reply(std::move(reply)); }}}
+    , replays_{simulations_.mailbox_of("w@1"),
+               simulations_.part_of("w@1").demand,
+               executor_,
+               clock(),
+               {.events = [](auto&&...) {},
+                .snapshot = [](runtime::SnapshotPtr) {},
+                .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }}} {
     drawn = 0;
     host_.limits = network::limits_message({});
     host_.instance_id = "fuzz";
@@ -159,6 +166,7 @@ void WatchedServer::pass() {
     }
     watch_mail();
     loop_.pass();
+    replays_.pass();
 }
 
 void WatchedServer::watch_mail() {

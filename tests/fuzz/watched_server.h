@@ -8,7 +8,7 @@
 
 #include "server/base/inline_executor.h"
 #include "server/network/dispatcher.h"
-#include "server/runtime/simulation_loop.h"
+#include "server/runtime/simulations.h"
 #include "tests/support/manual_clock.h"
 
 #include <boost/asio/io_context.hpp>
@@ -58,8 +58,8 @@ class WatchedServer {
     network::SendMemory send_memory_; // outlives the sessions
     boost::asio::io_context context_{1};
     base::InlineExecutor executor_;
-    runtime::Mailbox mailbox_;
-    runtime::StreamDemand demand_;
+    runtime::Simulations simulations_{false};
+    runtime::Mailbox& mailbox_ = simulations_.mailbox_of("");
     runtime::Outbox outbox_;
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;
@@ -69,6 +69,7 @@ class WatchedServer {
     network::Streams streams_;
     network::Dispatcher dispatcher_;
     runtime::SimulationLoop loop_;
+    runtime::ReplayLoop replays_; // without runs it has no replays
     bool going_away_ = false;
 
     simulation::Laboratory twins_;

@@ -35,60 +35,58 @@ Server::Server(std::unique_ptr<replay::Archive> archive, std::chrono::microsecon
     if (leader != nullptr) {
         laboratory.share(*leader, executor);
     }
-    loop_.emplace(mailbox_, demand_, executor, clock_,
-                  runtime::LoopOutputs{
-                      .events = [](const simulation::Laboratory&, std::vector<simulation::Event>) {},
-                      .snapshot = [](runtime::SnapshotPtr) {},
-                      .reply = [this](runtime::Reply reply) { on_reply(std::move(reply)); },
-                  },
-                  std::move(laboratory), &archive_->recorder());
-    archive_->recorder().when_changed([this] { mailbox_.wake(); });
-    loop_->poll_mailbox();
+    loops_.emplace(
+        executor, clock_, [this](runtime::Answer answer) { on_answer(std::move(answer)); },
+        runtime::LoopOutputs{.events = [](const simulation::Laboratory&, std::vector<simulation::Event>) {},
+                             .snapshot = [](runtime::SnapshotPtr) {}},
+        std::move(laboratory), &archive_->recorder());
+    archive_->recorder().when_changed([this] { loops_->simulations.mailbox_of("").wake(); });
+    loops_->live.poll_mailbox();
 }
 
 const simulation::Entry* Server::find(const std::string& name) const {
-    const auto found = laboratory().find(name);
-    return found ? *found : nullptr;
+    return loops_->find(name);
 }
 
-void Server::on_reply(runtime::Reply reply) {
-    {
-        const std::lock_guard lock{mutex_};
-        if (auto* done = std::get_if<runtime::CommandDone>(&reply)) {
-            answers_[done->mail.origin.request_id] = std::move(done->outcome);
-        } else if (auto* shown = std::get_if<runtime::ReplayDone>(&reply)) {
-            replay_ = std::move(shown->world);
-        }
+void Server::on_answer(runtime::Answer answer) {
+    if (auto* done = std::get_if<runtime::CommandDone>(&answer)) {
+        answers_[done->mail.origin.request_id] = std::move(done->outcome);
+    } else if (auto* shown = std::get_if<runtime::ReplayDone>(&answer)) {
+        replay_ = std::move(shown->world);
     }
-    mailbox_.wake();
+}
+
+void Server::pass_once() {
+    if (const auto next = loops_->pass()) {
+        clock_.advance(std::max(*next - clock_.now(), runtime::Clock::duration{0}));
+    } else {
+        take_a_nap();
+    }
 }
 
 void Server::send(const std::vector<SentCommand>& commands) {
     for (const SentCommand& sent : commands) {
-        {
-            const std::lock_guard lock{mutex_};
-            answers_[sent.request.request_id()] = std::nullopt;
-        }
-        mailbox_.push(runtime::CommandMail{.command = sent.command,
-                                           .origin = {.client = client,
-                                                      .client_key = sent.request.client_key(),
-                                                      .request_id = sent.request.request_id(),
-                                                      .request = sent.request.SerializeAsString()},
-                                           .request_name = "command",
-                                           .session = 1});
+        answers_[sent.request.request_id()] = std::nullopt;
+        loops_->simulations.mailbox_of("").push(
+            runtime::CommandMail{.command = sent.command,
+                                 .origin = {.client = client,
+                                            .client_key = sent.request.client_key(),
+                                            .request_id = sent.request.request_id(),
+                                            .request = sent.request.SerializeAsString()},
+                                 .request_name = "command",
+                                 .session = 1});
     }
 }
 
 void Server::pass(std::uint32_t count) {
     for (; count > 0; --count) {
-        if (const auto next = loop_->pass()) {
+        if (const auto next = loops_->pass()) {
             clock_.advance(std::max(*next - clock_.now(), runtime::Clock::duration{0}));
         }
     }
 }
 
 bool Server::is_answered() const {
-    const std::lock_guard lock{mutex_};
     return std::ranges::all_of(answers_, [](const auto& answer) { return answer.second.has_value(); });
 }
 
@@ -104,17 +102,12 @@ std::optional<std::string> Server::rest() {
         if (passes == passes_max) {
             return "the worlds run on and on";
         }
-        if (const auto next = loop_->pass()) {
-            clock_.advance(std::max(*next - clock_.now(), runtime::Clock::duration{0}));
-        } else if (!is_answered()) {
-            mailbox_.wait({});
-        }
+        pass_once();
     }
     return std::nullopt;
 }
 
 const Result<simulation::Applied>* Server::answer_to(std::uint64_t request_id) {
-    const std::lock_guard lock{mutex_};
     const auto found = answers_.find(request_id);
     return found == answers_.end() || !found->second ? nullptr : &*found->second;
 }
@@ -122,17 +115,10 @@ const Result<simulation::Applied>* Server::answer_to(std::uint64_t request_id) {
 Result<base::StateHash> Server::replayed(const std::string& world, std::uint64_t tick) {
     const auto result_of = [&](auto request, const char* name) {
         replay_.reset();
-        mailbox_.push(runtime::ReplayMail{std::move(request), 1, 1, name});
-        const auto is_done = [this] {
-            const std::lock_guard lock{mutex_};
-            return replay_.has_value();
-        };
-        while (!is_done()) {
-            if (const auto next = loop_->pass()) {
-                clock_.advance(std::max(*next - clock_.now(), runtime::Clock::duration{0}));
-            } else if (!is_done()) {
-                mailbox_.wait({});
-            }
+        EXPECT_TRUE(loops_->simulations.try_send(
+            {.request = std::move(request), .session = 1, .request_id = 1, .request_name = name}));
+        while (!replay_) {
+            pass_once();
         }
         return *replay_;
     };
@@ -151,7 +137,7 @@ void Server::write_all() {
 }
 
 bool Server::close() {
-    loop_->close();
+    loops_->live.close();
     archive_->recorder().when_changed({});
     return archive_->close();
 }

@@ -7,14 +7,13 @@
 
 #include "evod/v1/commands.pb.h"
 #include "server/replay/archive.h"
-#include "server/runtime/simulation_loop.h"
 #include "tests/support/manual_clock.h"
+#include "tests/support/two_loops.h"
 
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +39,7 @@ class Server {
                                                       std::chrono::microseconds tick_takes, base::Executor& executor,
                                                       simulation::Leader* leader);
 
-    const simulation::Laboratory& laboratory() const { return loop_->laboratory(); }
+    const simulation::Laboratory& laboratory() const { return loops_->live.laboratory(); }
     const simulation::Entry* find(const std::string& name) const;
 
     /// Sends commands, which are then applied between the same two ticks.
@@ -64,17 +63,16 @@ class Server {
   private:
     Server(std::unique_ptr<replay::Archive> archive, std::chrono::microseconds tick_takes, base::Executor& executor,
            simulation::Leader* leader);
-    void on_reply(runtime::Reply reply);
+    void on_answer(runtime::Answer answer);
     bool is_answered() const;
+    /// Lets the loops pass once. Moves the clock to the next pass, or waits a moment for other threads.
+    void pass_once();
 
-    runtime::Mailbox mailbox_;
-    runtime::StreamDemand demand_;
     support::ManualClock clock_;
-    mutable std::mutex mutex_;                                                          // guards the next two members
     std::map<std::uint64_t, std::optional<base::Result<simulation::Applied>>> answers_; // by request id
     std::optional<base::Result<std::string>> replay_;
-    std::unique_ptr<replay::Archive> archive_; // its thread calls on_reply()
-    std::optional<runtime::SimulationLoop> loop_;
+    std::unique_ptr<replay::Archive> archive_; // its thread gives receipts to the loops
+    std::optional<support::TwoLoops> loops_;
 };
 
 } // namespace evod::histories

@@ -194,8 +194,9 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/run_file", "run_file_lock"): "unit/experiments/run_recording_test and system/run_test: it excludes other programs",
     ("server/runtime", "demand"): "unit/network/streams_test",
     ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
-    ("server/runtime", "file_faults replays replies run_reader seeks shown_replays simulation_loop_commands snapshot"):
-        "unit/runtime/simulation_loop_test and system/past_test",
+    ("server/runtime", "replies simulation_loop_commands snapshot"): "unit/runtime/simulation_loop_test",
+    ("server/runtime", "seeks shown_replays"): "unit/runtime/replay_loop_test and system/past_test",
+    ("server/jobs", "this_thread"): "unit/jobs/job_queue_test",
     ("server/simulation", "commands items_kernels organism_kernels statistics"):
         "unit/simulation/island_test and model_check, with every instruction set",
     ("server/streaming", "encoded_island"): "unit/streaming/snapshot_streams_test",

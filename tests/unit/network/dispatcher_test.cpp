@@ -3,12 +3,15 @@
 
 #include "server/protocol/answers.h"
 #include "server/protocol/queries.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/network/loopback.h"
 
 #include <boost/asio/co_spawn.hpp>
 
 #include <chrono>
 #include <exception>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,13 +68,19 @@ class DispatcherTest : public Loopback {
         settle();
         return commands;
     }
-    void finish(runtime::CommandMail command, const base::Result<simulation::Applied>& outcome) {
+    void finish(runtime::CommandMail command, const base::Result<simulation::Applied>& outcome,
+                recording::Ticket ticket = 0, std::optional<runtime::ForkFile> fork = {}) {
         const v1::Response answer =
             protocol::answer_of(command.origin.request_id, command.request_name, laboratory, outcome);
-        std::vector<runtime::Delivery> deliveries;
-        deliveries.emplace_back(
-            runtime::CommandDone{.mail = std::move(command), .outcome = outcome, .frame = protocol::frame_of(answer)});
-        dispatcher.deliver(std::move(deliveries));
+        deliver(runtime::CommandDone{.mail = std::move(command),
+                                     .outcome = outcome,
+                                     .frame = protocol::frame_of(answer),
+                                     .ticket = ticket,
+                                     .fork = std::move(fork)});
+    }
+    void deliver(runtime::Reply reply) {
+        outbox.reply(std::move(reply));
+        dispatcher.deliver(outbox.take().deliveries);
         settle();
     }
     static simulation::Applied applied(std::uint64_t tick) {
@@ -82,13 +91,13 @@ class DispatcherTest : public Loopback {
     }
 
     simulation::Laboratory laboratory;
-    runtime::Mailbox mailbox{mailbox_capacity};
+    runtime::Simulations simulations{false, mailbox_capacity};
+    runtime::Mailbox& mailbox = simulations.mailbox_of("");
     runtime::Outbox outbox{[] {}};
-    runtime::StreamDemand demand;
-    Streams streams{sessions, demand, mailbox};
+    Streams streams{sessions, simulations};
     int shut_downs = 0;
     Dispatcher dispatcher{
-        context, mailbox, outbox, sessions, streams, host, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
+        context, simulations, outbox, sessions, streams, host, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
 };
 
 TEST_F(DispatcherTest, SendsACommandToTheSimulationOnce) {
@@ -122,6 +131,41 @@ TEST_F(DispatcherTest, AnswersEveryCopyOfACommand) {
         EXPECT_EQ(response.request_id(), 7u);
         EXPECT_EQ(response.applied_tick(), 42u);
     }
+}
+
+TEST_F(DispatcherTest, AnswersACommandWhenItIsOnTheDisk) {
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    ask(client, pause_of(8));
+    const auto waiting = take_commands();
+    finish(waiting.at(0), applied(42), 1);
+    finish(waiting.at(1), applied(42), 2);
+    ask(client, pause_of(7));
+    EXPECT_TRUE(take_commands().empty()) << "the command is not applied again";
+    EXPECT_TRUE(client.responses.empty());
+    deliver(recording::Receipt{1});
+    ASSERT_EQ(client.responses.size(), 2u);
+    EXPECT_EQ(client.responses[0].applied_tick(), 42u);
+    deliver(recording::Receipt{2, base::refusal(base::RefusalCode::DataLoss, "w.evod is damaged")});
+    ASSERT_EQ(client.responses.size(), 3u);
+    EXPECT_EQ(client.responses[2].request_id(), 8u);
+    EXPECT_EQ(client.responses[2].status().reason(), v1::REASON_WORLD_DAMAGED);
+}
+
+TEST_F(DispatcherTest, AnswersAForkWhenItsFileIsReadBack) {
+    const support::TemporaryFolder folder;
+    const std::string path = folder.path() + "/fork.evod";
+    std::ofstream{path} << "not a run file";
+    Client& client = connect(Role::Controller);
+    ask(client, pause_of(7));
+    finish(take_commands().at(0), applied(42), 1, runtime::ForkFile{{path}, {1, 2}, {}});
+    deliver(recording::Receipt{1});
+    EXPECT_TRUE(client.responses.empty());
+    ASSERT_TRUE(wait_until([&] { return outbox.fill().deliveries > 0; }));
+    dispatcher.deliver(outbox.take().deliveries);
+    settle();
+    ASSERT_EQ(client.responses.size(), 1u);
+    EXPECT_EQ(client.responses[0].status().code(), v1::CODE_DATA_LOSS);
 }
 
 TEST_F(DispatcherTest, RefusesAUsedIdForAnotherRequest) {

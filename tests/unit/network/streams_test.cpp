@@ -38,9 +38,10 @@ class StreamsTest : public Loopback {
         settle();
     }
 
-    runtime::StreamDemand demand;
-    runtime::Mailbox mailbox;
-    Streams streams{sessions, demand, mailbox};
+    runtime::Simulations simulations{false};
+    runtime::StreamDemand& demand = simulations.part_of("").demand;
+    runtime::Mailbox& mailbox = simulations.mailbox_of("");
+    Streams streams{sessions, simulations};
 };
 
 TEST_F(StreamsTest, EventsGoToTheSubscribersOfTheirWorld) {

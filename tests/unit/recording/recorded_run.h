@@ -7,12 +7,14 @@
 #include "server/protocol/parameters.h"
 #include "server/recording/recorder.h"
 #include "server/run_file/database.h"
+#include "tests/support/receipts.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace evod::recording {
@@ -48,11 +50,13 @@ inline v1::Request set_parameter(const std::string& name, parameters::ParameterV
 
 class RecordedRun {
   public:
+    using OnReceipt = support::Receipts::Call;
+
     /// folder, thread: outlive it.
     RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
                 simulation::FirstPopulation first_population = {}, const parameters::Schedule& schedule = {},
                 const parameters::Parameters& initial = small_world())
-        : recorder_{folder, thread} {
+        : receipts_{support::Receipts::of(thread)}, recorder_{folder, thread} {
         auto parameters = parameters::assign(initial, schedule.at(1));
         EXPECT_TRUE(parameters) << to_text(parameters.error());
         EXPECT_TRUE(laboratory_.apply(
@@ -78,8 +82,7 @@ class RecordedRun {
     void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
 
     /// Creates the world "fork", a fork of the present moment.
-    void fork(
-        const simulation::RunId& run_id, Done done = [] {}) {
+    void fork(const simulation::RunId& run_id, OnReceipt on_receipt = {}) {
         v1::Request request;
         request.mutable_fork_world()->set_world("w");
         request.mutable_fork_world()->set_name("fork");
@@ -87,25 +90,21 @@ class RecordedRun {
         ASSERT_TRUE(applied) << to_text(applied.error());
         const simulation::Entry& fork = **laboratory_.find("fork");
         recorder_.begin(run_file::beginning_of_fork(fork.world, fork.name, run_id, entry().run_id, executor_),
-                        record_of(request, *applied, std::move(done)));
+                        record_of(request, *applied, std::move(on_receipt)));
     }
 
     /// Resets the world; the new run has a file of its own.
-    void reset(
-        base::Seed seed, const simulation::RunId& run_id, Done done = [] {}, Refused refused = {}) {
+    void reset(base::Seed seed, const simulation::RunId& run_id, OnReceipt on_receipt = {}) {
         const simulation::RunId before = entry().run_id;
         const std::uint64_t tick = world().moment().tick;
         v1::Request request;
         request.mutable_reset_world()->set_world("w");
         const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        CommandRecord record = record_of(request, *applied, std::move(done));
-        record.refused = std::move(refused);
-        recorder_.begin_after_reset(beginning(), before, tick, std::move(record));
+        recorder_.begin_after_reset(beginning(), before, tick, record_of(request, *applied, std::move(on_receipt)));
     }
 
-    void command(
-        v1::Request request, Done done = [] {}, Refused refused = {}) {
+    void command(v1::Request request, OnReceipt on_receipt = {}) {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
@@ -113,20 +112,25 @@ class RecordedRun {
         }
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
-        CommandRecord record = record_of(request, *applied, std::move(done));
-        record.refused = std::move(refused);
-        recorder_.of("w")->journal(std::move(record));
+        recorder_.of("w")->journal(record_of(request, *applied, std::move(on_receipt)));
         recorder_.of("w")->follow(world());
     }
 
-    void delete_world(Done done = [] {}) {
+    void delete_world(OnReceipt on_receipt = {}) {
         v1::Request request;
         request.mutable_delete_world()->set_world("w");
         const simulation::RunId run_id = entry().run_id;
         const auto applied = laboratory_.apply(simulation::DeleteWorld{"w"});
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.end("w", run_id, record_of(request, *applied, std::move(done)));
+        recorder_.end("w", run_id, record_of(request, *applied, std::move(on_receipt)));
     }
+
+    /// Requests a receipt for everything recorded so far.
+    void once_written() { recorder_.of("w")->once_written(ticket_ = receipts_->next_ticket()); }
+
+    /// Waits for the last receipt that was requested, and returns it.
+    Receipt receipt() { return receipts_->wait_for(ticket_); }
+    bool has_receipt() { return receipts_->has(ticket_); }
 
   private:
     v1::Request& with_key(v1::Request& request) {
@@ -134,7 +138,7 @@ class RecordedRun {
         request.set_request_id(++requests_);
         return request;
     }
-    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, Done done) {
+    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, OnReceipt on_receipt) {
         if (request.client_key().empty()) {
             with_key(request);
         }
@@ -146,12 +150,14 @@ class RecordedRun {
                            .request_id = requests_,
                            .request = request.SerializeAsString()},
                 .answer = "answer " + std::to_string(requests_),
-                .done = std::move(done)};
+                .ticket = ticket_ = receipts_->next_ticket(std::move(on_receipt))};
     }
 
     base::InlineExecutor executor_;
     simulation::Laboratory laboratory_;
+    const std::shared_ptr<support::Receipts> receipts_;
     Recorder recorder_;
+    Ticket ticket_ = 0; // of the last receipt that was requested
     std::uint64_t requests_ = 0;
 };
 

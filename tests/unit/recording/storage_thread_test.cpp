@@ -32,13 +32,12 @@ class StorageThreadTest : public testing::Test {
     base::InlineExecutor executor;
 };
 
-TEST_F(StorageThreadTest, DoneIsCalledWhenOthersCanReadTheCommand) {
+TEST_F(StorageThreadTest, TheReceiptComesWhenOthersCanReadTheCommand) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
     for (std::uint64_t number = 1; number <= 20; ++number) {
-        std::promise<void> written;
-        run.command(set_parameter("food_health", static_cast<double>(number)), [&] { written.set_value(); });
-        written.get_future().wait();
+        run.command(set_parameter("food_health", static_cast<double>(number)));
+        EXPECT_FALSE(run.receipt().refused);
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
         EXPECT_EQ((*file)->journal().read()->size(), number);
@@ -52,10 +51,9 @@ TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
         run.advance(70);
         run.delete_world();
     }
-    std::promise<void> written;
     RecordedRun next{data, thread, {2}};
-    next.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
-    written.get_future().wait();
+    next.command(set_parameter("food_health", 1.0));
+    EXPECT_FALSE(next.receipt().refused);
     const auto ended = RunFile::open_read_only(data.ended_file_of("w", {1, 2}));
     ASSERT_TRUE(ended) << to_text(ended.error());
     EXPECT_TRUE((*ended)->end_mark()->value().ended);
@@ -106,7 +104,7 @@ TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
     RecordedRun other{other_data, thread};
     std::atomic<int> written = 0;
     double value = 0;
-    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++written; }); };
+    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&](auto&&) { ++written; }); };
     const std::string path = data.file_of("w"), away = path + ".away";
     command();
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
@@ -126,10 +124,13 @@ TEST_F(StorageThreadTest, AMovedFileIsAnErrorUntilItIsMovedBack) {
                         path + (another ? " is not the file that the server writes" : " has been moved or deleted")));
         const int at_trouble = written;
         command();
-        std::promise<void> other_written;
-        other.command(set_parameter("food_health", value), [&] { other_written.set_value(); });
-        other_written.get_future().wait();
-        EXPECT_EQ(written, at_trouble) << "done is not called while the file is lost";
+        other.command(set_parameter("food_health", value));
+        EXPECT_FALSE(other.receipt().refused);
+        EXPECT_EQ(written, at_trouble) << "no receipt comes while the file is lost";
+        run.once_written();
+        EXPECT_EQ(run.receipt().refused.value().code, base::RefusalCode::NotFound) << "a barrier does not wait";
+        other.once_written();
+        EXPECT_FALSE(other.receipt().refused);
         std::filesystem::rename(away, path);
         ASSERT_TRUE(wait_until([&] { return written >= static_cast<int>(value) && thread.disk().faults().empty(); }));
     }
@@ -142,34 +143,27 @@ TEST_F(StorageThreadTest, ADamagedFileStopsOnlyItsRun) {
     StorageThread thread{{}, 1ms};
     RecordedRun run{data, thread};
     RecordedRun other{other_data, thread};
-    std::promise<void> first, other_written;
-    run.command(set_parameter("food_health", 1.0), [&] { first.set_value(); });
-    first.get_future().wait();
+    run.command(set_parameter("food_health", 1.0));
+    EXPECT_FALSE(run.receipt().refused);
     const std::string path = data.file_of("w");
     overwrite(path);
-    bool late = false;
-    std::promise<base::Refusal> refused;
     run.advance(200);
     run.checkpoint();
-    run.command(
-        set_parameter("food_health", 2.0), [&] { late = true; },
-        [&](const base::Refusal& why) { refused.set_value(why); });
-    const base::Refusal why = refused.get_future().get();
+    run.command(set_parameter("food_health", 2.0));
+    const base::Refusal why = run.receipt().refused.value();
     EXPECT_EQ(why.code, base::RefusalCode::DataLoss);
     EXPECT_THAT(why.message, testing::HasSubstr(path + " is damaged"));
     EXPECT_EQ(fault_in(thread, RunFault::Kind::Damaged), why.message);
     EXPECT_FALSE(thread.disk().trouble());
     // A later record is refused too, and nothing waits.
-    std::promise<void> refused_again;
-    run.command(
-        set_parameter("food_health", 3.0), [&] { late = true; },
-        [&](const base::Refusal&) { refused_again.set_value(); });
-    refused_again.get_future().wait();
-    EXPECT_FALSE(late);
+    run.command(set_parameter("food_health", 3.0));
+    EXPECT_EQ(run.receipt().refused.value().message, why.message);
+    run.once_written();
+    EXPECT_EQ(run.receipt().refused.value().message, why.message);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_EQ(thread.disk().waiting_bytes(), 0u);
-    other.command(set_parameter("food_health", 2.0), [&] { other_written.set_value(); });
-    other_written.get_future().wait();
+    other.command(set_parameter("food_health", 2.0));
+    EXPECT_FALSE(other.receipt().refused);
     run.recorder().give_up("w");
     ASSERT_TRUE(wait_until([&] { return thread.disk().faults().empty(); }));
     other.recorder().close_all(other.laboratory());
@@ -177,20 +171,42 @@ TEST_F(StorageThreadTest, ADamagedFileStopsOnlyItsRun) {
     EXPECT_TRUE(check(**RunFile::open_read_only(other_data.file_of("w"))));
 }
 
+TEST_F(StorageThreadTest, ABarrierDoesNotWaitForAFailingDisk) {
+    {
+        StorageThread thread{{.vfs = failing_disk()}, 1h};
+        RecordedRun run{data, thread};
+        run.once_written();
+        EXPECT_FALSE(run.receipt().refused);
+        EXPECT_TRUE(std::filesystem::exists(data.file_of("w")));
+        fail_operation(1, Failure::Full);
+        bool command_written = false;
+        run.command(set_parameter("food_health", 1.0),
+                    [&](const Receipt& receipt) { command_written = !receipt.refused; });
+        run.once_written(); // may come before or after the failure
+        EXPECT_EQ(run.receipt().refused.value().code, base::RefusalCode::Unavailable);
+        ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }));
+        for (int count = 0; count < 3; ++count) { // the next attempt to write is due in an hour
+            run.once_written();
+            EXPECT_EQ(run.receipt().refused.value().message, *thread.disk().trouble());
+        }
+        EXPECT_FALSE(command_written);
+        EXPECT_TRUE(thread.finish()) << "the thread tries again when it ends";
+        EXPECT_TRUE(command_written);
+    }
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal().read()->size(), 1u);
+}
+
 TEST_F(StorageThreadTest, AWorldWithADamagedFileCanBeDeletedAndReset) {
     for (const bool reset : {false, true}) {
-        const auto written_by = [](auto&& act) {
-            std::promise<void> written;
-            act([&] { written.set_value(); });
-            written.get_future().wait();
-        };
         folder.clear();
         StorageThread thread{{}, 1ms};
         RecordedRun run{data, thread};
-        written_by([&](const Done& done) { run.command(set_parameter("food_health", 1.0), done); });
+        run.command(set_parameter("food_health", 1.0));
+        EXPECT_FALSE(run.receipt().refused);
         overwrite(data.file_of("w"));
         run.advance(200);
-        written_by([&](const Done& done) { reset ? run.reset({2}, {3, 4}, done) : run.delete_world(done); });
+        reset ? run.reset({2}, {3, 4}) : run.delete_world();
+        EXPECT_FALSE(run.receipt().refused);
         EXPECT_TRUE(std::filesystem::exists(data.ended_file_of("w", {1, 2})));
         EXPECT_EQ(std::filesystem::exists(data.file_of("w")), reset);
         if (reset) {
@@ -208,10 +224,8 @@ TEST_F(StorageThreadTest, AResetThatCannotBeStoredKeepsTheOldRun) {
     run.advance(70);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     std::ofstream{DataFolder::next_file_of(data.file_of("w"))} << std::string(5000, 'x');
-    std::promise<base::Refusal> refused;
-    run.reset(
-        {2}, {3, 4}, [] {}, [&](const base::Refusal& why) { refused.set_value(why); });
-    EXPECT_EQ(refused.get_future().get().code, base::RefusalCode::DataLoss);
+    run.reset({2}, {3, 4});
+    EXPECT_EQ(run.receipt().refused.value().code, base::RefusalCode::DataLoss);
     EXPECT_FALSE(fault_in(thread, RunFault::Kind::Damaged).empty());
     run.recorder().give_up("w");
     ASSERT_TRUE(wait_until([&] { return thread.idle() && thread.disk().faults().empty(); }));
@@ -225,28 +239,26 @@ TEST_F(StorageThreadTest, AResetThatCannotBeStoredKeepsTheOldRun) {
 TEST_F(StorageThreadTest, DamageWhileTheServerStopsIsReported) {
     StorageThread thread{{}, 1ms};
     RecordedRun run{data, thread};
-    std::promise<void> written;
-    run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
-    written.get_future().wait();
+    run.command(set_parameter("food_health", 1.0));
+    EXPECT_FALSE(run.receipt().refused);
     overwrite(data.file_of("w"));
     run.recorder().close_all(run.laboratory());
     EXPECT_FALSE(thread.finish());
 }
 
 TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
-    std::promise<void> written;
     testing::internal::CaptureStdout();
     {
         StorageThread thread{{.vfs = failing_disk()}, 1h};
         RecordedRun run{data, thread};
-        run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
-        written.get_future().wait();
+        run.command(set_parameter("food_health", 1.0));
+        EXPECT_FALSE(run.receipt().refused);
         fail_operation(1, Failure::Gone); // and all after it
-        bool late = false;
-        run.command(set_parameter("food_health", 2.0), [&] { late = true; });
+        run.command(set_parameter("food_health", 2.0));
         ASSERT_TRUE(wait_until([&] { return thread.disk().trouble().has_value(); }));
-        run.command(set_parameter("food_health", 3.0), [&] { late = true; });
-        EXPECT_FALSE(late);
+        EXPECT_FALSE(run.has_receipt());
+        run.command(set_parameter("food_health", 3.0));
+        EXPECT_FALSE(run.has_receipt());
     }
     fail_operation(0, Failure::Gone);
     const std::string said = testing::internal::GetCapturedStdout();
@@ -260,9 +272,8 @@ TEST_F(StorageThreadTest, LogsAtItsEndWhatItCouldNotWrite) {
 TEST_F(StorageThreadTest, ItIsIdleOnceEverythingIsWritten) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> written;
-    run.command(set_parameter("food_health", 1.0), [&] { written.set_value(); });
-    written.get_future().wait();
+    run.command(set_parameter("food_health", 1.0));
+    EXPECT_FALSE(run.receipt().refused);
     ASSERT_TRUE(wait_until([&] { return !thread.waiting_since(); }));
     EXPECT_EQ(thread.disk().waiting_bytes(), 0u);
 }
@@ -270,16 +281,11 @@ TEST_F(StorageThreadTest, ItIsIdleOnceEverythingIsWritten) {
 TEST_F(StorageThreadTest, EachOfSeveralResetsEndsTheRunBefore) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> written;
     for (std::uint64_t number = 1; number <= 5; ++number) {
         run.advance(10 * number);
-        run.reset({number}, {0, number}, [&, number] {
-            if (number == 5) {
-                written.set_value();
-            }
-        });
+        run.reset({number}, {0, number});
     }
-    written.get_future().wait();
+    EXPECT_FALSE(run.receipt().refused);
     const auto files = data.files();
     EXPECT_TRUE(files->replaced.empty());
     EXPECT_EQ(files->ended.size(), 5u);
@@ -296,8 +302,8 @@ TEST_F(StorageThreadTest, EachOfSeveralResetsEndsTheRunBefore) {
 TEST_F(StorageThreadTest, ACommandIsWrittenBeforeACheckpointIsCompressed) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
-    std::promise<void> at_work, go_on, written;
-    run.command(set_parameter("food_health", 1.0), [&] {
+    std::promise<void> at_work, go_on;
+    run.command(set_parameter("food_health", 1.0), [&](auto&&) {
         at_work.set_value();
         go_on.get_future().wait();
     });
@@ -305,14 +311,13 @@ TEST_F(StorageThreadTest, ACommandIsWrittenBeforeACheckpointIsCompressed) {
     run.advance(70);
     run.checkpoint();
     std::size_t commands = 0, checkpoints = 1;
-    run.command(set_parameter("food_health", 2.0), [&] {
+    run.command(set_parameter("food_health", 2.0), [&](auto&&) {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         commands = (*file)->journal().read()->size();
         checkpoints = (*file)->checkpoints().read(0, 70)->size();
-        written.set_value();
     });
     go_on.set_value();
-    written.get_future().wait();
+    EXPECT_FALSE(run.receipt().refused);
     EXPECT_EQ(commands, 2u);
     EXPECT_EQ(checkpoints, 0u);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
@@ -343,7 +348,7 @@ TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
 
     run.advance(70);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-    std::promise<void> written_to, go_on, written;
+    std::promise<void> written_to, go_on;
     call_before_operation(40, [&] { // a part takes several operations: pages and a sync
         written_to.set_value();
         go_on.get_future().wait();
@@ -351,12 +356,9 @@ TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
     run.checkpoint();
     written_to.get_future().wait();
     PartCount when_done;
-    run.command(set_parameter("food_health", 1.0), [&] {
-        when_done = parts_in(data.file_of("w"));
-        written.set_value();
-    });
+    run.command(set_parameter("food_health", 1.0), [&](auto&&) { when_done = parts_in(data.file_of("w")); });
     go_on.set_value();
-    written.get_future().wait();
+    EXPECT_FALSE(run.receipt().refused);
     EXPECT_EQ(when_done.of_whole, parts);
     EXPECT_GT(when_done.of_none, 0);
     EXPECT_LT(when_done.of_none, parts / 2);
@@ -385,17 +387,17 @@ TEST_F(StorageThreadTest, PartsOfDroppedCheckpointsAreDeleted) {
 TEST_F(StorageThreadTest, AWaitingCheckpointIsDroppedWhenItsRunEnds) {
     StorageThread thread{{.part_bytes = 256}};
     RecordedRun run{data, thread};
-    std::promise<void> at_work, go_on, written;
-    run.command(set_parameter("food_health", 1.0), [&] {
+    std::promise<void> at_work, go_on;
+    run.command(set_parameter("food_health", 1.0), [&](auto&&) {
         at_work.set_value();
         go_on.get_future().wait();
     });
     at_work.get_future().wait();
     run.advance(70);
     run.checkpoint();
-    run.reset({2}, {3, 4}, [&] { written.set_value(); });
+    run.reset({2}, {3, 4});
     go_on.set_value();
-    written.get_future().wait();
+    EXPECT_FALSE(run.receipt().refused);
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const std::string path = data.ended_file_of("w", {1, 2});
     const auto file = RunFile::open_read_only(path);
@@ -410,9 +412,8 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
     StorageThread thread{{.log_pages_max = 16}};
     RecordedRun run{data, thread};
     const auto command = [&](double value) {
-        std::promise<void> written;
-        run.command(set_parameter("food_health", value), [&] { written.set_value(); });
-        written.get_future().wait();
+        run.command(set_parameter("food_health", value));
+        EXPECT_FALSE(run.receipt().refused);
     };
     command(0);
     const auto bytes = std::filesystem::file_size(data.file_of("w"));
@@ -444,7 +445,7 @@ TEST_F(StorageThreadTest, ACheckpointOfAPurgedGenerationIsNotWritten) {
     };
     in_generation(2);
     std::promise<void> at_work, go_on;
-    run.command(set_parameter("food_health", 1.0), [&] {
+    run.command(set_parameter("food_health", 1.0), [&](auto&&) {
         at_work.set_value();
         go_on.get_future().wait();
     });
@@ -463,7 +464,7 @@ TEST_F(StorageThreadTest, ACheckpointOfAPurgedGenerationIsNotWritten) {
 /// for one to fail. Every day only each eighth operation fails: all of them take two minutes.
 class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
 
-TEST_P(FailingDisk, DoneMeansWrittenAndEverythingIsWrittenInTheEnd) {
+TEST_P(FailingDisk, EverythingIsWrittenInTheEnd) {
     const std::uint64_t stride = everyday_size("FAILING_STRIDE", 8);
     std::uint64_t operation = 0;
     do {
@@ -473,28 +474,21 @@ TEST_P(FailingDisk, DoneMeansWrittenAndEverythingIsWrittenInTheEnd) {
         fail_operation(operation, GetParam());
         base::StateHash ended_hash, hash;
         std::atomic<int> written = 0;
+        const auto written_one = [&](const Receipt& receipt) { written += receipt.refused ? 0 : 1; };
         {
             StorageThread thread{
                 {.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700, .log_pages_max = 32}, 1ms};
             RecordedRun run{data, thread};
             for (int round = 0; round < 4; ++round) {
-                std::promise<void> durable;
-                run.command(set_parameter("food_health", 1.0 * round), [&] {
-                    ++written;
-                    durable.set_value();
-                });
-                ASSERT_TRUE(wait_until_ready(durable.get_future())) << "operation " << operation;
+                run.command(set_parameter("food_health", 1.0 * round), written_one);
+                ASSERT_TRUE(wait_until([&] { return run.has_receipt(); })) << "operation " << operation;
                 run.advance(70);
                 run.checkpoint();
                 ended_hash = run.world().hash();
             }
             ASSERT_TRUE(wait_until([&] { return thread.idle(); })); // otherwise the last checkpoint is dropped
-            std::promise<void> begun_again;
-            run.reset({9}, {3, 4}, [&] {
-                ++written;
-                begun_again.set_value();
-            });
-            ASSERT_TRUE(wait_until_ready(begun_again.get_future())) << "operation " << operation;
+            run.reset({9}, {3, 4}, written_one);
+            ASSERT_TRUE(wait_until([&] { return run.has_receipt(); })) << "operation " << operation;
             run.advance(70);
             run.checkpoint();
             run.recorder().close_all(run.laboratory());
@@ -549,7 +543,7 @@ TEST_F(StorageThreadTest, AfterAKillTheFileHasExactlyWhatWasAnswered) {
             RecordedRun run{*own, thread};
             const auto counts = [&] {
                 ++asked;
-                return [&] { ++written; };
+                return [&](const Receipt& receipt) { written += receipt.refused ? 0 : 1; };
             };
             const auto wait = [&] {
                 EXPECT_TRUE(wait_until([&] { return written == asked || thread.disk().trouble(); }));

@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <future>
-
 namespace evod::runtime {
 namespace {
 
@@ -27,15 +25,13 @@ class ForkCheckTest : public testing::Test {
         path = data.file_of("fork");
     }
     /// The outcome that the client gets.
-    base::Result<simulation::Applied> checked(const base::StateHash& expected) {
-        std::promise<CommandDone> answered;
+    base::Result<simulation::Applied> checked(const base::StateHash& expected) const {
         CommandDone done{.mail = {},
                          .outcome = simulation::Applied{.world = "fork", .tick = 70, .parameters = {}},
-                         .frame = "forked"};
-        ForkCheck check;
-        check.read_back({path, path + "-ended"}, run_id, expected, std::make_shared<CommandDone>(std::move(done)),
-                        [&](Reply reply) { answered.set_value(std::get<CommandDone>(std::move(reply))); })();
-        const CommandDone answer = answered.get_future().get();
+                         .frame = "forked",
+                         .fork = ForkFile{{path, path + "-ended"}, run_id, expected}};
+        const CommandDone answer = check_fork(std::move(done));
+        EXPECT_FALSE(answer.fork);
         EXPECT_EQ(answer.frame == "forked", answer.outcome.has_value());
         return answer.outcome;
     }

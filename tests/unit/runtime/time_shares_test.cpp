@@ -12,7 +12,8 @@ using namespace std::chrono_literals;
 
 /// Serves the user with the least time of those who want some.
 std::string serve_next(TimeShares& shares, const std::vector<std::string>& wanting) {
-    const std::string next = *std::ranges::min_element(wanting, {}, [&](const auto& user) { return shares.spent(user); });
+    const std::string next =
+        *std::ranges::min_element(wanting, {}, [&](const auto& user) { return shares.spent(user); });
     shares.serve(next);
     return next;
 }

@@ -3,8 +3,8 @@
 
 #include "server/base/inline_executor.h"
 #include "server/replay/recovery.h"
-#include "server/runtime/simulation_loop.h"
 #include "tests/support/manual_clock.h"
+#include "tests/support/two_loops.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -122,9 +122,12 @@ class LoopWithBuilds : public testing::Test {
     LoopWithBuilds() {
         send(create("small", 5));
         send(simulation::Run{"small", {}});
-        loop.pass();
+        loops.pass();
     }
-    ~LoopWithBuilds() override { loop.close(); }
+    ~LoopWithBuilds() override {
+        loop.close();
+        thread.finish(); // it gives receipts to the loops
+    }
 
     static simulation::CreateWorld create(const char* name, std::uint32_t organisms, std::uint64_t seed = 1) {
         simulation::CreateWorld command{.name = name, .parameters = {}, .seed = {seed}, .run_id = {seed, organisms}};
@@ -133,19 +136,16 @@ class LoopWithBuilds : public testing::Test {
         return command;
     }
     void send(simulation::Command command) {
-        mailbox.push(CommandMail{std::move(command), {}, "request " + std::to_string(++sent), session});
+        loops.simulations.mailbox_of("").push(
+            CommandMail{std::move(command), {}, "request " + std::to_string(++sent), session});
     }
     /// One pass after a length of time in which `small` takes a tick.
     void pass() {
         clock.advance(20ms);
-        loop.pass();
+        loops.pass();
     }
     void pass_until_answered(std::size_t count) {
-        ASSERT_TRUE(wait_until([&] { return answers().size() >= count; }, [this] { pass(); }));
-    }
-    std::vector<std::string> answers() {
-        const std::lock_guard lock{mutex};
-        return answered;
+        ASSERT_TRUE(wait_until([&] { return answers.size() >= count; }, [this] { pass(); }));
     }
     const simulation::Entry* find(const char* name) {
         const auto found = loop.laboratory().find(name);
@@ -161,34 +161,27 @@ class LoopWithBuilds : public testing::Test {
     }
 
     static constexpr std::uint64_t server_itself = 0;
-    std::uint64_t session = 1; // the sender of the commands
-    std::mutex mutex;
-    std::vector<std::string> answered; // the requests, in the order of their answers; with the message if refused
+    std::uint64_t session = 1;        // the sender of the commands
+    std::vector<std::string> answers; // the requests, in the order of their answers; with the message if refused
     int sent = 0;
     recording::TemporaryFolder folder;
     run_file::DataFolder data{*run_file::DataFolder::open(folder.path())};
     recording::StorageThread thread{{}};
     recording::Recorder recorder{data, thread};
-    Mailbox mailbox;
-    StreamDemand demand;
     base::InlineExecutor executor;
     support::ManualClock clock;
-    SimulationLoop loop{mailbox,
-                        demand,
-                        executor,
-                        clock,
-                        {.events = [](auto&&...) {},
-                         .snapshot = [](SnapshotPtr) {},
-                         .reply =
-                             [this](const Reply& reply) {
-                                 if (const auto* done = std::get_if<CommandDone>(&reply)) {
-                                     const std::lock_guard lock{mutex};
-                                     answered.push_back(done->mail.request_name +
-                                                        (done->outcome ? "" : ": " + done->outcome.error().message));
-                                 }
-                             }},
-                        {},
-                        &recorder};
+    support::TwoLoops loops{executor,
+                            clock,
+                            [this](const Answer& answer) {
+                                if (const auto* done = std::get_if<CommandDone>(&answer)) {
+                                    answers.push_back(done->mail.request_name +
+                                                      (done->outcome ? "" : ": " + done->outcome.error().message));
+                                }
+                            },
+                            {.events = [](auto&&...) {}, .snapshot = [](SnapshotPtr) {}},
+                            {},
+                            &recorder};
+    SimulationLoop& loop = loops.live;
 };
 
 TEST_F(LoopWithBuilds, ALargeWorldIsCreatedWhileOthersAdvance) {
@@ -205,7 +198,7 @@ TEST_F(LoopWithBuilds, ALargeWorldIsCreatedWhileOthersAdvance) {
     EXPECT_EQ(find("large")->control.speed, 2.0) << "the command has waited for its world";
     EXPECT_EQ(find("large")->world.hash(), (simulation::World{create("large", 2'000).parameters, {1}}.hash()));
     EXPECT_EQ(find("large")->world.organism_count(0), 2'000);
-    EXPECT_THAT(answers(),
+    EXPECT_THAT(answers,
                 testing::UnorderedElementsAre("request 1", "request 2", "request 3", "request 4",
                                               "request 5: a world with that name already exists", "request 6"));
 }
@@ -237,7 +230,7 @@ TEST_F(LoopWithBuilds, ALargeWorldIsForkedAsItWasWhenTheCommandArrived) {
     EXPECT_EQ(hash, again.hash());
     again.advance(5, executor);
     EXPECT_EQ(find("fork")->world.hash(), again.hash());
-    EXPECT_THAT(answers(), testing::Each(testing::Not(testing::HasSubstr(":"))));
+    EXPECT_THAT(answers, testing::Each(testing::Not(testing::HasSubstr(":"))));
 }
 
 TEST_F(LoopWithBuilds, ALargeWorldWaitsWhileItIsReset) {
