@@ -4,6 +4,7 @@
 
 #include "server/runtime/fork_check.h"
 #include "server/runtime/simulations.h"
+#include "server/simulation/world_name.h"
 
 #include <functional>
 #include <mutex>

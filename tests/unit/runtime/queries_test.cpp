@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-QueryMail query(std::uint64_t session) {
+QueryMail query_of(std::uint64_t session) {
     v1::Request request;
     request.set_request_id(session + 100);
     request.mutable_list_worlds();
@@ -20,7 +20,7 @@ QueryMail query(std::uint64_t session) {
 TEST(Queries, AreAnsweredInOrderWithoutThoseOfEndedSessions) {
     Queries queries;
     for (const std::uint64_t session : {1, 2, 3}) {
-        queries.add(query(session));
+        queries.add(query_of(session));
     }
     queries.forget(2);
     const simulation::Laboratory laboratory;

@@ -150,7 +150,7 @@ TEST_F(Loop, ALateWorldCatchesUpNoMoreThanTheBound) {
         loop.pass();
     }
     // The late tick, the bound's worth of ticks, and the tick that is due now.
-    const auto given_back = 1 + 1 + SimulationLoop::catch_up_max / 10ms + 1;
+    const auto given_back = 1 + 1 + WorldPace::catch_up_max / 10ms + 1;
     EXPECT_EQ(tick(), given_back);
     live_through(100ms);
     EXPECT_EQ(tick(), given_back + 10);
@@ -288,7 +288,7 @@ TEST_F(LoopWithAsker, QueriesCostAFastWorldOnlyAShareOfTheTime) {
     while (clock.now() - began < 2s) {
         loop.pass();
     }
-    EXPECT_NEAR(answered * 4.0, 2000.0 / QueryBudget::share, 12);
+    EXPECT_NEAR(answered * 4.0, 2000.0 / Queries::share, 12);
 }
 
 TEST_F(Loop, CommandsDoNotWaitForQueries) {
@@ -651,20 +651,21 @@ TEST(SimulationThread, ReproducesTheHash) {
     base::InlineExecutor executor;
     SteadyClock clock;
     std::optional<std::promise<v1::WorldInfo>> seen; // set before a query is sent
-    SimulationThread thread{mailbox,
-                            demand,
-                            executor,
-                            clock,
-                            {.events = [](const Laboratory&, std::vector<simulation::Event>) {},
-                             .snapshot = [](SnapshotPtr) {},
-                             .reply =
-                                 [&](const Reply& reply) {
-                                     if (const auto* done = std::get_if<CommandDone>(&reply)) {
-                                         EXPECT_TRUE(done->outcome);
-                                     } else {
-                                         seen->set_value(std::get<QueryDone>(reply).response.worlds().worlds(0));
-                                     }
-                                 }}};
+    SimulationThread thread{{},
+                            mailbox,
+                            std::make_unique<SimulationLoop>(
+                                mailbox, demand, executor, clock,
+                                LoopOutputs{.events = [](const Laboratory&, std::vector<simulation::Event>) {},
+                                            .snapshot = [](SnapshotPtr) {},
+                                            .reply =
+                                                [&](const Reply& reply) {
+                                                    if (const auto* done = std::get_if<CommandDone>(&reply)) {
+                                                        EXPECT_TRUE(done->outcome);
+                                                    } else {
+                                                        seen->set_value(
+                                                            std::get<QueryDone>(reply).response.worlds().worlds(0));
+                                                    }
+                                                }})};
     const auto send = [&](simulation::Command command) {
         ASSERT_TRUE(mailbox.try_push(CommandMail{std::move(command), {}, "command"}));
     };

@@ -24,7 +24,7 @@ TEST(Simulations, MailGoesToTheThreadThatHasTheWorld) {
 
 TEST(Simulations, DemandIsDividedBetweenTheThreads) {
     Simulations simulations{false};
-    simulations.set_demand({{"w", {.rate_hz = 1}}, {"w@1", {.rate_hz = 2}}}, true);
+    simulations.set_demand({{"w", {.rate_hz = 1, .islands = {}}}, {"w@1", {.rate_hz = 2, .islands = {}}}}, true);
     EXPECT_TRUE(simulations.events_wanted());
     const WorldDemands live = simulations.part_of("w").demand.take(),
                        replays = simulations.part_of("w@1").demand.take();
