@@ -192,21 +192,22 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     if (request.request_id() == 0) {
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
     }
-    if (!session.admit_request()) {
+    if (!session.requests.admit()) {
+        host_.limit_counters.met(Limit::RequestsInFlight);
         return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
                                  std::to_string(requests_in_flight_max) +
                                      " requests of this session are unanswered: wait for an answer",
                                  base::Reason::RequestsInFlightMax));
     }
-    if (session.query_under_way) {
-        return session.hold_back(std::move(request));
+    if (session.requests.query_under_way) {
+        return session.requests.hold_back(std::move(request));
     }
     serve(session, std::move(request));
 }
 
 void Dispatcher::serve_held_back(Session& session) {
-    while (!session.query_under_way) {
-        if (auto request = session.take_held_back()) {
+    while (!session.requests.query_under_way) {
+        if (auto request = session.requests.take_held_back()) {
             serve(session, *std::move(request));
         } else {
             return;
@@ -405,8 +406,8 @@ void Dispatcher::ask(Session& session, v1::Request request) {
     const auto asked = std::make_shared<const v1::Request>(std::move(request));
     const bool users_only = session.visitor().role < access::Role::Controller;
     if (ask(session, asked->request_id(), runtime::QueryMail{session.number(), asked, users_only})) {
-        session.query_under_way = true;
-        session.expect(static_cast<std::ptrdiff_t>(protocol::row_bytes_max(*asked)));
+        session.requests.query_under_way = true;
+        session.requests.expect(static_cast<std::ptrdiff_t>(protocol::row_bytes_max(*asked)));
     }
 }
 
@@ -416,8 +417,8 @@ void Dispatcher::on_done(runtime::QueryDone done) {
         return;
     }
     const v1::Request& request = *done.mail.request;
-    session->query_under_way = false;
-    session->expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
+    session->requests.query_under_way = false;
+    session->requests.expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
     count_shortened_answers(done.result, host_.limit_counters);
     protocol::add_rows(done.result, done.response);
     if (const auto* world = std::get_if<protocol::FoundWorld>(&done.result)) {
