@@ -40,14 +40,14 @@ void SendQueue::begin_rest(const SharedBytes& rest) {
 
 void SendQueue::begin_rest(const Header& header, std::span<const SharedBytes* const> parts, std::string_view tail,
                            std::size_t accepted_bytes) {
-    header_ = header;
-    tail_ = tail;
-    buffers_.push_back(asio::buffer(header_));
+    header_and_tail_.assign(reinterpret_cast<const char*>(header.data()), header.size());
+    header_and_tail_ += tail;
+    buffers_.push_back(asio::buffer(header_and_tail_.data(), header.size()));
     for (const SharedBytes* part : parts) {
         sending_.push_back({{memory_, *part}, nullptr, false});
         buffers_.push_back(asio::buffer(**part));
     }
-    buffers_.push_back(asio::buffer(tail_));
+    buffers_.push_back(asio::buffer(header_and_tail_) + header.size());
     for (asio::const_buffer& buffer : buffers_) {
         const std::size_t of_this = std::min(accepted_bytes, buffer.size());
         buffer += of_this;

@@ -80,9 +80,8 @@ class SendQueue {
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max();
     std::deque<Queued> waiting_;
     std::vector<Queued> sending_;                    // not empty: a write is in progress or about to start
-    std::vector<boost::asio::const_buffer> buffers_; // point to header_, tail_ and the bytes in sending_
-    Header header_;
-    std::string tail_;
+    std::vector<boost::asio::const_buffer> buffers_; // point to header_and_tail_ and the bytes in sending_
+    std::string header_and_tail_;
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in waiting_ and sending_
     std::uint64_t dropped_events_ = 0;                 // number of dropped events that were not reported yet
 };
