@@ -159,7 +159,7 @@ void BackgroundQueries::begin_next_breeding() {
 void BackgroundQueries::begin(WaitingBreeding breeding) {
     const std::uint64_t session_number = breeding.session, query = ++last_query_;
     if (const SessionPtr session = find_session(sessions_, session_number)) {
-        session->expect(breeding_bytes);
+        session->requests.expect(breeding_bytes);
     }
     running_breedings_[query] = {
         session_number,
@@ -188,7 +188,7 @@ runtime::BreedingDone BackgroundQueries::compute(std::uint64_t query, const Wait
 
 void BackgroundQueries::on_done(runtime::BreedingDone done) {
     if (const SessionPtr session = find_session(sessions_, running_breedings_.at(done.query).session)) {
-        session->expect(-breeding_bytes);
+        session->requests.expect(-breeding_bytes);
         if (done.is_shortened) {
             limit_counters_.met(Limit::BreedingRows);
         }

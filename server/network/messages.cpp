@@ -24,6 +24,12 @@ void log_refusal(std::uint64_t session, const std::string& by, const v1::Respons
                session, by, response.request_id(), code, response.status().message());
 }
 
+v1::Response response_to(std::uint64_t request_id) {
+    v1::Response response;
+    response.set_request_id(request_id);
+    return response;
+}
+
 SharedBytes encode_control(const v1::ServerMessage& message) {
     return std::make_shared<const std::string>(codec::encode_frame(codec::Channel::Control, message));
 }

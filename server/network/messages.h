@@ -14,6 +14,9 @@ namespace evod::network {
 
 using codec::SharedBytes;
 
+/// Returns a response without an answer, which reports success.
+v1::Response response_to(std::uint64_t request_id);
+
 SharedBytes encode_control(const v1::ServerMessage& message);
 SharedBytes encode_response(v1::Response response);
 /// Encodes the event after setting its time to the current time.

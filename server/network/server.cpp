@@ -282,11 +282,11 @@ bool Server::run() {
     if (archive_) {
         static_assert(replay::Archive::answers_kept_of_ended == retries_kept &&
                       replay::Archive::answers_of_ended_bytes_max == retry_bytes_max);
-        dispatcher_.restore(archive_->take_answers());
+        dispatcher_.commands().restore(archive_->take_answers());
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries()) {
             if (entry->control.leased) {
-                dispatcher_.restart_lease(entry->name);
+                dispatcher_.commands().restart_lease(entry->name);
             }
         }
     }

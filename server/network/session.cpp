@@ -31,21 +31,19 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
 
 Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::uint64_t number)
     : snapshots{*host.clock, host.traffic.snapshots_dropped, *this}
+    , requests{host.send_memory}
     , transport_{std::move(transport)}
     , host_{host}
     , number_{number}
     , peer_{transport_->peer()}
     , address_prefix_{address_key(peer_.address())}
+    , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
-    , expected_bytes_{host.send_memory}
-    , held_back_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
     , empty_frames_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
-    , hello_timer_{transport_->socket().get_executor()}
-    , frame_timer_{transport_->socket().get_executor()}
-    , turn_timer_{transport_->socket().get_executor()}
-    , farewell_timer_{transport_->socket().get_executor()}
-    , writer_signal_{transport_->socket().get_executor(), asio::steady_timer::time_point::max()} {
+    , turn_{transport_->socket().get_executor()}
+    , queue_{host.send_memory}
+    , writer_{transport_->socket().get_executor()} {
     boost::system::error_code ignored; // if an option cannot be set, the session still works, but less well
     transport_->socket().set_option(tcp::no_delay{true}, ignored);
     transport_->socket().set_option(asio::socket_base::keep_alive{true}, ignored);
@@ -61,33 +59,79 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
 }
 
 void Session::start(const std::optional<base::Refusal>& refused) {
-    coroutines_ = 2;
+    coroutines_ = 1;
     asio::co_spawn(
         transport_->socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
-    asio::co_spawn(
-        transport_->socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
     if (refused) {
         fail(*refused);
+    } else {
+        begin(Deadline::Hello, hello_timeout);
+    }
+}
+
+// ---- deadlines -------------------------------------------------------------------------------------------------
+
+void Session::begin(Deadline deadline, std::chrono::seconds time) {
+    deadline_ = deadline;
+    deadline_timer_.expires_after(time);
+    deadline_timer_.async_wait(
+        [weak = weak_from_this(), deadline, at = deadline_timer_.expiry()](boost::system::error_code error) {
+            // The deadline may have ended after the timer expired, but before this handler.
+            if (const auto self = weak.lock();
+                self && !error && self->deadline_ == deadline && self->deadline_timer_.expiry() == at) {
+                self->deadline_ = Deadline::None;
+                self->on_missed(deadline);
+            }
+        });
+}
+
+void Session::end(Deadline deadline) {
+    if (deadline_ == deadline) {
+        deadline_ = Deadline::None;
+        deadline_timer_.cancel();
+    }
+}
+
+void Session::on_missed(Deadline deadline) {
+    switch (deadline) {
+    case Deadline::None:
+        return;
+    case Deadline::Hello: {
+        host_.limit_counters.met(Limit::HelloTimeout);
+        const bool is_connecting = phase_ == Phase::Connecting;
+        fail(refusal(base::RefusalCode::FailedPrecondition,
+                     "no Hello was received within " + std::to_string(hello_timeout.count()) +
+                         " s: connect again and send one first",
+                     base::Reason::HelloMissing));
+        if (is_connecting) {
+            close(); // the TLS handshake is not complete, so a Goodbye cannot be sent
+        }
         return;
     }
-    hello_timer_.expires_after(hello_timeout);
-    hello_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error && !self->greeted_) {
-            self->host_.limit_counters.met(Limit::HelloTimeout);
-            self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "no Hello was received within " + std::to_string(hello_timeout.count()) +
-                                   " s: connect again and send one first",
-                               base::Reason::HelloMissing));
-            if (!self->begun_) {
-                self->close(); // the TLS handshake is not complete, so a Goodbye cannot be sent
-            }
-        }
-    });
+    case Deadline::Frame:
+        host_.limit_counters.met(Limit::FrameTimeout);
+        return fail(refusal(base::RefusalCode::FailedPrecondition,
+                            "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
+                                " s: connect again and send each frame without pauses",
+                            base::Reason::FrameLate));
+    case Deadline::Farewell:
+        return close();
+    }
 }
+
+void Session::update_frame_deadline() {
+    if (reader_.buffered_bytes() == 0 || is_over()) {
+        end(Deadline::Frame);
+    } else if (deadline_ == Deadline::None) {
+        begin(Deadline::Frame, frame_timeout);
+    }
+}
+
+// ---- the client ------------------------------------------------------------------------------------------------
 
 std::uint32_t Session::control_frame_bytes_max() const {
     const std::uint32_t most = host_.limits.control_frame_bytes_max();
-    return visitor_.role < access::Role::Admin ? std::min(most, frame_bytes_max_below_admin) : most;
+    return visitor_->role < access::Role::Admin ? std::min(most, frame_bytes_max_below_admin) : most;
 }
 
 v1::Limits Session::limits() const {
@@ -97,7 +141,7 @@ v1::Limits Session::limits() const {
 }
 
 std::string Session::by() const {
-    return (visitor_.name.empty() ? "" : visitor_.name + ": ") + client_ + " " + to_text(peer_);
+    return (!visitor_ || visitor_->name.empty() ? "" : visitor_->name + ": ") + client_ + " " + to_text(peer_);
 }
 
 // ---- reading ---------------------------------------------------------------------------------------------------
@@ -109,47 +153,57 @@ asio::awaitable<void> Session::read() {
                      "this server requires TLS: use --ca FILE or --tls with evoctl and evoview",
                      base::Reason::TlsRequired));
     } else if (error) {
-        if (!ended_) { // if the session has ended, the reason is already logged
+        if (phase_ != Phase::Ended) { // otherwise the reason is already logged
             log_closed({}, "TLS: " + error.message());
         }
         close();
     }
-    begun_ = true;
-    wake_writer();
-    while (!finishing_ && !ended_) {
-        reading_ = true;
+    if (phase_ == Phase::Connecting) {
+        phase_ = Phase::Open;
+    }
+    if (phase_ != Phase::Ended) {
+        ++coroutines_;
+        asio::co_spawn(
+            transport_->socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
+    }
+    while (!is_over()) {
+        watch_.begin_read();
         const auto [error, count] = co_await transport_->read_some(asio::buffer(bytes));
-        reading_ = false;
-        silent_ = {};
-        const bool more_to_say = in_flight_ + queue_.size() + sending_.size() > 0;
-        if (error == asio::error::eof && (finishing_ || more_to_say || transport_->is_websocket()) && !ended_) {
+        watch_.end_read();
+        const bool more_to_say = requests.unanswered() > 0 || queue_.has_waiting_frames() || queue_.is_sending();
+        if (error == asio::error::eof && phase_ != Phase::Ended &&
+            (phase_ == Phase::Finishing || more_to_say || transport_->is_websocket())) {
             // The client closed its sending side but may still read. It therefore receives the pending answers, and in a
             // WebSocket a Close frame.
-            input_over_ = true;
-            wake_writer();
-            end();
+            if (phase_ == Phase::Finishing) {
+                close_code_ = close_code_.value_or(WebSocketClose::Normal);
+            } else {
+                phase_ = Phase::InputOver;
+            }
+            writer_.notify();
+            end_coroutine();
             co_return;
         }
-        if (error == Transport::websocket_fault() && !finishing_ && !ended_) {
+        if (error == Transport::websocket_fault() && !is_over()) {
             const WebSocketDecoder::Fault fault = *transport_->fault();
             close_code_ = fault.code;
             co_await fail_when_answered(
                 refusal(base::RefusalCode::InvalidArgument, std::string{fault.what}, base::Reason::FrameInvalid));
             break;
         }
-        if (error || ended_) {
+        if (error || phase_ == Phase::Ended) {
             break;
         }
         count_empty_frames();
         host_.traffic.received_bytes.add(count);
         reader_.feed({bytes.data(), count});
         reader_bytes_.set(reader_.capacity_bytes());
-        while (!finishing_ && !ended_) {
+        while (!is_over()) {
             const auto frame = reader_.next();
             if (!frame) {
                 if (frame.error().exceeded == codec::ExceededLimit::FrameBytes) {
                     close_code_ = WebSocketClose::MessageTooBig;
-                    host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
+                    host_.limit_counters.met(greeted() ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 }
                 co_await fail_when_answered(
                     refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
@@ -158,35 +212,34 @@ asio::awaitable<void> Session::read() {
             if (!*frame) {
                 break;
             }
-            within_frame_ = false; // the time limit of a frame does not apply while the session does not read
-            frame_timer_.cancel();
+            end(Deadline::Frame); // the time limit of a frame does not apply while the session does not read
             const double cost = 1 + std::floor(static_cast<double>((*frame)->body.size()) / bytes_per_turn);
             if (!turns_to_send_.take(cost, host_.clock->now())) {
                 co_await wait_for_turn(cost);
             }
-            if (finishing_ || ended_) {
+            if (is_over()) {
                 break;
             }
             on_frame(**frame);
             // Let the thread serve other sessions before the next frame is read.
             co_await asio::post(transport_->socket().get_executor(), no_throw);
         }
-        update_frame_timer();
+        update_frame_deadline();
         reader_.trim();
-        reader_bytes_.set(ended_ ? 0 : reader_.capacity_bytes());
+        reader_bytes_.set(phase_ == Phase::Ended ? 0 : reader_.capacity_bytes());
     }
-    if (finishing_ && !ended_) {
+    if (phase_ == Phase::Finishing) {
         co_await discard_input();
     } else {
         close();
     }
-    end();
+    end_coroutine();
 }
 
 void Session::count_empty_frames() {
     const std::uint64_t count = transport_->take_empty_frame_count();
     if (transport_->control_waits()) {
-        wake_writer();
+        writer_.notify();
     }
     if (count > 0 && !empty_frames_.take(static_cast<double>(count), host_.clock->now())) {
         host_.limit_counters.met(Limit::RequestsPerSecond);
@@ -198,47 +251,20 @@ void Session::count_empty_frames() {
     }
 }
 
-void Session::update_frame_timer() {
-    const bool within = reader_.buffered_bytes() > 0 && !finishing_ && !ended_;
-    const bool goes_on = within && within_frame_;
-    within_frame_ = within;
-    if (goes_on) {
-        return;
-    }
-    frame_timer_.cancel();
-    if (!within) {
-        return;
-    }
-    frame_timer_.expires_after(frame_timeout);
-    frame_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        // The frame may have arrived after the timer expired, but before this handler.
-        if (const auto self = weak.lock(); self && !error && self->within_frame_) {
-            self->host_.limit_counters.met(Limit::FrameTimeout);
-            self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
-                                   " s: connect again and send each frame without pauses",
-                               base::Reason::FrameLate));
-        }
-    });
-}
-
 asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
     do {
-        turn_timer_.expires_after(turns_to_send_.time_for(request_burst_max / 10));
-        co_await turn_timer_.async_wait(no_throw);
-    } while (!finishing_ && !ended_ && !turns_to_send_.take(cost, host_.clock->now()));
+        co_await turn_.wait(Signal::Timer::clock_type::now() + turns_to_send_.time_for(request_burst_max / 10));
+    } while (!is_over() && !turns_to_send_.take(cost, host_.clock->now()));
 }
 
 asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
-    if (in_flight_ > 0) {
-        input_over_ = true;
-        within_frame_ = false;
-        frame_timer_.cancel();
-        wake_writer();
-        turn_timer_.expires_at(asio::steady_timer::time_point::max());
-        co_await turn_timer_.async_wait(no_throw);
+    if (requests.unanswered() > 0) {
+        phase_ = Phase::InputOver;
+        end(Deadline::Frame);
+        writer_.notify();
+        co_await turn_.wait();
     }
     fail(refused);
 }
@@ -261,7 +287,7 @@ void Session::on_frame(const codec::Frame& frame) {
     if (!message && message.error().exceeded == codec::ExceededLimit::MessageDepth) {
         host_.limit_counters.met(Limit::MessageDepth);
     }
-    if (!greeted_) {
+    if (!greeted()) {
         if (!message) {
             return fail(
                 refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable));
@@ -307,15 +333,14 @@ void Session::on_hello(const v1::Hello& hello) {
         return fail(visitor.error());
     }
     visitor_ = *std::move(visitor);
-    greeted_ = true;
     if (hello.frame_bytes_max() != 0) {
-        frame_bytes_max_ = hello.frame_bytes_max();
-        snapshots.set_frame_bytes_max(frame_bytes_max_);
+        queue_.set_frame_bytes_max(hello.frame_bytes_max());
+        snapshots.set_frame_bytes_max(hello.frame_bytes_max());
     }
-    hello_timer_.cancel();
+    end(Deadline::Hello);
     reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
     client_ = protocol::client_name_of(hello);
-    log_connection("connected as " + std::string{access::name_of(visitor_.role)} + ", version " +
+    log_connection("connected as " + std::string{access::name_of(visitor_->role)} + ", version " +
                    (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
 
     v1::ServerMessage message;
@@ -332,8 +357,8 @@ void Session::on_hello(const v1::Hello& hello) {
     if (host_.storage) {
         *welcome.mutable_storage() = *host_.storage;
     }
-    welcome.set_role(access::to_proto(visitor_.role));
-    welcome.set_user(visitor_.name);
+    welcome.set_role(access::to_proto(visitor_->role));
+    welcome.set_user(visitor_->name);
     if (!host_.page.is_local || peer_.address().is_loopback()) {
         welcome.set_page_port(host_.page.port);
         welcome.set_page_host(host_.page.host);
@@ -352,9 +377,9 @@ void Session::log_connection(const std::string& what) const {
 }
 
 void Session::log_closed(std::string_view code, const std::string& why) {
-    const std::string who = greeted_ ? by() : to_text(peer_);
+    const std::string who = greeted() ? by() : to_text(peer_);
     std::string left_out;
-    if (!greeted_) { // connections without a Hello must not fill the disk with log lines
+    if (!greeted()) { // connections without a Hello must not fill the disk with log lines
         SessionHost::UngreetedLog& ungreeted = host_.ungreeted_log;
         const auto now = host_.clock->now();
         if (!ungreeted.lines) {
@@ -374,7 +399,7 @@ void Session::log_closed(std::string_view code, const std::string& why) {
 }
 
 void Session::fail(const base::Refusal& refused) {
-    if (finishing_ || ended_) {
+    if (is_over()) {
         return;
     }
     log_closed(name_of(refused.code), refused.message);
@@ -389,11 +414,8 @@ void Session::fail(const base::Refusal& refused) {
 // ---- closing ---------------------------------------------------------------------------------------------------
 
 void Session::check_progress(runtime::Clock::duration watched) {
-    const Transport::Progress progress = sending_.empty() ? Transport::Progress{} : transport_->progress();
-    if (sending_.empty() || ended_ || progress != progress_) {
-        progress_ = progress;
-        stalled_ = {};
-    } else if (stalled_ += watched; stalled_ >= stalled_timeout) {
+    const bool sends = queue_.is_sending() && phase_ != Phase::Ended;
+    if (watch_.is_stalled(sends ? std::optional{transport_->progress()} : std::nullopt, watched)) {
         host_.limit_counters.met(Limit::StalledTimeout);
         log::warn({.session = number_, .client = by()},
                   "session {}: {} closed: the client has received nothing for {} s", number_, by(),
@@ -408,29 +430,24 @@ void Session::check_progress(runtime::Clock::duration watched) {
 void Session::check_silence(runtime::Clock::duration watched) {
     // Silence counts only while this session reads, and while the client has received everything. Otherwise the rate
     // limit or stalled_timeout apply.
-    if (!reading_ || finishing_ || ended_ || !sending_.empty() || transport_->progress().not_taken > 0) {
+    if (is_over() || queue_.is_sending() || transport_->progress().not_taken > 0) {
         return;
     }
-    const auto before = std::exchange(silent_, silent_ + watched);
-    if (before < websocket_ping_after && silent_ >= websocket_ping_after) {
+    switch (watch_.silence_after(watched)) {
+    case ClientWatch::Silence::Short:
+        return;
+    case ClientWatch::Silence::PingDue:
         transport_->ping();
-        wake_writer();
-    } else if (silent_ >= websocket_silence_max) {
+        return writer_.notify();
+    case ClientWatch::Silence::TooLong:
         log_closed({}, "the client has not answered a ping for " +
                            std::to_string((websocket_silence_max - websocket_ping_after).count()) + " s");
-        close();
+        return close();
     }
 }
 
 std::size_t Session::held_bytes() const {
-    std::size_t bytes = reader_bytes_.bytes() + expected_bytes_.bytes() + held_back_bytes_.bytes();
-    for (const Queued& queued : queue_) {
-        bytes += queued.bytes.share();
-    }
-    for (const Queued& queued : sending_) {
-        bytes += queued.bytes.share();
-    }
-    return bytes;
+    return reader_bytes_.bytes() + requests.held_bytes() + queue_.held_bytes();
 }
 
 void Session::evict() {
@@ -442,50 +459,42 @@ void Session::evict() {
 }
 
 void Session::finish() {
-    if (finishing_ || ended_) {
+    if (is_over()) {
         return;
     }
-    finishing_ = true;
+    if (phase_ == Phase::InputOver && !close_code_) {
+        close_code_ = WebSocketClose::Normal;
+    }
+    phase_ = Phase::Finishing;
     snapshots.stop();
-    hello_timer_.cancel();
-    turn_timer_.cancel();
-    farewell_timer_.expires_after(farewell_timeout);
-    farewell_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error) {
-            self->close();
-        }
-    });
-    wake_writer();
+    begin(Deadline::Farewell, farewell_timeout);
+    turn_.notify();
+    writer_.notify();
 }
 
 void Session::close() {
-    if (std::exchange(ended_, true)) {
+    if (std::exchange(phase_, Phase::Ended) == Phase::Ended) {
         return;
     }
-    if (sending_.empty()) {
-        transport_->close();
-    } else {
+    if (queue_.is_sending()) {
         transport_->abort();
+    } else {
+        transport_->close();
     }
-    hello_timer_.cancel();
-    frame_timer_.cancel();
-    turn_timer_.cancel();
-    farewell_timer_.cancel();
-    // sending_ is kept until the current write has ended.
-    queue_.clear();
+    end(deadline_);
+    queue_.drop_waiting();
     snapshots.clear();
     reader_bytes_.set(0);
-    expected_bytes_.set(0);
-    held_back_.clear();
-    held_back_bytes_.set(0);
-    wake_writer();
+    requests.close();
+    turn_.notify();
+    writer_.notify();
 }
 
-void Session::end() {
+void Session::end_coroutine() {
     if (--coroutines_ > 0) {
         return;
     }
-    if (greeted_) {
+    if (greeted()) {
         log_connection("disconnected");
     }
     host_.ended(*this);

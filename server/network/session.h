@@ -18,10 +18,14 @@
 #include "server/access/gate.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
+#include "server/network/client_watch.h"
 #include "server/network/limits.h"
 #include "server/network/messages.h"
 #include "server/network/page_address.h"
+#include "server/network/requests_in_flight.h"
 #include "server/network/send_memory.h"
+#include "server/network/send_queue.h"
+#include "server/network/signal.h"
 #include "server/network/token_bucket.h"
 #include "server/network/transport.h"
 #include "server/runtime/clock.h"
@@ -29,16 +33,12 @@
 
 #include <boost/asio/steady_timer.hpp>
 
-#include <array>
-#include <deque>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 namespace evod::network {
 
@@ -88,21 +88,17 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void start(const std::optional<base::Refusal>& refusal = {});
 
     std::uint64_t number() const { return number_; }
-    bool greeted() const { return greeted_; }
+    bool greeted() const { return visitor_.has_value(); }
     /// User, client name and address: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
-    const access::Visitor& visitor() const { return visitor_; }
+    /// The user of the session, which must have received its Hello.
+    const access::Visitor& visitor() const { return *visitor_; }
     /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count the sessions with an equal
     /// prefix.
     const std::string& address_prefix() const { return address_prefix_; }
 
-    /// Counts one more unanswered request. Returns false if there are already too many; the caller must then refuse the
-    /// request with send_unasked().
-    bool admit_request();
-    /// Reserves memory for answers in preparation. A negative number releases it when the answer is ready.
-    void expect(std::ptrdiff_t bytes);
     /// Sends the answer to an admitted request.
     void answer(SharedBytes frame);
     /// Sends the answer to an admitted request, and logs it if it is a refusal.
@@ -132,20 +128,20 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     streaming::SnapshotQueue snapshots; // the subscriptions to snapshots, and the snapshots that wait to be sent
     std::map<std::uint32_t, EventSubscription> events;
     std::set<std::string> replays; // names of the replays that the session has opened
-
-    // The simulation thread processes at most one query per session at a time, so that all sessions get an equal share
-    // of its time. Meanwhile all further requests of the session are held back to keep their order.
-    bool query_under_way = false;
-    void hold_back(v1::Request request);
-    /// Removes and returns the oldest request that was held back; nullopt if there is none.
-    std::optional<v1::Request> take_held_back();
+    RequestsInFlight requests;
 
   private:
-    enum class Kind { Answer, Unasked, Event, Snapshot };
-    struct Queued {
-        SendMemory::Counted bytes; // a frame or a part of a snapshot
-        Kind kind;
+    /// The phases of a session, in their order. A session may leave some out.
+    enum class Phase {
+        Connecting, // the transport is not ready for writing
+        Open,
+        InputOver, // nothing more is read, but pending answers are still sent
+        Finishing, // only the queued data is still sent
+        Ended,     // the connection is closed
     };
+    /// What the client must do in time. The waits exclude each other: hello_timeout is shorter than frame_timeout.
+    enum class Deadline { None, Hello, Frame, Farewell };
+    using Kind = SendQueue::Kind;
 
     asio::awaitable<void> read();
     /// Limits the rate of frames of the WebSocket that have no content.
@@ -153,32 +149,33 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// Sends a ping to a silent client of a WebSocket, and closes the session if there is no answer.
     void check_silence(runtime::Clock::duration watched);
     /// Limits the time from the first to the last byte of a frame.
-    void update_frame_timer();
+    void update_frame_deadline();
+    /// Replaces the present deadline.
+    void begin(Deadline deadline, std::chrono::seconds time);
+    /// Ends this deadline, if the session waits for it.
+    void end(Deadline deadline);
+    void on_missed(Deadline deadline);
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
     asio::awaitable<void> wait_for_turn(double cost);
     /// Stops reading, and calls fail() once all requests are answered.
     asio::awaitable<void> fail_when_answered(base::Refusal refused);
     asio::awaitable<void> discard_input();
-    asio::awaitable<void> wait_for_work(runtime::Clock::time_point until = runtime::Clock::time_point::max());
     void on_frame(const codec::Frame& frame);
     /// The largest frame body that this client may send after its Hello.
     std::uint32_t control_frame_bytes_max() const;
     void on_hello(const v1::Hello& hello);
     void send_snapshots() override;
-    void send_snapshots_later() override { wake_writer(); }
-    /// Writes as much of a frame as the connection accepts at once. The writer sends the rest from sending_ and rest_.
+    void send_snapshots_later() override { writer_.notify(); }
+    /// Writes as much of a frame as the connection accepts at once. The writer sends the rest.
     void send_frame(const streaming::OutgoingFrame& frame);
     bool may_send_snapshots() const;
     void enqueue(SharedBytes frame, Kind kind);
-    /// Whether the client accepts a frame of this size. The size includes the header.
-    bool takes(std::size_t frame_bytes) const { return frame_bytes - codec::header_bytes <= frame_bytes_max_; }
-    void written(const Queued& queued);
-    void wake_writer();
     void log_connection(const std::string& what) const;
     /// code  name of the refusal's code; empty: the session was not refused.
     void log_closed(std::string_view code, const std::string& why);
-    void end();
+    void end_coroutine();
+    bool is_over() const { return phase_ >= Phase::Finishing; }
 
     std::unique_ptr<Transport> transport_; // never nullptr
     SessionHost& host_;
@@ -186,39 +183,21 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     const tcp::endpoint peer_;
     const std::string address_prefix_;
     std::string client_;
-    access::Visitor visitor_;
-    std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max(); // the largest body that the client accepts
-    codec::FrameReader reader_{codec::hello_limits};
-    SendMemory::Reservation reader_bytes_, expected_bytes_, held_back_bytes_;
-    struct HeldBack {
-        v1::Request request;
-        std::size_t bytes;
-    };
-    std::deque<HeldBack> held_back_; // at most requests_in_flight_max entries
-    TokenBucket turns_to_send_, empty_frames_;
-    asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
-    bool within_frame_ = false; // a part of a frame has arrived
-    bool begun_ = false;        // the transport is ready for writing
-    bool idle_ = false;         // the writer waits for data to send
-    bool greeted_ = false, finishing_ = false, ended_ = false;
-    bool reading_ = false;                     // a read is in progress
-    std::optional<WebSocketClose> close_code_; // why the session ends; nullopt: for no particular reason
-    bool input_over_ = false;                  // nothing more is read, but pending answers are still sent
+    std::optional<access::Visitor> visitor_; // nullopt: no Hello was received
+    Phase phase_ = Phase::Connecting;
+    Deadline deadline_ = Deadline::None;
+    asio::steady_timer deadline_timer_;
     int coroutines_ = 0;                       // number of running coroutines
+    std::optional<WebSocketClose> close_code_; // why the session ends; nullopt: for no particular reason
 
-    std::deque<Queued> queue_;
-    std::vector<Queued> sending_; // not empty: a write is in progress or about to start
-    struct UnsentPart {
-        std::array<std::byte, codec::header_bytes> header;
-        std::string tail;
-        std::vector<asio::const_buffer> buffers; // point to `header`, `tail` and the bytes in sending_
-    } rest_;                                     // the rest of a snapshot that the connection did not accept at once
-    std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in queue_ and sending_
-    Transport::Progress progress_;
-    runtime::Clock::duration stalled_{}; // time in which the client was observed and received nothing
-    runtime::Clock::duration silent_{};  // time in which the client of a WebSocket could send and sent nothing
-    std::size_t in_flight_ = 0;          // number of requests whose answers the writer has not taken yet
-    std::uint64_t dropped_events_ = 0;   // number of dropped events that were not reported yet
+    codec::FrameReader reader_{codec::hello_limits};
+    SendMemory::Reservation reader_bytes_;
+    TokenBucket turns_to_send_, empty_frames_;
+    Signal turn_; // ends a wait of the coroutine that reads
+    ClientWatch watch_;
+
+    SendQueue queue_;
+    Signal writer_; // ends a wait of the coroutine that writes
     std::uint32_t subscription_id_ = 0;
 };
 

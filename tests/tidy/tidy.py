@@ -184,6 +184,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/network", "background_queries description http http_connection messages random_ids server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "session_sending"): "unit/network/session_test",
+    ("server/network", "commands subscription_requests"): "unit/network/dispatcher_test",
     ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
     ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):

@@ -1,0 +1,224 @@
+#include "server/network/commands.h"
+
+#include "server/base/assert.h"
+#include "server/log/log.h"
+#include "server/network/random_ids.h"
+#include "server/protocol/actors.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/refusals.h"
+#include "server/protocol/request_rules.h"
+#include "server/simulation/world_name.h"
+
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+/// Serialises a request deterministically: equal requests give equal bytes.
+std::string bytes_of(const v1::Request& request) {
+    std::string bytes;
+    google::protobuf::io::StringOutputStream stream{&bytes};
+    google::protobuf::io::CodedOutputStream coded{&stream};
+    coded.SetSerializationDeterministic(true);
+    request.SerializeToCodedStream(&coded);
+    coded.Trim();
+    return bytes;
+}
+
+/// Increments the counter of each limit that an invalid command exceeds.
+void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) {
+    if (request.client_key().size() > protocol::client_key_bytes_max) {
+        counters.met(Limit::ClientKeyBytes);
+    }
+    if (std::max(request.create_world().name().size(), request.fork_world().name().size()) >
+        simulation::world_name_bytes_max) {
+        counters.met(Limit::WorldNameBytes);
+    }
+}
+
+} // namespace
+
+base::Refusal mailbox_full(LimitCounters& limit_counters) {
+    limit_counters.met(Limit::MailboxCommands);
+    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy, its mailbox is full: try again",
+                   base::Reason::ServerBusy);
+}
+
+Commands::Commands(asio::io_context& context, runtime::Simulations& simulations, Streams& streams,
+                   LimitCounters& limit_counters)
+    : simulations_{simulations}
+    , streams_{streams}
+    , limit_counters_{limit_counters}
+    , leases_{context,
+              [this](const std::string& world, std::uint64_t lease) {
+                  limit_counters_.met(Limit::Lease);
+                  v1::Request request;
+                  request.mutable_release_lease()->set_world(world);
+                  handle_own(std::move(request), lease);
+              }}
+    , reply_cache_{{.kept_per_key = retries_kept,
+                    .keys_max = client_keys_max,
+                    .bytes_max = retry_bytes_max,
+                    .evicted_max = evicted_keys_max},
+                   [this] { limit_counters_.met(Limit::ClientKeys); }}
+    , own_key_{"evod " + to_text(draw_run_id())} {}
+
+void Commands::restore(const std::vector<run_file::JournalEntry>& answers) {
+    for (const run_file::JournalEntry& entry : answers) {
+        reply_cache_.restore(ReplyCache::key_of(run_file::user_of(entry.origin), entry.origin.client_key),
+                             entry.origin.request_id, entry.origin.request,
+                             std::make_shared<const std::string>(entry.answer));
+    }
+}
+
+void Commands::handle(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    const auto refused = [id](const base::Refusal& why) { return protocol::refusing(id, why); };
+
+    if (const auto unknown = protocol::unknown_field_of(request)) {
+        return session.answer(refused(
+            {.code = base::RefusalCode::Unimplemented,
+             .message = "this server does not know a field of the command: it may be older than the client",
+             .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
+             .reason = base::Reason::FieldUnknown}));
+    }
+    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    if (!command) {
+        count_exceeded_limits(request, limit_counters_);
+        return session.answer(refused(command.error()));
+    }
+
+    const std::string key = ReplyCache::key_of(session.visitor().name, request.client_key());
+    std::string bytes = bytes_of(request);
+    const auto verdict = reply_cache_.begin(key, id, bytes, [weak = session.weak_from_this()](const auto& frame) {
+        if (const auto waiting = weak.lock()) {
+            waiting->answer(frame);
+        }
+    });
+    switch (verdict) {
+    case ReplyCache::Verdict::Known:
+        return;
+    case ReplyCache::Verdict::Different:
+        return session.answer(refused({.code = base::RefusalCode::InvalidArgument,
+                                       .message = "this client_key has used the request_id for another request",
+                                       .violations = {{"request_id", "an unused id", std::to_string(id)}},
+                                       .reason = base::Reason::RequestIdReused}));
+    case ReplyCache::Verdict::TooOld:
+        limit_counters_.met(Limit::RetriesKept);
+        return session.answer(refused(
+            refusal(base::RefusalCode::FailedPrecondition,
+                    "the request is older than the cached answers and may have been applied; it is not applied again: "
+                    "read the current state, and send the command with a higher request_id",
+                    base::Reason::RequestTooOld)));
+    case ReplyCache::Verdict::New:
+        break;
+    }
+    if (!send(*std::move(command), request, std::move(bytes), session.by(), session.number())) {
+        reply_cache_.forget(key, id, encode_response(refused(mailbox_full(limit_counters_))));
+    }
+}
+
+void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
+    request.set_client_key(own_key_);
+    request.set_request_id(++own_request_id_);
+    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    EVOD_ASSERT(command.has_value());
+    if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
+        release->lease = lease;
+    }
+    send(*std::move(command), request, bytes_of(request), std::string{protocol::by_the_server}, 0);
+}
+
+bool Commands::send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
+                    std::uint64_t session) {
+    if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
+        change->by = by;
+    }
+    const std::string world = std::visit(
+        [](const auto& c) {
+            if constexpr (requires { c.name; }) {
+                return std::string{}; // it creates a live world
+            } else {
+                return c.world;
+            }
+        },
+        command);
+    runtime::Mailbox& mailbox = simulations_.mailbox_of(world);
+    return mailbox.try_push(runtime::CommandMail{.command = std::move(command),
+                                                  .origin = {.client = std::move(by),
+                                                             .client_key = request.client_key(),
+                                                             .request_id = request.request_id(),
+                                                             .request = std::move(bytes)},
+                                                  .request_name = protocol::name_of(request),
+                                                  .session = session});
+}
+
+void Commands::on_done(runtime::CommandDone done) {
+    const runtime::CommandMail& mail = done.mail;
+    const std::string key = ReplyCache::key_of(run_file::user_of(mail.origin), mail.origin.client_key);
+    const auto frame = std::make_shared<const std::string>(std::move(done.frame));
+    if (!done.outcome) {
+        return on_refused(mail, done.outcome.error(), key, frame);
+    }
+    reply_cache_.finish(key, mail.origin.request_id, frame);
+    const std::string& world = done.outcome->world;
+    if (std::holds_alternative<simulation::DeleteWorld>(mail.command)) {
+        streams_.forget_world(world);
+    }
+    if (done.event) {
+        streams_.publish(*std::move(done.event));
+    }
+    if (!done.lease) {
+        leases_.end(world);
+    } else if (std::holds_alternative<simulation::RunUntilTick>(mail.command) && grants_leases_) {
+        leases_.begin(world, *done.lease, key);
+    }
+}
+
+void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
+                          const SharedBytes& frame) {
+    if (mail.session == 0) {
+        if (why.reason != base::Reason::NoLease) {
+            log::error("the server's own command {} is refused: {}", mail.request_name, to_text(why));
+        }
+        return;
+    }
+    log_refusal(mail.session, mail.origin.client, mail.origin.request_id, why);
+    if (why.reason == base::Reason::PlannedChangesMax) {
+        limit_counters_.met(Limit::PlannedChanges);
+    } else if (why.reason == base::Reason::PlacedMax) {
+        limit_counters_.met(Limit::Placed);
+    } else if (why.reason == base::Reason::WorldsMax) {
+        limit_counters_.met(Limit::Worlds);
+    }
+    // A temporary refusal is not cached, so the same request may succeed when the client sends it again.
+    if (why.code == base::RefusalCode::Unavailable || why.code == base::RefusalCode::ResourceExhausted) {
+        reply_cache_.forget(key, mail.origin.request_id, frame);
+    } else {
+        reply_cache_.finish(key, mail.origin.request_id, frame);
+    }
+}
+
+std::optional<base::Refusal> Commands::renew_lease(const Session& session, const v1::Request& request,
+                                                   const std::string& world) {
+    const std::string& key = request.client_key();
+    if (leases_.renew(world, ReplyCache::key_of(session.visitor().name, key))) {
+        return std::nullopt;
+    }
+    return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
+                         .message = "this client_key has no lease of that world: it gets one with "
+                                    "run_until_tick on a running world",
+                         .violations = {{"client_key", "the key of the run_until_tick", key}},
+                         .reason = base::Reason::NoLease};
+}
+
+void Commands::end_all_leases() {
+    grants_leases_ = false;
+    leases_.end_all();
+}
+
+} // namespace evod::network

@@ -1,0 +1,72 @@
+// Commands: passes the commands of clients to the simulation thread, and uses the reply cache to make them idempotent. Also
+// sends the commands of the server itself, and limits the leases that commands grant.
+//
+// Owner        the dispatcher, on the network thread.
+#pragma once
+
+#include "server/network/leases.h"
+#include "server/network/reply_cache.h"
+#include "server/network/session.h"
+#include "server/network/streams.h"
+#include "server/runtime/simulations.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::network {
+
+/// Returns the refusal for a full mailbox, and counts it.
+base::Refusal mailbox_full(LimitCounters& limit_counters);
+
+class Commands {
+  public:
+    /// All arguments must outlive this object.
+    Commands(asio::io_context& context, runtime::Simulations& simulations, Streams& streams, LimitCounters& limit_counters);
+
+    /// Handles a command that the session has admitted.
+    void handle(Session& session, const v1::Request& request);
+    /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
+    /// is full, the command is dropped.
+    ///
+    /// lease  for ReleaseLease: the number of the lease.
+    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
+    /// Must be called after a command was refused, or was applied and stored. Sends the answer and reports the change to
+    /// subscribers.
+    void on_done(runtime::CommandDone done);
+
+    /// Adds to the reply cache the answers that were given before this server started.
+    void restore(const std::vector<run_file::JournalEntry>& answers);
+    /// Starts a lease that was granted before the server started. When it expires, the world continues.
+    void restart_lease(const std::string& world) { leases_.begin(world, 0, {}); }
+    /// Returns nullopt if the session's user holds the lease of the world with the client_key of this request; otherwise
+    /// the refusal.
+    std::optional<base::Refusal> renew_lease(const Session& session, const v1::Request& request,
+                                             const std::string& world);
+    void end_lease(const std::string& world) { leases_.end(world); }
+    /// Ends all leases, because the server is shutting down. No lease begins afterwards.
+    void end_all_leases();
+
+  private:
+    /// Puts a command into the mailbox. Returns false if the mailbox is full.
+    ///
+    /// bytes    the serialised request.
+    /// by       the sender, in the text format that protocol::actor_of() parses.
+    /// session  number of the sender's session; 0: the server itself.
+    bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
+              std::uint64_t session);
+    /// key  the sender's key in the reply cache.
+    void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
+                    const SharedBytes& frame);
+
+    runtime::Simulations& simulations_;
+    Streams& streams_;
+    LimitCounters& limit_counters_;
+    Leases leases_;
+    ReplyCache reply_cache_;
+    const std::string own_key_; // client_key for commands of the server itself
+    std::uint64_t own_request_id_ = 0;
+    bool grants_leases_ = true;
+};
+
+} // namespace evod::network
