@@ -5,7 +5,7 @@
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/log/log.h"
-#include "server/network/random_ids.h"
+#include "server/runtime/random_ids.h"
 
 #include <boost/asio/ip/address_v6.hpp>
 
@@ -93,7 +93,7 @@ network::ServerOptions common_server_options(const ServeOptions& options) {
 
 base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
     simulation::CreateWorld create{
-        .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
+        .name = "default", .parameters = {}, .seed = runtime::draw_seed(), .run_id = runtime::draw_run_id()};
     if (!options.experiment_file.empty()) {
         const auto experiment = experiments::load_experiment(options.experiment_file);
         if (!experiment) {

@@ -4,7 +4,6 @@
 #include "server/base/assert.h"
 #include "server/log/log.h"
 #include "server/network/description.h"
-#include "server/network/random_ids.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
@@ -13,6 +12,7 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/random_ids.h"
 #include "server/simulation/world_name.h"
 
 #include <google/protobuf/descriptor.h>
@@ -155,7 +155,7 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
                     .bytes_max = retry_bytes_max,
                     .evicted_max = evicted_keys_max},
                    [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
-    , own_key_{"evod " + to_text(draw_run_id())} {}
+    , own_key_{"evod " + to_text(runtime::draw_run_id())} {}
 
 base::Refusal Dispatcher::busy() {
     limit_counters_.met(Limit::MailboxCommands);
@@ -259,7 +259,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
              .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
              .reason = base::Reason::FieldUnknown}));
     }
-    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     if (!command) {
         count_exceeded_limits(request, limit_counters_);
         return session.answer(refused(command.error()));
@@ -298,7 +298,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
 void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
     request.set_client_key(own_key_);
     request.set_request_id(++own_request_id_);
-    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     EVOD_ASSERT(command.has_value());
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;

@@ -3,13 +3,13 @@
 #include "server/log/log.h"
 #include "server/network/detached.h"
 #include "server/network/limits.h"
-#include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -125,7 +125,7 @@ Server::Server(ServerOptions options)
                   [this] { stop(); },
                   [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
-    host_.instance_id = to_text(draw_run_id());
+    host_.instance_id = to_text(runtime::draw_run_id());
     host_.clock = &clock_;
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
